@@ -50,8 +50,8 @@ def pose(**changed):
     return protocol.Pose(**fields | changed)
 
 
-def notes(*, warnings=(), counts=None, recent=None):
-    return protocol.Notes(list(warnings), counts or {}, recent or {})
+def notes(*, findings=(), counts=None, recent=None):
+    return protocol.Notes(list(findings), counts or {}, recent or {})
 
 
 def fix(**changed):

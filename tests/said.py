@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from recon4.findings.audit import check_walk
-from recon4.findings.finding import Finding
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.lines import line_findings
 from recon4.findings.witnesses.rig import agreement, rig_findings
 from recon4.findings.wording import whole_text
 from recon4.model.calibration_figures import CalibrationFigures
+from recon4.model.finding import Finding
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.usability import MapVerdict
 from recon4.settings import Settings

@@ -12,8 +12,8 @@ import msgspec
 
 from recon4.api.maps import PLANAR, read_tiles
 from recon4.errors import StoreError
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.usability import MapVerdict, Usability
 
 if TYPE_CHECKING:

@@ -157,13 +157,16 @@ def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: f
 
 def describe_event(event: Event) -> str:
     """A line for a person; empty for events that are in the results only."""
-    from recon4.model.events import ArtifactDamaged, StageChanged, Warned
+    from recon4.findings.wording import whole_text
+    from recon4.model.events import ArtifactDamaged, Remarked, StageChanged, Warned
 
     match event:
         case StageChanged():
             return _describe_stage(event)
         case Warned(text=text):
             return f"warning: {text}"
+        case Remarked(finding=finding):
+            return f"warning: {whole_text(finding)}"
         case ArtifactDamaged(stage=stage, moved_to=moved_to, files=files):
             return (
                 f"an artifact of the stage {stage} was damaged and is made again; "
@@ -231,8 +234,8 @@ def _describe_3d(summary: Summary) -> str:
 
 def _describe_verdict(summary: RunSummary) -> list[str]:
     """The verdict on the map, with its reasons and notes by their codes, a line each."""
-    from recon4.findings.finding import Level
     from recon4.findings.wording import whole_text
+    from recon4.model.finding import Level
 
     shown = [one for one in summary.findings if one.level is not Level.GOOD]
     return [

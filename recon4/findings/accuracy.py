@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from recon4.evaluation.evaluate import Evaluation
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.tuning import ACCURACY
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 
 
 def accuracy_findings(found: Evaluation | None) -> Iterator[Finding]:

@@ -9,7 +9,6 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import StoreError
-from recon4.findings.finding import Finding, Level, worst_first
 from recon4.findings.tuning import AUDIT_LIST
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
@@ -27,6 +26,7 @@ from recon4.findings.witnesses.turn_scale import TurnScales
 from recon4.findings.witnesses.uncertainty import Uncertainty
 from recon4.findings.witnesses.weak_directions import WeakStretches
 from recon4.model.figures import AuditFigures
+from recon4.model.finding import Finding, Level, worst_first
 from recon4.settings.reads import AuditReads
 from recon4.store.atomic import write_json
 from recon4.untrusted.bounded import read_json_object

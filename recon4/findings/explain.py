@@ -7,9 +7,9 @@ import textwrap
 from difflib import get_close_matches
 
 from recon4.errors import ConfigError
-from recon4.findings.kinds import FindingKind
 from recon4.findings.measured import sources
 from recon4.findings.wording import KindText, Sentence, catalog
+from recon4.model.finding_kinds import FindingKind
 
 _WIDTH = 88
 _INTRODUCTION = """\
@@ -38,6 +38,14 @@ a run whose trajectory is wrong, or whose fault it names; wrong runs without it 
 first reason of each run is known, by the code of its time.
 
 This page is made from the catalog of the texts and the counts in `measured.toml`: `make docs`.
+"""
+_READERS = """\
+## Warnings of readers
+
+What the readers of recordings repair, leave out or doubt. `recon4 info` says it before a map is
+made, `recon4 process` while it reads, the phone while it records. They make a 3-D map *check*. Of a
+2-D map they are notes, except what they say of mounts. In the measured runs they are counted
+together, as IMPORT-REMARK.
 """
 
 
@@ -68,17 +76,23 @@ def explained(code: str) -> str:
 
 def markdown() -> str:
     """The page ``docs/reference/findings.md``."""
-    return "\n".join(
-        [_INTRODUCTION, *(_section(kind, catalog().kinds[kind]) for kind in FindingKind)]
+    readers = catalog().readers
+    witnesses = (
+        _section(kind, catalog().kinds[kind]) for kind in FindingKind if kind not in readers
     )
+    warnings = (_section(kind, catalog().kinds[kind]) for kind in FindingKind if kind in readers)
+    return "\n".join([_INTRODUCTION, *witnesses, _READERS, *warnings])
 
 
 def _section(kind: FindingKind, entry: KindText) -> str:
     sentences = [one.text if isinstance(one, Sentence) else one for one in entry.text]
     shown = " ".join(_readable(text) for text in sentences)
-    rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", ""]
-    rows += [f"- says: {shown}", f"- detected: {entry.detection}"]
-    rows.append(f"- measured: {'. '.join(_capital(source.words(kind)) for source in sources())}")
+    rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", "", f"- says: {shown}"]
+    if entry.detection:
+        rows.append(f"- detected: {entry.detection}")
+    if kind not in catalog().readers:
+        measured = (_capital(source.words(kind)) for source in sources())
+        rows.append(f"- measured: {'. '.join(measured)}")
     if entry.remedy:
         rows.append(f"- what to do: {_readable(entry.remedy)}")
     return "\n".join([*rows, ""])

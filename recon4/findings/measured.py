@@ -13,7 +13,7 @@ from importlib import resources
 
 import msgspec
 
-from recon4.findings.kinds import FindingKind
+from recon4.model.finding_kinds import FindingKind
 
 
 class Alarms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -28,9 +28,10 @@ def read_planar(artifacts: Mapping[str, Path]) -> PlanarRecord:
         StoreError: If one is missing or damaged.
     """
     trajectory = load_trajectory(artifacts["map_2d"] / "trajectory.npz")
+    scans = read_figures(artifacts["scans_2d"], Scan2dFigures)
     return PlanarRecord(
-        scans=read_figures(artifacts["scans_2d"], Scan2dFigures),
-        imported=import_notes(import_report(artifacts)),
+        scans=scans,
+        imported=import_notes(import_report(artifacts), mount_doubts=scans.doubts),
         odometry=read_figures(artifacts["odometry_2d"], Odometry2dFigures),
         map=read_figures(artifacts["map_2d"], Map2dFigures),
         steps=load_record(artifacts["odometry_2d"] / "steps.npz", Steps2d),

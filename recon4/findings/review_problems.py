@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.model.figures import ReviewFigures
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 
 
 def problem_findings(figures: ReviewFigures) -> list[Finding]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import msgspec
 
 from recon4.errors import StoreError
-from recon4.findings.finding import Level, Point
+from recon4.model.finding import Level, Point
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

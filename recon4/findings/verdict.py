@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from recon4.findings.finding import Finding, Level, worst_first
-from recon4.findings.kinds import FindingKind
 from recon4.findings.wording import whole_text
+from recon4.model.finding import Finding, Level, worst_first
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.usability import MapVerdict, Unobserved, Usability
 
 _USABILITY = {

@@ -1,4 +1,6 @@
-"""Findings in words: the catalog ``en.toml`` with the values of a finding filled in.
+"""Findings in words: the catalog with the values of a finding filled in.
+
+``en.toml`` has what witnesses find, ``readers_en.toml`` what readers of recordings warn of.
 
 A text is a list of sentences. A sentence is left out if a value that it quotes is not known, or if
 the value named by its ``if`` is not true. Formats after the colon, besides those of Python:
@@ -8,6 +10,8 @@ the value named by its ``if`` is not true. Formats after the colon, besides thos
 ``percent`` a ratio as percent with one digit; ``percent0`` without
 ``deg``     radians as degrees with two digits; ``deg1`` with one, ``deg3`` with three
 ``count``   a whole number with its thousands apart
+``label``   name of a count of the import: what it counts (`recon4.model.count_words`)
+``counts``  several such counts, ``name=number name=number``
 ``word``    the text of a word, from ``words`` of the kind, else from those of the catalog
 ========== ==========================================================================
 """
@@ -20,13 +24,16 @@ import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
-from typing import Any
+from typing import Any, TypeVar
 
 import msgspec
+from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Value
-from recon4.findings.kinds import FindingKind
+from recon4.model.finding import Finding, Value
+from recon4.model.finding_kinds import FindingKind
+from recon4.model.import_counts import count_label, count_text
 
+_T = TypeVar("_T")
 _DEGREE_DIGITS = {"deg": 2, "deg1": 1, "deg3": 3}
 
 
@@ -49,7 +56,7 @@ class KindText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     meaning: str = ""
     """What it says of the map, for ``docs/reference/findings.md`` and ``recon4 explain``."""
     detection: str = ""
-    """How it is detected, and from which size on."""
+    """How it is detected, and from which size on; empty = its text says so."""
     words: dict[str, str] = {}
 
 
@@ -60,13 +67,25 @@ class Catalog(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Usability -> headline of a verdict."""
     words: dict[str, str]
     kinds: dict[FindingKind, KindText]
+    readers: frozenset[FindingKind] = frozenset()
+    """Kinds that readers of recordings warn of, not witnesses."""
+
+
+class _Texts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    kinds: dict[FindingKind, KindText]
 
 
 @cache
 def catalog() -> Catalog:
     """The English catalog."""
-    text = resources.files("recon4.findings").joinpath("en.toml").read_text("utf-8")
-    return msgspec.convert(tomllib.loads(text), Catalog)
+    of_readers = _read("readers_en.toml", _Texts).kinds
+    found = _read("en.toml", Catalog)
+    return replace(found, kinds=found.kinds | of_readers, readers=frozenset(of_readers))
+
+
+def _read(name: str, kind: type[_T]) -> _T:
+    text = resources.files("recon4.findings").joinpath(name).read_text("utf-8")
+    return msgspec.convert(tomllib.loads(text), kind)
 
 
 def text_of(finding: Finding) -> str:
@@ -155,9 +174,19 @@ class _Filling(string.Formatter):
                 return f"{math.degrees(value):.{_DEGREE_DIGITS[format_spec]}f}°"
             case "count":
                 return f"{value:,}".replace(",", "\u202f")
+            case "label":
+                return count_label(value)
+            case "counts":
+                return _counts(value)
             case "word":
                 return self._words.get(value) or catalog().words.get(value, value)
         return super().format_field(value, format_spec)
+
+
+def _counts(value: str) -> str:
+    pairs = (one.partition("=") for one in value.split())
+    counts = {name: int(number) for name, _, number in pairs}
+    return "; ".join(count_text(name, counts) for name in counts)
 
 
 def _length(value_m: float) -> str:

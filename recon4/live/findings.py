@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from recon4.findings.wording import whole_text
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
@@ -299,7 +300,7 @@ def _degraded(pose: Pose) -> bool:
 
 def _reader(notes: Notes, *, lost_here: bool) -> list[CaptureFinding]:
     """What the reader repairs; packets that this computer lost are no fault of the cable."""
-    found = [CaptureFinding("warning", text) for text in notes.warnings[-3:]]
+    found = [CaptureFinding("warning", whole_text(one)) for one in notes.findings[-3:]]
     found += [CaptureFinding("warning", text) for text in scan_remarks(notes)]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.findings.wording import text_of
 from recon4.live.findings import CaptureFinding
@@ -11,6 +9,8 @@ from recon4.live.findings import Level as Urgency
 from recon4.live.protocol import Pose
 from recon4.live.stretches import Stretches
 from recon4.live.tuning import SO_FAR
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.tuning import OBSERVATION
 from recon4.model.usability import Usability
 

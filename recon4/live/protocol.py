@@ -16,6 +16,7 @@ from typing import Annotated, TypeVar, cast
 import msgspec
 
 from recon4.errors import Recon4Error
+from recon4.model.finding import Finding
 
 _T = TypeVar("_T")
 Text = Annotated[str, msgspec.Meta(max_length=4000)]
@@ -272,9 +273,9 @@ class Fix(msgspec.Struct, tag_field="kind", tag="fix"):
 
 
 class Notes(msgspec.Struct, tag_field="kind", tag="notes"):
-    """Warnings and repairs of the reader."""
+    """Findings and repairs of the reader."""
 
-    warnings: Annotated[list[Text], msgspec.Meta(max_length=100)]
+    findings: Annotated[list[Finding], msgspec.Meta(max_length=100)]
     counts: dict[str, int]
     recent: dict[str, int]
     """Counts of the last 10 s."""

@@ -14,6 +14,7 @@ from typing import ClassVar
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 
 Position = tuple[float, float, float]
@@ -125,6 +126,14 @@ class Warned(Event):
 
     kind: ClassVar[str] = "warning"
     text: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Remarked(Event):
+    """A reader warns of something in the recording."""
+
+    kind: ClassVar[str] = "remark"
+    finding: Finding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

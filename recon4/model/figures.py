@@ -30,7 +30,6 @@ class FrameFigures(Figures, frozen=True, kw_only=True):
     """Whether it has positions."""
     outcome: str = "complete"
     """``complete``, or how far it could be read."""
-    warnings: tuple[str, ...] = ()
 
 
 class GraphFigures(Figures, frozen=True, kw_only=True):
@@ -223,7 +222,6 @@ class Scan2dFigures(Figures, frozen=True, kw_only=True):
     """Whether the recording has poses of its own."""
     outcome: str = "complete"
     """``complete``, or how far it could be read."""
-    warnings: tuple[str, ...] = ()
     tilt_deg: float = 0.0
     """Angle between the plane of the laser and the level one, by rig file or tf [°]."""
     mirrored: bool = False
@@ -231,7 +229,7 @@ class Scan2dFigures(Figures, frozen=True, kw_only=True):
     mount: str = ""
     """What states the mount of the laser, and how it is; empty = nothing does."""
     doubts: tuple[str, ...] = ()
-    """Warnings about the mount of the laser."""
+    """Of earlier versions: sentences about the mount of the laser, in place of findings."""
 
 
 class Odometry2dFigures(Figures, frozen=True, kw_only=True):

@@ -15,9 +15,20 @@ class Loss:
 
     name: str
     number: int
-    ratio: float
-    """Of all of its kind, 0 to 1; NaN = unknown."""
-    text: str
+    total: int
+    """Of all of its kind; 0 = unknown."""
+    detail: str
+    """What the reader knows besides, such as a port."""
+
+    @property
+    def ratio(self) -> float:
+        """Of all of its kind, 0 to 1; NaN = unknown."""
+        return self.number / self.total if self.total else float("nan")
+
+    @property
+    def text(self) -> str:
+        """How many of how many, what became of them, and the detail."""
+        return _counted(self.name, self.number, total=self.total, detail=self.detail)
 
     @property
     def is_warned(self) -> bool:
@@ -58,7 +69,10 @@ def count_text(name: str, counts: Mapping[str, int], *, detail: str = "") -> str
         counts: All counts.
         detail: What the reader knows besides, such as a port.
     """
-    number, total = counts.get(name, 0), _total(name, counts)
+    return _counted(name, counts.get(name, 0), total=_total(name, counts), detail=detail)
+
+
+def _counted(name: str, number: int, *, total: int, detail: str) -> str:
     of_all = f" of {total}" if total else ""
     return f"{number}{of_all} {count_label(name)}{f' ({detail})' if detail else ''}"
 
@@ -109,9 +123,7 @@ def _of_kind(counts: Mapping[str, int], kind: CountKind) -> Iterator[str]:
 
 
 def _loss(name: str, counts: Mapping[str, int], details: Mapping[str, str]) -> Loss:
-    number, total = counts[name], _total(name, counts)
-    ratio = number / total if total else float("nan")
-    return Loss(name, number, ratio, count_text(name, counts, detail=details.get(name, "")))
+    return Loss(name, counts[name], _total(name, counts), details.get(name, ""))
 
 
 def _total(name: str, counts: Mapping[str, int]) -> int:

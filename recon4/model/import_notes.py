@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import msgspec
+from msgspec.structs import replace
 
 from recon4.errors import StoreError
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 
 HEIGHTS_UNSTATED, HEIGHTS_ORTHOMETRIC = "gnss_heights_unstated", "gnss_heights_orthometric"
 """Counts of fixes whose height is taken as ellipsoidal because nothing says what it is above, and
@@ -22,21 +25,43 @@ not say whether they are in deg/s."""
 
 
 class ImportNotes(msgspec.Struct, frozen=True):
-    """Outcome, warnings and counts of reading a recording."""
+    """Outcome, findings and counts of reading a recording."""
 
     outcome: str = "complete"
     """``complete``, ``lossy`` (salvaged) or ``nothing``."""
-    warnings: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    """What the readers warn of."""
     counts: dict[str, int] = {}
 
 
-def import_notes(report: Mapping[str, object]) -> ImportNotes:
+class _EarlierNotes(msgspec.Struct, frozen=True):
+    """What readers wrote before their warnings were findings."""
+
+    warnings: tuple[str, ...] = ()
+
+
+def import_notes(report: Mapping[str, object], mount_doubts: Sequence[str] = ()) -> ImportNotes:
     """Read a parsed import report; missing parts are as by default.
+
+    Sentences of earlier versions become findings that quote them.
+
+    Args:
+        report: Contents of ``report.json``.
+        mount_doubts: Sentences of an earlier version about the mount of a 2-D laser.
 
     Raises:
         StoreError: If a value has another type.
     """
     try:
-        return msgspec.convert(report, ImportNotes)
+        notes = msgspec.convert(report, ImportNotes)
+        sentences = msgspec.convert(report, _EarlierNotes).warnings
     except msgspec.ValidationError as error:
         raise StoreError(f"report.json of the frames cannot be read: {error}") from error
+    others = (text for text in sentences if text not in mount_doubts)
+    earlier = [_quoted(FindingKind.LASER_MOUNT, text) for text in mount_doubts]
+    earlier += [_quoted(FindingKind.IMPORT_REMARK, text) for text in others]
+    return replace(notes, findings=(*notes.findings, *earlier))
+
+
+def _quoted(kind: FindingKind, text: str) -> Finding:
+    return Finding(kind=kind, level=Level.CHECK, values={"text": text})

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -31,7 +32,7 @@ from recon4.recording.bag_messages import (
 from recon4.recording.bag_packets import BagPackets, PacketTopics
 from recon4.recording.clock_compare import LIDAR, warn_of_other_joint_clock
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
-from recon4.recording.driver_topics import no_lidar_text, unread_text
+from recon4.recording.driver_topics import no_lidar_text, unread_text, warn_of_drivers
 from recon4.recording.formats.bags import (
     CLOUD,
     Bag,
@@ -264,7 +265,10 @@ def lidar_streams(
     if unread := unread_text(bag.topics):
         named = {settings.lidar_topic, *by_rig}
         lidars = [one for one in used if one.is_measured or one.topic.name in named]
-        (report.derive if lidars else report.warn)(unread)
+        if lidars:
+            report.derive(unread)
+        else:
+            warn_of_drivers(bag.topics, report)
         used = lidars  # a map or a depth camera does not stand in for the LiDAR
     if used and len(used) < len(found):
         names = ", ".join(one.topic.name for one in used)
@@ -373,7 +377,9 @@ class _Clouds:
                 shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
             except CorruptFile as error:
                 self._report.count("messages_corrupt")
-                self._report.warn(f"{message.topic}: left out: {error}")
+                self._report.warn(
+                    FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=str(error)
+                )
                 continue
             if len(shots := moved(shots, self._offset_ns)):
                 self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))

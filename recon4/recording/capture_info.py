@@ -71,7 +71,7 @@ def _packet_sensor(stream: PacketStream) -> SensorInfo:
         count=_total(stream),
         rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
         rotation_hz=stream.found.rotation_hz if stream.found else float("nan"),
-        remarks=stream.remarks,
+        findings=stream.findings,
     )
 
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.model.count_words import FREE_CLOCK
-from recon4.recording.clock_names import described, known_offset_s
+from recon4.model.finding_kinds import FindingKind
+from recon4.recording.clock_names import known_offset_s, offset_values
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import CLOCK_COMPARE
 
@@ -38,11 +39,14 @@ def is_same_clock(what: str, rig_offset_s: float, report: ImportReport) -> bool:
     if not abs(ahead_s) > CLOCK_COMPARE.other_s:
         return True
     exact_s = known_offset_s(measured_s)
-    about = "" if exact_s != measured_s else "about "
     report.warn(
-        f"the clock of the {what} is ahead of the LiDAR's by {described(ahead_s)}, by when both "
-        f"were recorded: its samples are not used. Give [{what.lower()}] time_offset_s = "
-        f"{about}{-exact_s:.3f} in the rig file"
+        FindingKind.CLOCK_FOREIGN,
+        what=what,
+        table=what.lower(),
+        offset_s=-exact_s,
+        exact=exact_s != measured_s,
+        measured=exact_s == measured_s,
+        **offset_values(ahead_s),
     )
     return False
 
@@ -63,14 +67,11 @@ def warn_of_free_clocks(report: ImportReport, *, imu_file: bool) -> None:
     offset_s = float("nan") if imu_file else clock_offset_s(IMU_CLOCK, report)
     if abs(offset_s) < CLOCK_COMPARE.travel_s:
         return
-    apart = (
-        "nothing says whether the IMU is on that clock"
-        if np.isnan(offset_s)
-        else f"the IMU's stamps are {described(offset_s)} ahead of it"
-    )
     report.warn(
-        f"no GPS drives the clock of {', '.join(free)}, whose times are those of the recorder: "
-        f"{apart}. If points and IMU do not fit, give [imu] time_offset_s in the rig file"
+        FindingKind.CLOCK_FREE_IMU,
+        sensors=", ".join(free),
+        unknown=bool(np.isnan(offset_s)),
+        **offset_values(offset_s),
     )
 
 
@@ -83,10 +84,7 @@ def warn_of_other_joint_clock(joint: str, report: ImportReport) -> None:
     """
     ahead_s = clock_offset_s(JOINT, report)
     if abs(ahead_s) > CLOCK_COMPARE.joint_s:
-        report.doubt(
-            f"the times of the joint are ahead of the sensor's by {described(ahead_s)}, by when "
-            f"both were recorded: points may be placed by the pose of another time; {joint}"
-        )
+        report.warn(FindingKind.JOINT_CLOCK, joint=joint, **offset_values(ahead_s))
 
 
 def _spread(lag_s: np.ndarray) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
@@ -146,7 +147,7 @@ class CloudDecoder:
         outside = int(np.count_nonzero((values < 0) | (values > 65535)))
         if outside:
             self._report.count("intensity_clipped", outside)
-            self._report.warn(f"{self._name}: intensities outside 0..65535 are clipped")
+            self._report.warn(FindingKind.INTENSITY_CLIPPED, where=self._name)
         return np.clip(values, 0, 65535).astype(np.uint16)
 
     # -- ring
@@ -220,22 +221,16 @@ class CloudDecoder:
                 return found.t_ns, found.kept
         self._report.count(CLOUDS_UNTIMED)
         if not key and not full_turn:
-            self._report.warn(
-                f"{self._name}: the points have no times: all of a cloud are taken as measured at "
-                "its stamp, which is wrong while the sensor moves. If the clouds are undistorted "
-                "already or the sensor stood still, say so with ingest.deskewed=true"
-            )
+            self._report.warn(FindingKind.POINTS_UNTIMED, where=self._name)
         if not full_turn:
             return at_stamp
-        turn, how = _turn_from_order(azimuth)
-        text = f"{self._name}: no time per point, time from azimuth, {how}"
+        turn, order = _turn_from_order(azimuth)
         if key:
-            self._report.derive(text)
-        else:
-            self._report.warn(
-                f"{text}. If the clouds are undistorted already or the sensor stood still, say so "
-                "with ingest.deskewed=true"
+            self._report.derive(
+                f"{self._name}: no time per point, time from azimuth, {_ORDERS[order]}"
             )
+        else:
+            self._report.warn(FindingKind.POINTS_TIMED_BY_AZIMUTH, where=self._name, order=order)
         since_ns = np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
         return t_ns + since_ns, everyone
 
@@ -339,7 +334,11 @@ def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64]
     total = float(swept[-1] - swept[0])
     if np.deg2rad(270.0) < abs(total) < np.deg2rad(450.0):
         turn = (swept - swept[0]) * np.sign(total) / max(2.0 * np.pi, abs(total))
-        return turn, "points are in firing order"
-    return (np.pi - azimuth.astype(np.float64)) / (
-        2.0 * np.pi
-    ), "taken as one clockwise turn from the rear"
+        return turn, "firing"
+    return (np.pi - azimuth.astype(np.float64)) / (2.0 * np.pi), "from-rear"
+
+
+_ORDERS = {
+    "firing": "points are in firing order",
+    "from-rear": "taken as one clockwise turn from the rear",
+}

@@ -4,40 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, BagTopic
 from recon4.recording.formats.point_messages import POINT_MESSAGES
 from recon4.recording.packets.messages import DATA_MESSAGES
+from recon4.recording.report import ImportReport
 from recon4.recording.tuning import LISTED
 
 _BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
-_REMEDIES = (
-    (("ouster", "os_ros"), _BY_REPLAY),
-    (("pandar", "hesai"), _BY_REPLAY),
-    (("rslidar", "robosense"), _BY_REPLAY),
-    (("sick_scan", "cepton", "innovusion", "seyond", "blickfeld"), _BY_REPLAY),
+_DRIVERS = (
+    *("ouster", "os_ros", "pandar", "hesai", "rslidar", "robosense"),
+    *("sick_scan", "cepton", "innovusion", "seyond", "blickfeld"),
 )
-"""Beginnings of names of types, and what gives a topic that is read."""
+"""Beginnings of names of types."""
 _NOT_LIDARS = ("imu", "info", "status", "diagnos", "string", "metadata", "laserscan")
 
 
-def driver_topics(topics: Sequence[BagTopic]) -> list[tuple[BagTopic, str]]:
-    """Topics of LiDARs that are not read, each with its remedy."""
-    found = []
-    for topic in topics:
-        kind = topic.type.lower()
-        if not topic.messages or topic.is_points:
-            continue
-        remedy = next((text for starts, text in _REMEDIES if kind.startswith(starts)), "")
-        if remedy and not any(word in kind for word in _NOT_LIDARS):
-            found.append((topic, remedy))
-    return found
+def driver_topics(topics: Sequence[BagTopic]) -> list[BagTopic]:
+    """Topics of LiDARs in messages of their drivers that are not read."""
+    return [one for one in topics if one.messages and not one.is_points and _is_of_driver(one)]
+
+
+def _is_of_driver(topic: BagTopic) -> bool:
+    kind = topic.type.lower()
+    return kind.startswith(_DRIVERS) and not any(word in kind for word in _NOT_LIDARS)
+
+
+def warn_of_drivers(topics: Sequence[BagTopic], report: ImportReport) -> None:
+    """Warn of each of `driver_topics`."""
+    for topic in driver_topics(topics):
+        report.warn(FindingKind.DRIVER_UNREAD, topic=topic.name, type=short_type(topic.type))
 
 
 def unread_text(topics: Sequence[BagTopic]) -> str:
     """A sentence for each LiDAR in messages of its driver; empty = there is none."""
     return "; ".join(
-        f"{topic.name} is of a LiDAR, but {short_type(topic.type)} is not read: {remedy}"
-        for topic, remedy in driver_topics(topics)
+        f"{topic.name} is of a LiDAR, but {short_type(topic.type)} is not read: {_BY_REPLAY}"
+        for topic in driver_topics(topics)
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import described
 from recon4.recording.report import ImportReport
@@ -71,8 +72,11 @@ class ExactClock:
             jump_s = (self._offset_ns - ahead) * 1e-9
             self._report.count("clock_jumps")
             self._report.warn(
-                f"{self._name}: the points' clock jumped by {jump_s:+.3f} s against that of the "
-                "stamps; times go on by the stamps"
+                FindingKind.CLOCK_JUMP,
+                sensor=self._name,
+                whose="points",
+                jump_s=jump_s,
+                times="by-stamps",
             )
             self._offset_ns, self._others = ahead, []
         return self._offset_ns

@@ -11,6 +11,8 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import SE3
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.multiframe import Multiframe
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Sensor
@@ -30,7 +32,7 @@ from recon4.recording.formats.point_messages import POINTS
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
 from recon4.recording.frame_times import frame_times
 from recon4.recording.recipes.apply import as_points
-from recon4.recording.report import ImportReport
+from recon4.recording.report import ImportReport, warning
 from recon4.recording.tuning import LISTED
 from recon4.recording.tuning_times import FRAME_TIMES
 from recon4.settings import IngestSettings
@@ -47,8 +49,8 @@ class FrameFiles:
     """Length of a frame [ns]."""
     times_from: str
     """Origin of the timestamps; empty = 10 Hz is assumed."""
-    remark: str = ""
-    """Why times that are there were not used; empty = nothing to remark."""
+    findings: tuple[Finding, ...] = ()
+    """Why times that are there were not used, or which are damaged."""
 
     @property
     def rate_hz(self) -> float:
@@ -87,34 +89,26 @@ def list_frames(path: Path) -> FrameFiles:
     period = int(np.median(steps)) if len(steps) else FRAME_TIMES.assumed_ns
     if not FRAME_TIMES.shortest_ns <= period <= FRAME_TIMES.longest_ns:
         period = FRAME_TIMES.assumed_ns
-    return FrameFiles(tuple(found), times.t_ns, period, times.source, times.remark)
+    return FrameFiles(tuple(found), times.t_ns, period, times.source, times.findings)
 
 
-def time_warnings(frames: FrameFiles) -> tuple[str, ...]:
+def time_warnings(frames: FrameFiles) -> tuple[Finding, ...]:
     """What the operator must know of the times; the shape of the map depends on them."""
-    remarks = tuple(filter(None, (frames.remark, _several_sensors(frames))))
-    if frames.times_from or len(frames.files) < 2:
-        return remarks
-    text = (
-        f"the frames have no times: {1e9 / FRAME_TIMES.assumed_ns:g} Hz from 0 is assumed, and the "
-        "map is wrong if that is; put a times.txt with one time a line [s] beside the files"
-    )
-    return (*remarks, text)
+    found = [*frames.findings, *_several_sensors(frames)]
+    if not frames.times_from and len(frames.files) > 1:
+        rate_hz = 1e9 / FRAME_TIMES.assumed_ns
+        found.append(warning(FindingKind.FRAMES_UNTIMED, rate_hz=rate_hz))
+    return tuple(found)
 
 
-def _several_sensors(frames: FrameFiles) -> str:
-    """A sentence if the names of the files seem to be those of several sensors; else empty."""
+def _several_sensors(frames: FrameFiles) -> Iterator[Finding]:
+    """A finding if the names of the files seem to be those of several sensors."""
     starts = {
         re.split(r"\d", file.stem, maxsplit=1)[0].strip("-_. ").lower() for file in frames.files
     }
-    if len(starts) < 2:
-        return ""
-    some = ", ".join(repr(name) for name in sorted(starts)[: LISTED.few])
-    return (
-        f"the names of the files begin in {len(starts)} ways ({some}), as of several sensors or "
-        "clouds: they are read as what one sensor measured, one after the other; give a folder for "
-        "each sensor, and process one of them"
-    )
+    if len(starts) > 1:
+        some = ", ".join(repr(name) for name in sorted(starts)[: LISTED.few])
+        yield warning(FindingKind.FRAMES_MIXED, ways=len(starts), some=some)
 
 
 def read_frames(
@@ -129,8 +123,8 @@ def read_frames(
     """
     read_as = replace(settings, deskewed=True) if frames.are_static else settings
     decoder = CloudDecoder(0, sensor, report=report, points_lead=True, settings=read_as)
-    for text in time_warnings(frames):
-        report.warn(text)
+    for found in time_warnings(frames):
+        report.add(found)
     frame_id, last_ns, failed = 0, None, None
     offset_ns = round(sensor.time_offset_s * 1e9)
     for file, stamp in zip(frames.files, frames.t_ns, strict=True):
@@ -143,7 +137,7 @@ def read_frames(
             failed = error
             report.count("files_corrupt")
             report.outcome = "lossy"
-            report.warn(f"left out: {error}")
+            report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
             continue
         start_ns = int(stamp) + offset_ns
         if len(shots) and (decoder.absolute or shots.t_ns[0] < start_ns):
@@ -155,7 +149,7 @@ def read_frames(
         frame = _multiframe(shots, frame_id, start_ns, period_ns=frames.period_ns)
         if last_ns is not None and start_ns <= last_ns:
             report.count("frames_moved")
-            report.warn("frames that do not follow each other in time are put one after the other")
+            report.warn(FindingKind.FRAMES_OVERLAP)
             frame = replace(frame, t_ns=last_ns + frames.period_ns)
         last_ns, frame_id = frame.t_ns, frame_id + 1
         yield frame

@@ -21,10 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
 from recon4.recording.limits import LIMITS
-from recon4.recording.report import ImportReport
+from recon4.recording.report import ImportReport, warning
 from recon4.recording.stamps import strays
 from recon4.recording.tuning_times import FRAME_TIMES
 from recon4.units import SECOND_NS, SECOND_US
@@ -48,8 +50,8 @@ class FrameTimes:
     """Increasing [ns], (N,)."""
     source: str
     """Where they are from; empty = assumed."""
-    remark: str = ""
-    """Why times that are there could not be used, or which are damaged; empty = nothing."""
+    findings: tuple[Finding, ...] = ()
+    """Why times that are there could not be used, or which are damaged."""
 
 
 def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
@@ -63,30 +65,44 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
     known = np.array([t for t in named if t is not None], np.int64)
     if len(known) == len(files) and np.all(np.diff(known) > 0):
         return FrameTimes(known, "the file names")
-    remarks = []
+    found = list[Finding]()
     for beside in [place / name for place in (folder, folder.parent) for name in TIME_FILES]:
         if not folder.is_dir() or not beside.is_file():
             continue
         try:
             times = read_times(beside)
         except CorruptFile as error:
-            remarks.append(f"not used: {error}")
+            found.append(warning(FindingKind.TIMES_UNREADABLE, error=str(error)))
             continue
         if len(times) != len(files):
-            remarks.append(f"{beside.name} has {len(times)} times for {len(files)} files, not used")
+            found.append(
+                warning(
+                    FindingKind.TIMES_NUMBER,
+                    name=beside.name,
+                    times=len(times),
+                    files=len(files),
+                )
+            )
             continue
         sound = _in_order(times)
         damaged = np.flatnonzero(~sound)
-        where = f"{beside.name}: time {damaged[0] + 1}" if len(damaged) else ""
-        if len(damaged) > MAX_RATIO * len(times):
-            remarks.append(f"{where} is not later than the one before, not used")
-            continue
         if len(damaged):
-            repaired = f"{len(damaged)} of {len(times)} times are damaged, the first is {where}"
-            remarks.append(f"{repaired}: times between those of their neighbors are used")
-        return FrameTimes(_filled(times, sound), beside.name, "; ".join(remarks))
+            unused = len(damaged) > MAX_RATIO * len(times)
+            first = int(damaged[0]) + 1
+            found.append(
+                warning(
+                    FindingKind.TIMES_UNSORTED if unused else FindingKind.TIMES_DAMAGED,
+                    name=beside.name,
+                    first=first,
+                    damaged=len(damaged),
+                    times=len(times),
+                )
+            )
+            if unused:
+                continue
+        return FrameTimes(_filled(times, sound), beside.name, tuple(found))
     assumed = np.arange(len(files), dtype=np.int64) * FRAME_TIMES.assumed_ns
-    return FrameTimes(assumed, "", "; ".join(remarks))
+    return FrameTimes(assumed, "", tuple(found))
 
 
 def read_times(path: Path) -> Times:

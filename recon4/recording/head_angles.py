@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import RecordingError
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
@@ -153,6 +154,8 @@ class HeadAngles:
             self._stood_ns += t_ns - since_ns
             self._report.count("head_stands")
             self._report.warn(
-                f"{self._name}: the head stands at {np.rad2deg(angle_rad):.1f}° for "
-                f"{(t_ns - since_ns) * 1e-9:.1f} s"
+                FindingKind.HEAD_STANDS,
+                sensor=self._name,
+                angle_rad=float(angle_rad),
+                seconds=(t_ns - since_ns) * 1e-9,
             )

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
@@ -235,7 +236,7 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
         missing=() if scans.odometry is not None else ("odometry",),
         lost=tuple(report.lost()),
         repaired=tuple(report.repaired()),
-        warnings=tuple(report.warnings),
+        findings=tuple(report.findings),
     )
 
 
@@ -269,7 +270,7 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
         sensors=(sensor,),
         gaps=tuple(folder_gaps(frames, path.name, tuned(IngestTuning, settings).gap_s)),
         missing=tuple(f"field: {text}" for text in absent),
-        warnings=time_warnings(frames),
+        findings=time_warnings(frames),
     )
 
 
@@ -277,14 +278,16 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
 
 
 def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> RecordingInfo:
-    hint, report = "", ImportReport()
+    report = ImportReport()
     if kind is RecordingKind.IMU_CSV:
         t_ns, what = read_imu_csv(path, report).t_ns, "IMU samples"
     elif kind is RecordingKind.GNSS_CSV:
         t_ns, what = read_gnss_csv(path, report).t_ns, "GNSS samples"
     elif pose_format(path) == "tum":
         walk = read_tum(path, report)
-        t_ns, what, hint = walk.t_ns, "poses (TUM)", tum_hint(walk)
+        t_ns, what = walk.t_ns, "poses (TUM)"
+        if tum_hint(walk):
+            report.warn(FindingKind.QUATERNION_ORDER)
     else:
         return replace(info, samples=("poses (KITTI)",), missing=("times of the poses",))
     first, last = int(t_ns.min()), int(t_ns.max())
@@ -296,7 +299,7 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
         t_last_ns=last,
         samples=(text,),
         lost=tuple(report.lost()),
-        warnings=(hint,) if hint else (),
+        findings=tuple(report.findings),
     )
 
 
@@ -339,7 +342,10 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         whole = info.bytes <= PROBE.whole_bytes
         head = read_head(recording, settings, whole=whole, report=report)
         if whole and not head.points:
-            report.warn(report.why_no_points())
+            counts = report.counted()
+            report.warn(
+                FindingKind.NO_POINTS, **({"counts": counts} if counts else {"nothing": True})
+            )
         judge_samples(head, rig, settings, whole=whole, report=report)
     except ConfigError as error:
         if request.fields is not None:
@@ -370,6 +376,6 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         derived=tuple(report.derived),
         lost=tuple(report.lost()),
         repaired=tuple(report.repaired()),
-        warnings=tuple(report.warnings),
+        findings=tuple(report.findings),
         first_rig=_first_rig(rig, to_complete, path.name),
     )

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.findings.wording import whole_text
+from recon4.model.finding import Finding
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.formats.file_times import utc
 from recon4.recording.tuning_times import FRAME_TIMES
@@ -28,6 +30,8 @@ class SensorInfo:
     """Measured at the head; NaN = unknown."""
     fields: tuple[str, ...] = ()
     remarks: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    """What its reader warns of."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +61,8 @@ class RecordingInfo:
     """Counts of data that is not used, in words; of a large recording, at its head."""
     repaired: tuple[str, ...] = ()
     """Counts of repaired data."""
-    warnings: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    """What the readers warn of."""
     first_rig: str = ""
     """A rig file of its sensors, as text; empty = no sensor is known."""
 
@@ -91,7 +96,7 @@ class RecordingInfo:
         lines += [f"missing   {text}" for text in self.missing]
         lines += [f"lost      {text}" for text in self.lost]
         lines += [f"repaired  {text}" for text in self.repaired]
-        lines += [f"warning   {text}" for text in self.warnings]
+        lines += [f"warning   {whole_text(one)}" for one in self.findings]
         return lines
 
 
@@ -104,4 +109,5 @@ def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
     lines = [f"lidar     {text}"]
     if sensor.fields:
         lines.append(f"fields    {', '.join(sensor.fields)}")
-    return lines + [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
+    lines += [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
+    return lines + [f"remark    {whole_text(one)}" for one in sensor.findings]

@@ -8,11 +8,14 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+from msgspec import to_builtins
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.geometry.se3 import SE3
-from recon4.model.events import Warned
+from recon4.model.events import Remarked
+from recon4.model.finding import Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
@@ -23,7 +26,7 @@ from recon4.progress import Progress
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
-from recon4.recording.clock_names import described, known_offset_s, offset_name
+from recon4.recording.clock_names import described, known_offset_s, looks_like, offset_values
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.kinds import RecordingKind, recognize
@@ -185,8 +188,8 @@ def ingest(
         about |= dict(zip(("line_scans", "laser2d_scans"), counts, strict=True))
         about |= {"points": writer.points, "imu": _about(imu), "gnss": _about(gnss)}
         writer.add(imu=imu, gnss=gnss, report=about)
-    for text in report.warnings:
-        progress.event(Warned(text=text))
+    for finding in report.findings:
+        progress.event(Remarked(finding=finding))
 
 
 def _sort_out(sources: Sources) -> Sources:
@@ -294,26 +297,37 @@ def _covering(
     first, last = int(samples.t_ns[0]), int(samples.t_ns[-1])
     margin_ns = 1_000_000_000
     if last < span[0] - margin_ns or first > span[1] + margin_ns:
-        text = (
-            f"{what} samples cover {first / 1e9:.3f} … {last / 1e9:.3f} s, the points "
-            f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same? If both begin "
-            f"together, they differ by {described((first - span[0]) / 1e9)}: give "
-            f"[{what.lower()}] time_offset_s = {(span[0] - first) / 1e9:.3f} in the rig file"
-        )
+        ahead_s = (first - span[0]) / 1e9
         if asked_for:
-            raise ConfigError(text)
-        report.warn(f"{text}. They are not used")
+            raise ConfigError(
+                f"{what} samples cover {first / 1e9:.3f} … {last / 1e9:.3f} s, the points "
+                f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same? If both "
+                f"begin together, they differ by {described(ahead_s)}: give [{what.lower()}] "
+                f"time_offset_s = {-ahead_s:.3f} in the rig file"
+            )
+        report.warn(
+            FindingKind.SAMPLES_ELSEWHEN,
+            what=what,
+            table=what.lower(),
+            first_s=first / 1e9,
+            last_s=last / 1e9,
+            points_first_s=span[0] / 1e9,
+            points_last_s=span[1] / 1e9,
+            offset_s=-ahead_s,
+            **offset_values(ahead_s),
+        )
         return None
     late_s, early_s = (first - span[0]) / 1e9, (span[1] - last) / 1e9
-    known = offset_name(late_s) if abs(late_s + early_s) < 1.0 else ""
-    if known or (what == "IMU" and max(late_s, early_s) > 1.0):
-        remedy = (
-            f", as if their clock were ahead ({known}): then give [{what.lower()}] time_offset_s "
-            f"= {-known_offset_s(late_s):.3f} in the rig file"
-        )
+    looks = looks_like(late_s) if abs(late_s + early_s) < 1.0 else ""
+    if looks or (what == "IMU" and max(late_s, early_s) > 1.0):
+        clock: dict[str, Value] = {"looks": looks, "offset_s": -known_offset_s(late_s)}
         report.warn(
-            f"{what} samples begin {late_s:+.1f} s after and end {early_s:+.1f} s before the points"
-            f"{remedy if known else ''}"
+            FindingKind.SAMPLES_SHORT,
+            what=what,
+            table=what.lower(),
+            late_s=late_s,
+            early_s=early_s,
+            **(clock if looks else {}),
         )
     return samples
 
@@ -364,7 +378,7 @@ def _summary(
         "counts": dict(sorted(report.counts.items())),
         "gaps": [asdict(gap) for gap in gaps[: LIMITS.gaps]],
         "derived": report.derived,
-        "warnings": report.warnings,
+        "findings": to_builtins(report.findings),
     }
 
 

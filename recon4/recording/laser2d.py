@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
@@ -136,7 +137,7 @@ def _usable_rows(log: CarmenScans, name: str, report: ImportReport) -> Rows:
     shuffled = int((np.diff(t_ns) < 0).sum())
     if shuffled:
         report.count("scans_unsorted", shuffled)
-        report.warn(f"{name}: {shuffled} scans are earlier than the one before: sorted by time")
+        report.warn(FindingKind.SCANS_UNSORTED, where=name, scans=shuffled)
     later = np.diff(t_ns[order], prepend=t_ns[order[0]] - 1) > 0
     again = np.flatnonzero(~later)
     copies = sum(np.array_equal(log.ranges(order[k]), log.ranges(order[k - 1])) for k in again)
@@ -151,7 +152,7 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
     bad = ~np.isfinite(ranges) | (ranges < 0.0)
     report.count("ranges_not_numbers", int(bad.sum()))
     if bad.any():
-        report.warn(f"{int(bad.sum())} ranges are negative or no numbers: they are left out")
+        report.warn(FindingKind.RANGES_INVALID, ranges=int(bad.sum()))
     ranges[bad | (ranges == 0.0)] = np.nan
     if not np.isfinite(ranges).any():
         raise EmptyRecording("the scans have not one range above 0")
@@ -216,13 +217,13 @@ def _of_bags(
     parts += collector.flush()
     walks += poses.flush()
     if not parts:
-        why = "" if topic else "".join(f"; {text}" for text in report.warnings)
+        why = "" if topic else "".join(f"; {text}" for text in report.said())
         raise EmptyRecording(
             f"{paths[0].name}: no scan of {topic or 'a 2-D laser'} can be read{why}"
         )
     out_of_order = report.counts["scans_out_of_order"]
     if out_of_order:
-        report.warn(f"{topic}: {out_of_order} scans earlier than the one before are left out")
+        report.warn(FindingKind.SCANS_LATE, where=topic, scans=out_of_order)
     scans = joined_scans(parts)
     return replace(scans, odometry=_at_scans(scans, walks, report)), mount
 
@@ -241,7 +242,7 @@ def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportRepo
         return None
     slack_ns = 500_000_000
     if scans.t_ns[0] < t_ns[0] - slack_ns or scans.t_ns[-1] > t_ns[-1] + slack_ns:
-        report.warn("the odometry does not cover all scans: it is not used")
+        report.warn(FindingKind.ODOMETRY_SHORT)
         return None
     since = (scans.t_ns - t_ns[0]) / 1e9
     known = (t_ns - t_ns[0]) / 1e9

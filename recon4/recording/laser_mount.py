@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.geometry.se2 import compose
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import is_upside_down, turned_round
 from recon4.recording.formats.bags import Bag
@@ -132,10 +133,11 @@ def mounted_scans(
         scans = turned_round(scans)
     if mount.tilt_rad > LASERS.tilted_rad:
         longer = 1.0 / max(np.cos(mount.tilt_rad), 1e-3) - 1.0
-        report.doubt(
-            f"the laser is tilted by {np.rad2deg(mount.tilt_rad):.0f}°: distances in the map are "
-            f"up to {min(longer, 9.99):.1%} too long, and floor or ceiling may be in it; "
-            f"{mount.source}"
+        report.warn(
+            FindingKind.LASER_TILTED,
+            tilt_rad=mount.tilt_rad,
+            longer=min(longer, 9.99),
+            mount=mount.source,
         )
     return MountedScans(scans, mount)
 
@@ -145,10 +147,11 @@ def _compare(by_rig: LaserMount, by_bag: LaserMount, report: ImportReport) -> No
     up_rig, up_bag = by_rig.T_body_laser.R[2], by_bag.T_body_laser.R[2]
     angle_rad = float(np.arccos(np.clip(up_rig @ up_bag, -1.0, 1.0)))
     if angle_rad > LASERS.different_rad:
-        report.doubt(
-            f"rig file and bag contradict each other about the laser: the vertical in its axes "
-            f"differs by {np.rad2deg(angle_rad):.0f}°; {by_rig.source}; {by_bag.source}; the rig "
-            "file is used"
+        report.warn(
+            FindingKind.LASER_CONTRADICTED,
+            angle_rad=angle_rad,
+            by_rig=by_rig.source,
+            by_recording=by_bag.source,
         )
 
 
@@ -156,11 +159,12 @@ def _doubt_joints(mounts: Mounts, frame: str, report: ImportReport) -> None:
     """Say which joints tilt the laser during the recording: a flat map assumes that none does."""
     for joint in mounts.graph.joints_above(frame):
         if joint.tilt_rad > LASERS.tilted_rad:
-            report.doubt(
-                f"the laser hangs on a joint that moves: {joint.parent} -> {joint.child} tilts by "
-                f"up to {np.rad2deg(joint.tilt_rad):.0f}° ({joint.source}), but a flat map takes "
-                "its plane as level all the time: distances may be too long, and floor or ceiling "
-                "in it"
+            report.warn(
+                FindingKind.LASER_ON_JOINT,
+                parent=joint.parent,
+                child=joint.child,
+                tilt_rad=joint.tilt_rad,
+                source=joint.source,
             )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import RecordingError
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.formats.columns import (
     TIME,
@@ -77,7 +78,7 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
         try:
             sensors += (_laser2d(tables.laser2d, report),)
         except RecordingError as error:
-            report.warn(str(error))
+            report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
     if tables.imu is not None:
         imu_ns = read_imu_csv(tables.imu, report).t_ns
         samples.append(f"{tables.imu.name}: {len(imu_ns)} IMU samples")
@@ -92,7 +93,7 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
         missing=missing,
         lost=tuple(report.lost()),
         repaired=tuple(report.repaired()),
-        warnings=tuple(report.warnings),
+        findings=tuple(report.findings),
     )
 
 

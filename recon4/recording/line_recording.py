@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, Sensor
@@ -237,13 +238,13 @@ class LineRecording:
 
     def _find_scans(self, rig: Rig) -> str:
         if self._laser_row is None:
-            self._report.warn("the rig has no 2-D laser: the first motion is from the IMU alone")
+            self._report.warn(FindingKind.LASER_NOT_IN_RIG)
             return ""
         sensor = rig.sensors[self._laser_row]
         topics = [t for t in self.topics if t.type == LASER_SCAN]
         found = _topic_of(sensor.topic, sensor.name, topics)
         if not found:
-            self._report.warn(f"sensor {sensor.name} of the rig is not in the recording")
+            self._report.warn(FindingKind.SENSOR_NOT_RECORDED, sensor=sensor.name)
         return found
 
 
@@ -308,7 +309,7 @@ class LineAssembly:
         self._count_missing()
         lost = self._report.counts["lines_without_angle"]
         if lost:
-            self._report.warn(f"{self._sensor.name}: {lost} lines without an angle of the head")
+            self._report.warn(FindingKind.LINES_WITHOUT_ANGLE, sensor=self._sensor.name, lines=lost)
 
     def _count_missing(self) -> None:
         """Lines that were lost between others, by the usual time from line to line."""
@@ -322,8 +323,11 @@ class LineAssembly:
         ratio = missing / (missing + len(self._starts_ns))
         if ratio > LINES.missing_ratio:
             self._report.warn(
-                f"{self._sensor.name}: {ratio:.0%} of the line scans are missing, {missing} of "
-                f"{missing + len(self._starts_ns)}"
+                FindingKind.LINES_MISSING,
+                sensor=self._sensor.name,
+                ratio=ratio,
+                missing=missing,
+                lines=missing + len(self._starts_ns),
             )
 
     def _shots(self, message: BagMessage, content: Any) -> Shots | None:
@@ -341,7 +345,7 @@ class LineAssembly:
             )
         except CorruptFile as error:
             self._report.count("messages_corrupt")
-            self._report.warn(f"{message.topic}: left out: {error}")
+            self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=str(error))
             return None
 
     def _turn(self, now_ns: int, *, final: bool = False) -> None:

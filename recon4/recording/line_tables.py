@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.columns import TIME, Columns, column_names, read_columns
@@ -91,9 +92,9 @@ class LineTableRecording:
                 f"{name}; with a head of constant rate, head_rate_deg_s in the rig file"
             )
         if rig.row_of("laser2d") is None:
-            report.warn("the rig has no 2-D laser: the first motion is from the IMU alone")
+            report.warn(FindingKind.LASER_NOT_IN_RIG)
         elif tables.laser2d is None:
-            report.warn(f"no table of the 2-D laser beside {name}: expected laser2d.csv or .npz")
+            report.warn(FindingKind.LASER_TABLE_MISSING, name=name)
         self.rig, self._row, self._tables, self._report = rig, row, tables, report
 
     def read(self) -> Iterator[LineItem]:

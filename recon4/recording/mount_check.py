@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.frame_graph import difference, mount_text
 from recon4.recording.mounts import (
@@ -90,13 +91,17 @@ def compare_mounts(
         angle_rad *= part.turned
         if angle_rad <= limit[0] and distance_m <= limit[1]:
             continue
-        text = _text(first, part, mounts, by_rig=by_rig, by_bag=by_bag)
+        values = _facts(first, part, mounts, by_rig=by_rig, by_bag=by_bag)
         if is_placeholder(by_bag):
-            report.derive(f"{text}: a placeholder?")
+            report.derive(_PLACEHOLDER.format_map(values))
             continue
-        report.doubt(
-            f"{text}: they differ by {np.rad2deg(angle_rad):.1f}° and {100 * distance_m:.1f} cm. "
-            f"The rig {rig.name!r} is used"
+        report.warn(
+            FindingKind.MOUNT_CONTRADICTED,
+            sensor=part.name,
+            angle_rad=angle_rad,
+            distance_m=distance_m,
+            rig=rig.name,
+            **values,
         )
 
 
@@ -118,13 +123,25 @@ def _parts(rig: Rig, samples: SampleTopics, mounts: Mounts) -> Iterator[_Part]:
         yield _Part("GNSS antenna", samples.fixes, antenna, turned=False)
 
 
-def _text(first: _Part, part: _Part, mounts: Mounts, *, by_rig: SE3, by_bag: SE3) -> str:
+_PLACEHOLDER = (
+    "mount of {part} relative to {other}: {by_rig} in the rig, {by_bag} in {source} of the bag "
+    "({parent} -> {child}): a placeholder?"
+)
+
+
+def _facts(
+    first: _Part, part: _Part, mounts: Mounts, *, by_rig: SE3, by_bag: SE3
+) -> dict[str, str]:
     a, b = mounts.frame_of(first.topic), mounts.frame_of(part.topic)
-    sources = sorted({one.source for one in mounts.graph.path(a, b)})
-    return (
-        f"mount of {part.name} relative to {first.name}: {_values(by_rig, part)} in the rig, "
-        f"{_values(by_bag, part)} in {' and '.join(sources)} of the bag ({a} -> {b})"
-    )
+    return {
+        "part": part.name,
+        "other": first.name,
+        "by_rig": _values(by_rig, part),
+        "by_bag": _values(by_bag, part),
+        "source": ", ".join(sorted({one.source for one in mounts.graph.path(a, b)})),
+        "parent": a,
+        "child": b,
+    }
 
 
 def _values(T: SE3, part: _Part) -> str:

@@ -10,6 +10,7 @@ from itertools import combinations, islice
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.formats.bags import Bag
 from recon4.recording.frame_graph import (
@@ -122,11 +123,11 @@ def _warn_disputed(mounts: Mounts, report: ImportReport) -> None:
     on_path = {name for one in between for name in (one.parent, one.child)}
     for one in between:
         if one.disputed:
-            report.doubt(f"{one.source} contradicts itself; the last transform is used: {one.text}")
+            report.warn(FindingKind.MOUNT_DISPUTED, source=one.source, used=one.text)
     for one in graph.contradictions():
         report.count("transforms_contradictory")
         if one.child in on_path:
-            report.doubt(f"transforms of the bag contradict each other; not used: {one.text}")
+            report.warn(FindingKind.MOUNT_LOOP, transform=one.text)
 
 
 def on_their_joints(
@@ -237,9 +238,7 @@ def stated_mount(
         )
         return None
     if _is_far(T_a_b):
-        report.doubt(
-            f"mount of the {what}: the bag says {a} -> {b} {mount_text(T_a_b)}: too far, not used"
-        )
+        report.warn(FindingKind.MOUNT_FAR, what=what, parent=a, child=b, mount=mount_text(T_a_b))
         return None
     report.derive(stated_text(mounts, a, b, what=what))
     return T_a_b

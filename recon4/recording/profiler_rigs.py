@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.recording.formats.bags import IMU, LASER_SCAN, Bag
 from recon4.recording.frame_graph import FrameGraph
@@ -74,7 +75,7 @@ def _tilting_rig(bag: Bag, report: ImportReport) -> Rig | None:
     if not imu and not level:
         return None
     if imu and mounts.graph.joints_above(mounts.frame_of(imu)):
-        report.doubt(f"{imu} tilts with the laser: it does not say how the robot moves")
+        report.warn(FindingKind.IMU_ON_JOINT, topic=imu)
         return None
     report.derive(
         f"{tilting.topic} is a profiler, not a 2-D laser that maps a plane: its mount moves by "

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning_lasers import RANGE_UNITS
@@ -61,7 +62,7 @@ def line_factor(range_m: NDArray[np.floating], name: str, report: ImportReport) 
     if not len(range_m) or float(np.median(range_m)) <= RANGE_UNITS.far_line_m:
         return 1.0
     is_mm = float(np.percentile(range_m, 1.0)) > RANGE_UNITS.near_cm
-    return _reported_unit_m(float(np.median(range_m)), is_mm, prefix=f"{name}: ", report=report)
+    return _reported_unit_m(float(np.median(range_m)), is_mm, name=name, report=report)
 
 
 def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: ImportReport) -> float:
@@ -72,12 +73,10 @@ def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: Import
     is_mm = largest > RANGE_UNITS.largest_cm or median > RANGE_UNITS.median_cm
     if median * (1e-3 if is_mm else 1e-2) > RANGE_UNITS.far_m:
         raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
-    return _reported_unit_m(median, is_mm, prefix="", report=report)
+    return _reported_unit_m(median, is_mm, name="laser2d", report=report)
 
 
-def _reported_unit_m(median: float, is_mm: bool, *, prefix: str, report: ImportReport) -> float:
-    unit = "millimeters" if is_mm else "centimeters"
-    report.warn(
-        f"{prefix}half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
-    )
+def _reported_unit_m(median: float, is_mm: bool, *, name: str, report: ImportReport) -> float:
+    unit = "mm" if is_mm else "cm"
+    report.warn(FindingKind.RANGE_UNIT, sensor=name, median=median, unit=unit)
     return 1e-3 if is_mm else 1e-2

@@ -5,13 +5,35 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+import numpy as np
+
+from recon4.findings.wording import whole_text
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import Loss, count_text, losses, repairs, replaced
 from recon4.recording.limits import LIMITS
 
 
+def warning(kind: FindingKind, **values: Value) -> Finding:
+    """A warning of a reader, as a finding; the catalog of the findings has its words.
+
+    Args:
+        kind: What it is.
+        values: Figures and names that its text quotes; NaN is left out, a text of a file cut.
+            ``sensor`` is the name of the sensor that it is about; ``start_s`` and ``end_s`` are its
+            stretch, after the first multiframe [s].
+    """
+    known = {name: _bounded(one) for name, one in values.items() if one == one}
+    sensor = str(known.pop("sensor", ""))
+    span_s = None
+    if "start_s" in known:
+        span_s = (float(known.pop("start_s")), float(known.pop("end_s")))
+    return Finding(kind=kind, level=Level.CHECK, span_s=span_s, sensor=sensor, values=known)
+
+
 @dataclass(slots=True)
 class ImportReport:
-    """Counts and remarks of one import; the only mutable record of the readers."""
+    """Counts and findings of one import; the only mutable record of the readers."""
 
     counts: Counter[str] = field(default_factory=Counter)
     """Number of packets, messages, points and samples by result,
@@ -20,10 +42,8 @@ class ImportReport:
     """What is known of a count besides, by its name, for example a port."""
     derived: list[str] = field(default_factory=list)
     """What the recording lacks and was derived."""
-    warnings: list[str] = field(default_factory=list)
-    """Warnings: repairs, gaps, missing sensors, forced models."""
-    doubts: list[str] = field(default_factory=list)
-    """Warnings about the mounts of the sensors: every verdict names them."""
+    findings: list[Finding] = field(default_factory=list)
+    """What the readers warn of: repairs, gaps, missing sensors, forced models."""
     ahead_ns: dict[str, int] = field(default_factory=dict)
     """Sensor -> its times minus those of the recorder's clock [ns], as last seen: GPS may drive
     the sensors, and the recorder's clock be wrong."""
@@ -47,22 +67,31 @@ class ImportReport:
 
     def derive(self, text: str) -> None:
         """Add a derived value once."""
-        self._remember(self.derived, text)
+        if text in self.derived:
+            return
+        if len(self.derived) < LIMITS.texts:
+            self.derived.append(text[: LIMITS.text_characters])
+        else:
+            self.count("remarks_more")
 
-    def warn(self, text: str) -> None:
-        """Add a warning once."""
-        self._remember(self.warnings, text)
+    def warn(self, kind: FindingKind, **values: Value) -> None:
+        """Warn of something once; arguments as for `warning`."""
+        self.add(warning(kind, **values))
 
-    def doubt(self, text: str) -> None:
-        """Add a doubt about a mount once; it is a warning too."""
-        self.warn(text)
-        self._remember(self.doubts, text)
+    def add(self, found: Finding) -> None:
+        """Keep a warning once."""
+        if found in self.findings:
+            return
+        if len(self.findings) < LIMITS.texts:
+            self.findings.append(found)
+        else:
+            self.count("remarks_more")
 
     def warn_of_losses(self) -> None:
-        """Add a warning for each large loss that no reader warned of; call once, at the end."""
+        """Warn of each large loss that no reader warned of; call once, at the end."""
         for loss in self._losses():
             if loss.is_warned:
-                self.warn(loss.text)
+                self.warn(FindingKind.DATA_LOST, **_values(loss))
 
     def text(self, name: str) -> str:
         """A count in words."""
@@ -80,14 +109,26 @@ class ImportReport:
         counted = "; ".join(self.text(name) for name in sorted(self.counts))
         return f"no usable points ({counted or 'nothing read'})"
 
+    def counted(self) -> str:
+        """All counts in one value, such as ``points=100 points_nan=5``; empty = nothing read."""
+        return " ".join(f"{name}={self.counts[name]}" for name in sorted(self.counts))
+
+    def said(self) -> list[str]:
+        """What was warned of in words, for messages of errors."""
+        return [whole_text(one) for one in self.findings]
+
     def repaired(self) -> list[str]:
         """All counts of repaired data, in words."""
         return repairs(self.counts)
 
-    def _remember(self, texts: list[str], text: str) -> None:
-        if text in texts:
-            return
-        if len(texts) < LIMITS.texts:
-            texts.append(text[: LIMITS.text_characters])
-        else:
-            self.count("remarks_more")
+
+def _bounded(value: Value) -> Value:
+    if isinstance(value, np.generic):  # a float64 is a float, but no value of JSON
+        return _bounded(value.item())
+    return value[: LIMITS.text_characters] if isinstance(value, str) else value
+
+
+def _values(loss: Loss) -> dict[str, Value]:
+    values: dict[str, Value] = {"count": loss.name, "number": loss.number}
+    values |= {"total": loss.total} if loss.total else {"alone": True}
+    return values | ({"detail": loss.detail} if loss.detail else {})

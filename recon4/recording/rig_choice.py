@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig, Sensor, imu_mount, load_rig
@@ -219,9 +220,9 @@ def _warn_unassigned(
 ) -> None:
     for sensor in rig.sensors:
         if sensor.name not in chosen:
-            report.warn(f"sensor {sensor.name} of the rig is not in the recording")
+            report.warn(FindingKind.SENSOR_NOT_RECORDED, sensor=sensor.name)
     for topic in free:
-        report.warn(f"topic {topic} belongs to no sensor of the rig and is not read")
+        report.warn(FindingKind.TOPIC_UNASSIGNED, topic=topic)
 
 
 def _is_thesis(streams: Sequence[Stream], thesis: Rig) -> bool:

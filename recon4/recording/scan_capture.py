@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -216,8 +217,11 @@ class _StampedMessages:
                 self._shift_ns -= off_ns
                 self._report.count("clock_jumps")
                 self._report.warn(
-                    f"{self._sensor.name}: its clock jumped by {off_ns / 1e9:+.1f} s; its scans "
-                    "are continued by their arrival"
+                    FindingKind.CLOCK_JUMP,
+                    sensor=self._sensor.name,
+                    whose="sensor",
+                    jump_s=off_ns / 1e9,
+                    times="by-arrival",
                 )
         t_ns += self._shift_ns
         self._last = t_ns, arrival_ns
@@ -251,9 +255,7 @@ class _LaserReader:
         """Say what was left out."""
         left_out = self._report.counts["scans_out_of_order"]
         if left_out:
-            self._report.warn(
-                f"{self._name}: {left_out} scans earlier than the one before are left out"
-            )
+            self._report.warn(FindingKind.SCANS_LATE, where=self._name, scans=left_out)
 
 
 class _ProfilerReader:
@@ -284,7 +286,7 @@ class _ProfilerReader:
             shots = line_of_scan(message, self._row, t_ns, report=self._report)
         except CorruptFile as error:
             self._report.count("messages_corrupt")
-            self._report.warn(f"{self._name}: left out: {error}")
+            self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=self._name, error=str(error))
             return
         yield from self._lines.push_shots(shots)
 

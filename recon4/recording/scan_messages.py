@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.bags import BagMessage
@@ -121,7 +122,9 @@ class ScanCollector:
         except CorruptFile as error:
             self._report.count("scans_damaged")
             if self._report.counts["scans_damaged"] == 1:
-                self._report.warn(f"{where}: left out: {error}")
+                self._report.warn(
+                    FindingKind.SCAN_LEFT_OUT, where=where, alone=True, error=str(error)
+                )
             return
         if t_ns <= self._last_ns:
             self._report.count(self._reason(t_ns, ranges))

@@ -9,6 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.model.finding import Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.bag_messages import (
     SampleBatch,
@@ -235,7 +237,6 @@ def _known(
 ) -> str | None:
     """The topic that was named or is the only one, empty if there is none; None = choose."""
     there = [topic.name for topic in topics]
-    others = ", ".join(there) or "none"
     if named.by_setting:
         require_topic(named.by_setting, there, kind.setting)
         return named.by_setting
@@ -244,9 +245,13 @@ def _known(
     if named.by_rig in there:
         return named.by_rig
     report.warn(
-        f"the topic {named.by_rig} of [{kind.rig_key}] in the rig file is not in the recording, "
-        f"which has {others}: no {kind.label} is read. Another topic has another mount; name it "
-        f"in the rig file, or with {kind.setting}"
+        FindingKind.TOPIC_NOT_RECORDED,
+        topic=named.by_rig,
+        table=kind.rig_key,
+        there=", ".join(there),
+        none=not there,
+        what=kind.label,
+        setting=kind.setting,
     )
     return ""
 
@@ -289,11 +294,23 @@ def _say(
     if not others:
         return
     frame = best.found.frame
-    text = f"{kind.label}: {best.found.topic.name}{f' (frame {frame})' * bool(frame)} is read, not "
-    text += ", ".join(one.text(best, kind) for one in others)
-    rivals = [one for one in others if one.key[:-1] == best.key[:-1] and one.found.frame != frame]
-    if not rivals or not kind.decisive:
-        report.derive(text)
+    is_rival = [one.key[:-1] == best.key[:-1] and one.found.frame != frame for one in others]
+    rivals = [one for one, equal in zip(others, is_rival, strict=True) if equal and kind.decisive]
+    worse = [one for one in others if one not in rivals]
+    if worse:
+        chosen = f"{best.found.topic.name}{f' (frame {frame})' * bool(frame)}"
+        text = ", ".join(one.text(best, kind) for one in worse)
+        report.derive(f"{kind.label}: {chosen} is read, not {text}")
+    if not rivals:
         return
-    rig_file = f" or topic of [{kind.rig_key}] in a rig file" * bool(kind.rig_key)
-    report.warn(f"{text}: they are equally good; {kind.setting}{rig_file} names the right one")
+    by_rig: dict[str, Value] = {"table": kind.rig_key} if kind.rig_key else {"settable": True}
+    report.warn(
+        FindingKind.TOPICS_EQUAL,
+        what=kind.label,
+        read=best.found.topic.name,
+        frame=frame,
+        frameless=not frame,
+        rivals=", ".join(f"{one.found.topic.name} (frame {one.found.frame})" for one in rivals),
+        setting=kind.setting,
+        **by_rig,
+    )

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from recon4.findings.drift import DriftClosed
-from recon4.findings.finding import Finding
 from recon4.findings.walk import WalkRecord
+from recon4.model.finding import Finding
 from recon4.report import charts
 from recon4.report.beams import beam_charts
 from recon4.report.edges import edge_paths

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from recon4.evaluation.evaluate import Evaluation
 from recon4.evaluation.tuning import RELATIVE_ERROR
 from recon4.findings.drift import DriftClosed
-from recon4.findings.finding import Finding
 from recon4.findings.placement import GnssFacts
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding
 from recon4.model.pose_graph import PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import PoseUncertainty

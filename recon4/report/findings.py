@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from recon4.findings.finding import Finding, Level
 from recon4.findings.wording import title_of, whole_text
+from recon4.model.finding import Finding, Level
 from recon4.model.usability import Usability
 from recon4.report.tuning import FINDING_LISTS
 

@@ -10,11 +10,11 @@ import numpy as np
 from markupsafe import Markup
 
 from recon4.evaluation.table import number
-from recon4.findings.finding import Finding
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import path_length_m
 from recon4.findings.wording import headline
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.report.approval import draft_block

@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from recon4.evaluation.table import number
-from recon4.findings.kinds import FindingKind
 from recon4.findings.wording import word_of
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import count_label
 
 Rows = list[tuple[str, str]]

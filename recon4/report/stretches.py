@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.findings.finding import Finding, Level
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding, Level
 from recon4.model.trajectory import Trajectory
 from recon4.report.figures import AMBER, GRAY, ORANGE, bars
 from recon4.report.plan import PlanPath

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
+from msgspec import to_builtins
 
 from recon4.errors import EmptyRecording
 from recon4.geometry.se2 import to_se3, transform
 from recon4.geometry.se3 import Array
-from recon4.model.events import Warned
+from recon4.model.events import Remarked
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Sensor
@@ -72,19 +73,17 @@ def import_scans(
     writer = LineStoreWriter(out)
     writer.append_scans(scans)
     writer.close()
-    for text in report.warnings:
-        progress.event(Warned(text=text))
+    for finding in report.findings:
+        progress.event(Remarked(finding=finding))
     _write_report(out / "report.json", recordings, report)
     return Scan2dFigures(
         scans=len(scans),
         beams=int(np.median(scans.beams)),
         odometry=scans.odometry is not None,
         outcome=report.outcome,
-        warnings=tuple(report.warnings),
         tilt_deg=round(mounted.tilt_deg, 2),
         mirrored=mirrored,
         mount=mounted.mount.source if mounted.mount is not None else "",
-        doubts=tuple(report.doubts),
     )
 
 
@@ -96,7 +95,7 @@ def _write_report(path: Path, recordings: Sequence[Path], report: ImportReport) 
             "outcome": report.outcome,
             "counts": dict(sorted(report.counts.items())),
             "derived": report.derived,
-            "warnings": report.warnings,
+            "findings": to_builtins(report.findings),
         },
     )
 

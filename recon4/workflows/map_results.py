@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4.findings.finding import Finding, Level, Value, worst_first
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import path_length_m
 from recon4.model.figures import UncertaintyFigures
+from recon4.model.finding import Finding, Level, Value, worst_first
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig_origin import RigOrigin
 from recon4.pose_graph.files import load_graph
 from recon4.report.assessment import Assessment, assess

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from recon4.findings.audit import load_findings
-from recon4.findings.finding import Finding
 from recon4.findings.planar_walk import final_graph, import_report, read_planar
 from recon4.findings.verdict import verdict_of
 from recon4.findings.witnesses.planar import PlanarRecord
 from recon4.model.figures import Map2dFigures
+from recon4.model.finding import Finding
 from recon4.model.pose_graph import EdgeKind
 from recon4.report.page_2d import GridImage, Page2d, write_page_2d
 from recon4.report.rows import imported_rows

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from recon4.findings.kinds import AUDIT_VERSION
 from recon4.model.figures import (
     AuditFigures,
     GraphFigures,
@@ -12,6 +11,7 @@ from recon4.model.figures import (
     Odometry2dFigures,
     Scan2dFigures,
 )
+from recon4.model.finding_kinds import AUDIT_VERSION
 from recon4.model.rig import Rig, Sensor
 from recon4.settings.reads import (
     Graph2dReads,

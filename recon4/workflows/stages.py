@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from recon4.findings.kinds import AUDIT_VERSION
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
     AuditFigures,
@@ -21,6 +20,7 @@ from recon4.model.figures import (
     ReviewFigures,
     VerificationFigures,
 )
+from recon4.model.finding_kinds import AUDIT_VERSION
 from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
@@ -70,7 +70,6 @@ def frames_figures(folder: Path) -> FrameFigures:
         imu=store.imu is not None,
         gnss=store.gnss is not None,
         outcome=notes.outcome,
-        warnings=notes.warnings,
     )
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
-from recon4.findings.finding import Finding
 from recon4.findings.wording import said
 from recon4.model.figures import Figures
+from recon4.model.finding import Finding
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict

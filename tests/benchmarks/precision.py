@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from recon4.evaluation.table import percentage, text_table
-from recon4.findings.finding import Level
+from recon4.model.finding import Level
 from tests.benchmarks.proving_ground import read_lines
 
 Line = Mapping[str, Any]
@@ -42,11 +42,12 @@ NAMES = {
     "imu-rotation": {"RIG-CONTRADICTED", "IMU-GYRO-ROTATION"},
     "imu-clock": {"RIG-CONTRADICTED", "IMU-CLOCK"},
     "imu-scale": {"IMU-GYRO-SCALE", "IMU-GRAVITY", "IMU-SCALE", "TURN-SCALE"},
-    "imu-unit": {"IMU-UNIT", "IMPORT-REMARK"},
+    "imu-unit": {"IMU-UNIT", "GYROSCOPE-UNIT", "ACCELEROMETER-UNIT", "IMPORT-REMARK"},
     "imu-axes": {"IMU-LEFT-HANDED", "IMU-NOT-USED", "RIG-CONTRADICTED"},
     "imu-grade": {"IMU-GRAVITY", "IMU-SCALE", "IMU-ACCELEROMETER-NOT-USED"},
-    "wrong-model": {"IMPORT-REMARK", "IMPORT-UNUSED", "RIG-CONTRADICTED"},
-    "packet-loss": {"IMPORT-REMARK", "IMPORT-UNUSED"},
+    "wrong-model": {"MODEL-CONTRADICTED", "MODEL-UNLIKELY", "MODEL-BY-INTERVAL", "DATA-LOST"}
+    | {"IMPORT-REMARK", "IMPORT-UNUSED", "RIG-CONTRADICTED"},
+    "packet-loss": {"DATA-LOST", "IMPORT-REMARK", "IMPORT-UNUSED"},
     "beam-bias": {"RIG-CONTRADICTED"},
     "lever-arm": {"ANTENNA-OFFSET"},
     "gnss-clock": {"GNSS-CLOCK"},

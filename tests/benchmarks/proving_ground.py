@@ -25,9 +25,9 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import Recon4Error
-from recon4.findings.finding import Finding
-from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig, load_rig
 from recon4.model.usability import MapVerdict, Usability
 from recon4.progress import Silent

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.wording import remedy_of, said, text_of, title_of
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.store.seal import changing
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.project_builder import add_multiframes, build_project, loop_walk, write_summary

@@ -41,6 +41,8 @@ MAY_IMPORT = {
     "recon4/sandbox": {"recon4.sandbox", "recon4.kernels.processor"},
     "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
+    "recon4/recording/info_records.py": STAGE | {"recon4.recording", "recon4.findings.wording"},
+    "recon4/recording/report.py": STAGE | {"recon4.recording", "recon4.findings.wording"},
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}
     | {"recon4.system.processes", "recon4.system.stopping"}
@@ -50,7 +52,7 @@ MAY_IMPORT = {
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured_channels")}
     | {"recon4.recording.packets.sensor_clock", "recon4.recording.packets.velodyne.models"}
     | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
-    | {f"recon4.findings.{name}" for name in ("finding", "kinds", "verdict", "wording")},
+    | {f"recon4.findings.{name}" for name in ("verdict", "wording")},
     "recon4/live/project_files.py": STAGE
     | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar_stages"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},

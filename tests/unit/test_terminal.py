@@ -5,8 +5,10 @@ import io
 import pytest
 
 from recon4.cli.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
-from recon4.model.events import ArtifactDamaged, NodesPlaced, StageChanged, Warned
+from recon4.model.events import ArtifactDamaged, NodesPlaced, Remarked, StageChanged, Warned
+from recon4.model.finding_kinds import FindingKind
 from recon4.progress import track
+from recon4.recording.report import warning
 
 
 class Tty(io.StringIO):
@@ -79,6 +81,10 @@ def test_stages_and_damage_are_printed_but_not_every_edge():
     assert describe_event(StageChanged(stage="map", state="running")) == ""
     assert describe_event(NodesPlaced(t_m=())) == ""
     assert describe_event(Warned(text="no vertical LiDAR")) == "warning: no vertical LiDAR"
+    missing = warning(FindingKind.SENSOR_NOT_RECORDED, sensor="vertical")
+    assert describe_event(Remarked(finding=missing)) == (
+        "warning: Sensor vertical of the rig is not in the recording."
+    )
     assert describe_event(damaged) == (
         "an artifact of the stage map was damaged and is made again; "
         "the damaged one is artifacts/d-1: a is missing"

@@ -15,7 +15,8 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import Cancelled, StoreError
-from recon4.model.events import KINDS, Event, RunStarted, WorkProgress
+from recon4.findings.wording import whole_text
+from recon4.model.events import KINDS, Event, Remarked, RunStarted, WorkProgress
 from recon4.model.plain import to_plain
 from recon4.store.json_files import parse_object
 from recon4_app.jobs.folder import beat
@@ -66,7 +67,9 @@ class EventWriter:
     def event(self, event: Event) -> None:
         """Write an event of a stage."""
         self._beat()
-        if event.kind not in MANY:
+        if isinstance(event, Remarked):
+            log.info("warning %s", whole_text(event.finding))
+        elif event.kind not in MANY:
             shown = [value for name, value in _facts(event).items() if name != "key"]
             log.info("%s %s", event.kind, " ".join(str(v) for v in shown if v is not None))
         self._write(event)

@@ -9,6 +9,8 @@ from recon4.live.mapper.tuning import NOTES
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Notes
 from recon4.model.count_words import FREE_CLOCK
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig, Sensor
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
@@ -45,7 +47,7 @@ def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
     name = sensor.name
     if notes is None or per_s <= 0.0:
         return LidarHealth(name, per_s, None, "")
-    mine = [text for text in notes.warnings if text.startswith(f"{name}: ")]
+    mine = [one for one in notes.findings if one.sensor == name]
     free = f"{FREE_CLOCK}{name}" in notes.counts
     if sensor.kind != "lidar":  # its datagrams have no numbers
         return LidarHealth(name, per_s, None, _clock(mine, free=free))
@@ -54,8 +56,8 @@ def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
     return LidarHealth(name, per_s, lost, _clock(mine, free=free))
 
 
-def _clock(warnings: list[str], *, free: bool) -> str:
-    """State of the clock, from the warnings of `recon4.recording.packets.sensor_clock`."""
-    if any("jumped by" in text for text in warnings):
+def _clock(findings: list[Finding], *, free: bool) -> str:
+    """State of the clock, from the findings of its reader."""
+    if any(one.kind is FindingKind.CLOCK_JUMP for one in findings):
         return JUMPED
     return SHIFTED if free else IN_STEP

@@ -79,6 +79,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
     Raises:
         RecordingError: If it cannot be read or has an unknown format.
     """
+    from recon4.findings.wording import whole_text
     from recon4.model.plain import finite_or_none
     from recon4.recording.info import describe
 
@@ -105,7 +106,10 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
         samples=info.samples,
         derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
         missing=tuple(text for text in info.missing if not _is_in(text, suited)),
-        warnings=(*info.warnings, *_gap_warnings([gap.seconds for gap in info.gaps])),
+        warnings=(
+            *map(whole_text, info.findings),
+            *_gap_warnings([gap.seconds for gap in info.gaps]),
+        ),
         project=_project_name(path),
         preset="outdoor" if located else "indoor",
         rig=suited.get("rig", ""),

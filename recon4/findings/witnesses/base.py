@@ -8,9 +8,9 @@ from typing import Protocol
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Level, Point, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
+from recon4.model.finding import Finding, Level, Point, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory
 
 

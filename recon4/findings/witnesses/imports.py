@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED, ImportNotes, import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.unused_data import unused_parts
@@ -19,12 +19,11 @@ class Import:
     """Outcome, warnings and losses of the import."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
-        """What the reader warned of, and data that is not used."""
+        """What the readers warn of, and data that is not used."""
         notes = import_notes(walk.imported)
         if notes.outcome != "complete":
             yield finding(FindingKind.IMPORT_INCOMPLETE, Level.CHECK, {"outcome": notes.outcome})
-        for text in notes.warnings:
-            yield finding(FindingKind.IMPORT_REMARK, Level.CHECK, {"text": text})
+        yield from notes.findings
         # In the other unit the LiDARs would see the same turns 57 times as fast, or as slow.
         agrees = _lidars_agree(walk.odometry_figures)
         yield from gyro_unit_assumed(notes, Level.NOTE if agrees else Level.CHECK)

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import IMU_WITNESS
 from recon4.findings.witnesses.uncertainty import known_to
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
 from recon4.registration.imu_gravity import wrong_gravity

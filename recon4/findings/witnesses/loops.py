@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from recon4.findings.drift import closed_drift
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import LOOP_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known, known_to
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import EdgeKind, Verdict
 
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.uncertainty import is_known
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import MovingFigures, TurnDoubt
 
 

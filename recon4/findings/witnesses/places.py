@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import PLACE_WITNESS
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import PoseGraph, Reason
 from recon4.model.trajectory import Times
 from recon4.pose_graph.pieces import joined_pieces

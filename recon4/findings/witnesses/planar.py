@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Level, Value, worst_first
-from recon4.findings.kinds import FindingKind
 from recon4.findings.witnesses.base import finding, placed
 from recon4.findings.witnesses.imports import gyro_unit_assumed
 from recon4.findings.witnesses.tuning import PLANAR_WITNESS
 from recon4.geometry.se3 import Array
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
+from recon4.model.finding import Finding, Level, Value, worst_first
+from recon4.model.finding_kinds import MOUNT_DOUBTS, FindingKind
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
@@ -42,8 +42,8 @@ class PlanarRecord:
 def check_planar(record: PlanarRecord) -> tuple[Finding, ...]:
     """What all witnesses find in a 2-D map, worst first, each with its place."""
     found = [
-        *_imported(record.imported, record.scans.doubts),
-        *_mounting(record.scans),
+        *_imported(record.imported),
+        *_mounting(record),
         *_tracking(record),
         *_motion(record),
         *_corridors(record),
@@ -92,21 +92,24 @@ def longest_loss_s(steps: Steps2d) -> float:
     return float(np.diff(ends)[between_lost].max(initial=0.0))
 
 
-def _imported(notes: ImportNotes, doubts: tuple[str, ...]) -> Iterator[Finding]:
+def _imported(notes: ImportNotes) -> Iterator[Finding]:
     yield from gyro_unit_assumed(notes, Level.NOTE)
     if notes.outcome != "complete":
         yield finding(FindingKind.IMPORT_INCOMPLETE, Level.CHECK, {"outcome": notes.outcome})
-    for text in (one for one in notes.warnings if one not in doubts):
-        yield finding(FindingKind.IMPORT_REMARK, Level.NOTE, {"text": text})
+    for one in notes.findings:
+        if one.kind not in MOUNT_DOUBTS:
+            yield replace(one, level=Level.NOTE)
     for part in unused_parts(notes.counts):
         level = Level.DO_NOT_USE if part.is_severe else Level.CHECK
         yield finding(FindingKind.IMPORT_UNUSED, level, {"text": part.text})
 
 
-def _mounting(scans: Scan2dFigures) -> Iterator[Finding]:
+def _mounting(record: PlanarRecord) -> Iterator[Finding]:
+    scans = record.scans
     level = Level.DO_NOT_USE if scans.tilt_deg > PLANAR_WITNESS.steep_deg else Level.CHECK
-    for text in scans.doubts:
-        yield finding(FindingKind.LASER_MOUNT, level, {"text": text})
+    for one in record.imported.findings:
+        if one.kind in MOUNT_DOUBTS:
+            yield replace(one, level=level)
     if scans.mirrored:
         stated: dict[str, Value] = {"mount": scans.mount} if scans.mount else {}
         yield finding(FindingKind.BEAM_ORDER, level if stated else Level.NOTE, stated)

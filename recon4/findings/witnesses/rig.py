@@ -7,8 +7,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.imu import fault_finding, has_untimed_clouds
@@ -22,6 +20,8 @@ from recon4.model.calibration_figures import (
     ParameterStatus,
     RigScatter,
 )
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig_origin import RigOrigin
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import SPEED_WITNESS
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory
 
 

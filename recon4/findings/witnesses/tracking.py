@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import TRACKING_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known
 from recon4.findings.witnesses.weak_directions import held_by_surfaces
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 
 Flags = NDArray[np.bool_]

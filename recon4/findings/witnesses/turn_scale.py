@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.findings.finding import Finding, Level, Value
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import TURN_SCALE
 from recon4.geometry.se3 import Array, so3_log
+from recon4.model.finding import Finding, Level, Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 

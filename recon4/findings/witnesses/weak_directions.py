@@ -14,13 +14,13 @@ import numpy as np
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.tuning import WEAK_DIRECTION
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.support import SurfaceSupport
 from recon4.model.tuning import OBSERVATION
 

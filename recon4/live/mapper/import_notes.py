@@ -1,4 +1,4 @@
-"""Recent warnings and repairs of the reader of a capture."""
+"""Recent findings and repairs of the reader of a capture."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections import deque
 
 from recon4.live.mapper.tuning import NOTES
 from recon4.live.protocol import Notes
+from recon4.model.finding_kinds import CLOCK_DOUBTS
 from recon4.recording.report import ImportReport
 
 
@@ -24,12 +25,12 @@ class NotesWatch:
         Args:
             now_s: A monotonic time [s].
         """
-        warnings = self._report.warnings
-        self._seen_s += [now_s] * (len(warnings) - len(self._seen_s))
+        found = self._report.findings
+        self._seen_s += [now_s] * (len(found) - len(self._seen_s))
         current = [
-            text
-            for text, seen_s in zip(warnings, self._seen_s, strict=False)
-            if now_s - seen_s < NOTES.fresh_s or "clock" in text
+            one
+            for one, seen_s in zip(found, self._seen_s, strict=False)
+            if now_s - seen_s < NOTES.fresh_s or one.kind in CLOCK_DOUBTS
         ]
         counts = dict(self._report.counts)
         if not self._counts:
@@ -40,4 +41,4 @@ class NotesWatch:
         before = self._counts[0][1]
         recent = {name: count - before.get(name, 0) for name, count in counts.items()}
         recent = {name: count for name, count in recent.items() if count}
-        return Notes(warnings=current[-NOTES.most :], counts=counts, recent=recent)
+        return Notes(findings=current[-NOTES.most :], counts=counts, recent=recent)

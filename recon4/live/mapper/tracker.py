@@ -131,7 +131,7 @@ class Tracker:
             imu = self._measured(imu)
             self._imu = deque([imu], maxlen=self._imu.maxlen)
             if channels.no_accelerometer:
-                self.remark = f"the IMU has no accelerometer ({channels.no_accelerometer})"
+                self.remark = f"the IMU has no accelerometer ({channels.no_accelerometer.text})"
         self.with_imu = imu is not None and len(imu) > 1
         if self.with_imu and imu is not None and not _upright(imu, self._rig):
             self.with_imu, imu = False, None
@@ -192,8 +192,8 @@ class Tracker:
                 self._with_forces = False
                 self.remark = f"the accelerometer contradicts the LiDARs and is not used: {_UNIT}"
             case _:
-                fault = imu_channels(recorded).no_gyroscope if recorded else ""
-                why = f"its gyroscope does not measure ({fault})" if fault else _WHY_NOT
+                fault = imu_channels(recorded).no_gyroscope if recorded else None
+                why = f"its gyroscope does not measure ({fault.text})" if fault else _WHY_NOT
                 self.remark = f"the IMU contradicts the LiDARs and is not used: {why}"
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, Sensor
@@ -175,9 +176,12 @@ class Assembler:
         self._report.count("gaps")
         if len(self.gaps) <= 20:
             since_s = (stream.last_ns - (self._start_ns or stream.first_ns or 0)) / 1e9
-            what = "nothing" if length_ns > 0 else "the clock goes back"
             self._report.warn(
-                f"{gap.sensor}: {what} for {abs(gap.seconds):.3f} s at {since_s:.1f} s"
+                FindingKind.TIME_GAP if length_ns > 0 else FindingKind.CLOCK_BACK,
+                sensor=gap.sensor,
+                start_s=since_s,
+                end_s=since_s + max(0.0, gap.seconds),
+                seconds=abs(gap.seconds),
             )
 
     def _note_inner_gaps(self, stream: _Stream, shots: Shots, gap_ns: int) -> None:
@@ -224,10 +228,7 @@ class Assembler:
             abs(slowest / requested - round(slowest / requested)) > 0.03
             or slowest < 0.97 * requested
         ):
-            self._report.warn(
-                f"rate_hz = {requested:g} does not fit the rotation of {slowest:.6g} Hz: "
-                "frames are no whole revolutions"
-            )
+            self._report.warn(FindingKind.RATE_UNFIT, requested_hz=requested, rotation_hz=slowest)
         return requested
 
     # -- cutting

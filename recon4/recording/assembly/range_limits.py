@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.cloud_extent import extent_text
+from recon4.recording.cloud_extent import extent_of
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
@@ -47,6 +48,6 @@ def drop_invalid(
 
 def _say_extent(xyz: NDArray[np.float32], max_range_m: float, report: ImportReport) -> None:
     """Say once where points are of which most are too far: the unit or the origin may be wrong."""
-    text = extent_text(xyz.astype(np.float64))
-    report.details["points_far"] = text
-    report.warn(f"most points of a cloud are farther than {max_range_m:g} m: {text}")
+    found = extent_of(xyz.astype(np.float64))
+    report.details["points_far"] = found.text
+    report.warn(FindingKind.POINTS_FAR, max_range_m=max_range_m, **found.values)

@@ -15,6 +15,8 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.finding import Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.recording.folders import natural
 from recon4.recording.formats import db3
@@ -194,9 +196,9 @@ class Bag:
             table = as_points(recipe, cloud_lists(content))
             return PointMessage(content.header, table, content.data)
         except CorruptFile as error:
-            self._left_out(f"{message.topic}: left out: {error}")
+            self._left_out(message.topic, error=str(error))
         except Exception:  # damaged bytes raise errors of many kinds in generated code
-            self._left_out(f"{message.topic}: messages that cannot be decoded are left out")
+            self._left_out(message.topic, undecoded=True)
         return None
 
     def _parts(self, message: BagMessage) -> dict[TopicSource, BagMessage]:
@@ -214,18 +216,15 @@ class Bag:
             return store.deserialize_ros1(message.data, message.type)
         return store.deserialize_cdr(message.data, message.type)
 
-    def _left_out(self, why: str) -> None:
+    def _left_out(self, topic: str, **why: Value) -> None:
         self.report.count("messages_corrupt")
         self.report.outcome = "lossy"
-        self.report.warn(why)
+        self.report.warn(FindingKind.MESSAGE_LEFT_OUT, where=topic, **why)
 
     # -- opening
 
     def _open(self, path: Path) -> None:
-        if path.is_dir():
-            self._open_folder(path)
-        else:
-            self._open_file(path)
+        (self._open_folder if path.is_dir() else self._open_file)(path)
 
     def _open_folder(self, path: Path) -> None:
         """The files that the description lists; without one, all storage files."""
@@ -233,15 +232,17 @@ class Bag:
         try:
             metadata = read_metadata(path)
         except CorruptFile as error:
-            self.report.warn(f"{path.name}: {error}; its files are read one by one")
+            self.report.warn(FindingKind.FOLDER_DESCRIPTION, name=path.name, error=str(error))
             metadata, described = BagMetadata(_storage_files(path, error), "", 0), False
         missing = [file.name for file in metadata.files if not file.is_file()]
         if missing:
             self.report.outcome = "lossy"
             self.report.count("files_missing", len(missing))
             self.report.warn(
-                f"{path.name}: {len(missing)} files of metadata.yaml are missing: "
-                f"{', '.join(missing[:5])}; the others are read"
+                FindingKind.FILES_MISSING,
+                name=path.name,
+                files=len(missing),
+                missing=", ".join(missing[:5]),
             )
             absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
             there = tuple(file for file in metadata.files if file.is_file())
@@ -258,7 +259,7 @@ class Bag:
                     raise
                 self.report.outcome = "lossy"
                 self.report.count("files_damaged")
-                self.report.warn(f"{path.name}: a file is left out: {error}")
+                self.report.warn(FindingKind.FILE_LEFT_OUT, name=path.name, error=str(error))
         if described:
             self._origins[before:] = [path] * (len(self._sources) - before)
         self._compare(path, metadata.messages)
@@ -269,7 +270,7 @@ class Bag:
             self.report.outcome = "lossy"
             self.report.count("messages_missing", expected - found)
             self.report.warn(
-                f"{path.name}: expected {expected} messages as in metadata.yaml, got {found}"
+                FindingKind.MESSAGES_MISSING, name=path.name, expected=expected, found=found
             )
 
     def _decompressed(self, files: Sequence[Path]) -> tuple[Path, ...]:
@@ -297,7 +298,7 @@ class Bag:
         try:
             return Bag1(file, self.report)
         except CorruptFile as error:
-            self.report.warn(f"{error}; salvaging what is left")
+            self.report.warn(FindingKind.FILE_SALVAGED, name=file.name, error=str(error))
         source = Bag1.scan(file, self.report)
         self._salvaged(source, file.name)
         return source
@@ -307,10 +308,10 @@ class Bag:
         try:
             return Mcap(file, self.report)
         except CorruptFile as error:
-            reason = f"{error}; salvaging what is left"
+            reason = str(error)
         source, whole = Mcap.scan(file, self.report)
         if not whole:
-            self.report.warn(reason)
+            self.report.warn(FindingKind.FILE_SALVAGED, name=file.name, error=reason)
             self._salvaged(source, file.name)
         return source
 
@@ -322,7 +323,7 @@ class Bag:
         self.report.outcome = "lossy"
         self.report.count("files_cut")
         self.report.count("messages_salvaged", count)
-        self.report.warn(f"{name}: cut off or damaged; {count} messages were salvaged")
+        self.report.warn(FindingKind.FILE_SALVAGED, name=name, messages=count)
 
     def _summarize(self) -> None:
         counts: dict[tuple[str, str], int] = {}

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.text_logs import first_lines, log_lines
 from recon4.recording.report import ImportReport
 
@@ -153,8 +154,12 @@ def _of_one_message(lines: list[_Line], name: str, report: ImportReport) -> list
     report.count("scans_of_another_message", len(others) - repeated)
     if repeated < len(others):
         report.warn(
-            f"{name}: {len(others) - repeated} of {len(lines)} scans are left out: those of the "
-            f"message {message.decode()} are read, {most}, and these are of another one"
+            FindingKind.SCANS_OF_OTHERS,
+            name=name,
+            left_out=len(others) - repeated,
+            scans=len(lines),
+            message=message.decode(),
+            read=most,
         )
     return used
 
@@ -186,7 +191,9 @@ def _scan_lines(path: Path, report: ImportReport) -> Iterator[_Line]:
             report.count("scans_damaged")
             report.outcome = "lossy"
             if report.counts["scans_damaged"] == 1:
-                report.warn(f"{path.name}: line {number}: a damaged scan is left out: {error}")
+                report.warn(
+                    FindingKind.SCAN_LEFT_OUT, where=path.name, line=number, error=str(error)
+                )
 
 
 def _flaser(name: bytes, text: bytes) -> _Line:

@@ -16,6 +16,7 @@ from zlib import crc32
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.limits import (
     MAX_CHUNK_BYTES,
     RATIO_FLOOR_BYTES,
@@ -229,7 +230,10 @@ class ChunkStream:
             self._report.outcome = "lossy"
             self._report.count("messages_missing", missing)
             self._report.warn(
-                f"{self._name}: {missing} messages fewer than in the index of the file"
+                FindingKind.MESSAGES_MISSING,
+                name=self._name,
+                indexed=sum(names[k].msgcount for k in wanted),
+                missing=missing,
             )
 
     def _merged(self, chunks: list[ChunkRef], wanted: set[int]) -> Iterator[Message]:
@@ -264,14 +268,14 @@ class ChunkStream:
         if messages.rejected or unknown:
             self._report.outcome = "lossy"
             self._report.count("messages_corrupt", messages.rejected + unknown)
-            self._report.warn(f"{self._name}: messages without a topic, a time or a sensible size")
+            self._report.warn(FindingKind.MESSAGES_DAMAGED, name=self._name)
         return messages
 
     def _damaged(self, error: CorruptFile) -> None:
         self._first_damage = self._first_damage or error
         self._report.outcome = "lossy"
         self._report.count("chunks_damaged")
-        self._report.warn(f"left out: {error}")
+        self._report.warn(FindingKind.CHUNK_LEFT_OUT, error=str(error))
 
 
 def _by_time(chunk: ChunkRef) -> tuple[int, int]:

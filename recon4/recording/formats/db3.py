@@ -20,6 +20,8 @@ import apsw
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.finding import Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.chunks import BagIndex, RawMessage, Topic
 from recon4.recording.formats.limits import (
     MAX_MESSAGE_BYTES,
@@ -180,7 +182,7 @@ class Db3:
         except (apsw.Error, MemoryError, ValueError) as error:
             self._damage = str(error) or type(error).__name__
         if bad:
-            self._corrupt(bad, "a row without a topic or a sensible time")
+            self._corrupt(bad)
         return tuple(np.frombuffer(column, np.int64) for column in (t_ns, row_id, number))
 
     def _index(self, topics: dict[int, Topic]) -> BagIndex:
@@ -189,7 +191,7 @@ class Db3:
         for k, topic in topics.items():
             topic.msgcount = counts.pop(k, 0)
         if counts:
-            self._corrupt(sum(counts.values()), "messages of a topic that is not in table topics")
+            self._corrupt(sum(counts.values()))
             kept = np.isin(number, list(topics))
             self._rows = t_ns, row_id, number = t_ns[kept], row_id[kept], number[kept]
         span = (int(t_ns.min()), int(t_ns.max()) + 1) if len(t_ns) else (2**63 - 1, 0)
@@ -204,7 +206,8 @@ class Db3:
         self.report.outcome = "lossy"
         self.report.count("files_cut")
         self.report.count("messages_salvaged", count)
-        self.report.warn(f"{self._name}: {why}; {count} messages were salvaged")
+        damage = {"error": self._damage} if self._damage else {}
+        self.report.warn(FindingKind.FILE_SALVAGED, name=self._name, messages=count, **damage)
 
     # -- reading
 
@@ -220,17 +223,17 @@ class Db3:
             query = "SELECT data FROM messages NOT INDEXED WHERE rowid = ?"
             found = next(self._execute(query, (row,)), (None,))[0]
         except (apsw.Error, MemoryError, ValueError) as error:
-            self._corrupt(1, f"row {row} of table messages: {error}")
+            self._corrupt(1, row=row, error=str(error))
             return None
         if not isinstance(found, bytes):
-            self._corrupt(1, "messages whose data are no bytes")
+            self._corrupt(1)
             return None
         return found
 
-    def _corrupt(self, count: int, why: str) -> None:
+    def _corrupt(self, count: int, **where: Value) -> None:
         self.report.outcome = "lossy"
         self.report.count("messages_corrupt", count)
-        self.report.warn(f"{self._name}: left out: {why}")
+        self.report.warn(FindingKind.MESSAGES_DAMAGED, name=self._name, **where)
 
 
 @contextmanager

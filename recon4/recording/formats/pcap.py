@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.model.finding import Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.formats.ip_fragments import Fragment, IpFragments, JoinedDatagram
@@ -87,7 +89,7 @@ def read_pcap(
         fragments.end()
         unread.add_fragments(fragments.lost())
     if not found:
-        why = f" ({report.warnings[-1]})" if report.counts["files_cut"] > damaged else ""
+        why = f" ({report.said()[-1]})" if report.counts["files_cut"] > damaged else ""
         raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
 
 
@@ -131,15 +133,10 @@ def _classic(
         rest, at = data[end:], at + end
         if broken:
             captured = struct.unpack_from(f"{order}I", rest, 8)[0]
-            _salvaged(
-                report,
-                name,
-                f"packet at byte {at}: expected a length of 1 to {MAX_PACKET_BYTES} bytes, "
-                f"got {captured}; what follows is not read",
-            )
+            _salvaged(report, name, at=at, most=MAX_PACKET_BYTES, captured=captured)
             return
     if rest:
-        _salvaged(report, name, f"it ends inside a packet; the last {len(rest)} bytes are dropped")
+        _salvaged(report, name, dropped=len(rest))
 
 
 def _walk(data: bytes, order: str) -> tuple[list[tuple[int, int, int, int]], int, bool]:
@@ -183,7 +180,7 @@ def _until_damaged(packets: Iterator[Packet], name: str, report: ImportReport) -
     try:
         yield from packets
     except CorruptFile as error:
-        _salvaged(report, name, f"{error}; what follows is not read")
+        _salvaged(report, name, error=str(error))
 
 
 def _joined(packets: list[Packet]) -> _Records:
@@ -202,10 +199,10 @@ def _require_link_type(link_type: int, name: str) -> None:
         )
 
 
-def _salvaged(report: ImportReport, name: str, why: str) -> None:
+def _salvaged(report: ImportReport, name: str, **where: Value) -> None:
     report.outcome = "lossy"
     report.count("files_cut")
-    report.warn(f"{name}: salvaged: {why}")
+    report.warn(FindingKind.CAPTURE_SALVAGED, name=name, **where)
 
 
 def _datagrams(records: _Records, unread: UnreadRecords, fragments: IpFragments) -> Datagrams:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from recon4.errors import CorruptFile
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.limits import MAX_RATIO, RATIO_FLOOR_BYTES
 from recon4.recording.report import ImportReport
 from recon4.untrusted.bounded import open_regular
@@ -134,7 +135,7 @@ def _decompressed(
         if data.strip(b"\0"):
             report.outcome = "lossy"
             report.count("files_damaged")
-            report.warn(f"{name}: what follows the compressed data is not compressed: not read")
+            report.warn(FindingKind.FILE_REST_UNREAD, name=name)
         return
 
 
@@ -148,14 +149,14 @@ def _one_stream(
             if not data:
                 report.outcome = "lossy"
                 report.count("files_cut")
-                report.warn(f"{name}: the compressed file is cut off; what it still has is read")
+                report.warn(FindingKind.FILE_SALVAGED, name=name)
                 return
         try:
             piece = decoder.decompress(data, max_length=_PIECE)
         except (OSError, ValueError, EOFError, zlib.error) as error:
             report.outcome = "lossy"
             report.count("files_damaged")
-            report.warn(f"{name}: the compressed file is damaged, the rest is not read: {error}")
+            report.warn(FindingKind.FILE_SALVAGED, name=name, error=str(error))
             return
         data = b""
         if piece:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.model.finding import Finding
 from recon4.model.multiframe import Multiframe
 from recon4.model.samples import ImuSamples
 from recon4.progress import Progress
@@ -29,7 +30,7 @@ class Converted:
     samples: int
     lost: tuple[str, ...]
     """Counts of data that could not be read, in words."""
-    warnings: tuple[str, ...]
+    findings: tuple[Finding, ...]
 
 
 def convert(sources: Sources, folder: Path, *, progress: Progress) -> Converted:
@@ -70,4 +71,4 @@ def convert(sources: Sources, folder: Path, *, progress: Progress) -> Converted:
         writer.close()
         if not writer.points:
             raise ConfigError(f"{sources.recordings[0].name}: {report.why_no_points()}")
-    return Converted(writer.points, writer.samples, tuple(report.lost()), tuple(report.warnings))
+    return Converted(writer.points, writer.samples, tuple(report.lost()), tuple(report.findings))

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.folders import natural
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
@@ -104,7 +105,7 @@ def _part(path: Path, report: ImportReport) -> WalkPart | None:
     except (RecordingError, AttributeError) as error:
         report.count("files_corrupt")
         report.outcome = "lossy"
-        report.warn(f"left out: {error}")
+        report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
         return None
     number = POINTS_NAME.fullmatch(path.name)
     assert number is not None
@@ -151,13 +152,16 @@ def _serials(parts: Iterable[WalkPart], report: ImportReport) -> dict[int, str]:
         try:
             lines = list(lines_limited(path, max_bytes=MANDEYE.most_bytes))
         except RecordingError as error:
-            report.warn(f"serial numbers: {error}")
+            report.warn(FindingKind.SERIALS_UNREADABLE, error=str(error))
             continue
         for match in filter(None, map(_SERIAL_LINE.fullmatch, lines)):
             known = found.setdefault(int(match[1]), match[2])
             if known != match[2]:
                 report.warn(
-                    f"{path.name}: LiDAR {match[1]} is {match[2]}, {known} in the files before: "
-                    "walks of two devices?"
+                    FindingKind.SERIALS_CHANGE,
+                    name=path.name,
+                    lidar=match[1],
+                    serial=match[2],
+                    before=known,
                 )
     return {key: serial for key, serial in found.items() if key < 256}

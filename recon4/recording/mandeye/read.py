@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -126,7 +127,7 @@ class MandeyeRecording:
     def _left_out(self, error: CorruptFile) -> None:
         self._report.count("files_corrupt")
         self._report.outcome = "lossy"
-        self._report.warn(f"left out: {error}")
+        self._report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
 
     def _imu(self, part: WalkPart) -> Iterator[ImuSamples]:
         assert part.imu is not None

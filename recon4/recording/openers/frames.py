@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from recon4.errors import ConfigError, RecordingError, UnknownFormat
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.recording.cloud_points import model_of_points
@@ -35,7 +36,14 @@ def open_frames(request: OpenRequest) -> Recording:
     sensor = rig.sensors[0]
     gaps = folder_gaps(frames, sensor.name, tuned(IngestTuning, settings).gap_s)
     for gap in gaps[: LISTED.names]:
-        report.warn(f"{gap.sensor}: {gap.seconds:.3f} s from one frame to the next")
+        since_s = (gap.t_ns - int(frames.t_ns[0])) / 1e9
+        report.warn(
+            FindingKind.TIME_GAP,
+            sensor=gap.sensor,
+            start_s=since_s,
+            end_s=since_s + gap.seconds,
+            seconds=gap.seconds,
+        )
     read = partial(read_frames, frames, sensor, settings=settings, report=report)
     return Recording(rig, read, len(frames.files) * frames.period_ns / 1e9, tuple(gaps))
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import EmptyRecording
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
@@ -116,8 +117,8 @@ class PacketCapture:
 
     def _chosen(self, choose: ChooseRig, groups: list[tuple[PacketStream, ...]]) -> Rig:
         for stream in self.streams:
-            for remark in stream.remarks:
-                self._report.warn(f"{stream.label}: {remark}")
+            for found in stream.findings:
+                self._report.add(found)
         return choose([_lidar(group[0]) for group in groups])
 
     def read(self) -> Iterator[Shots | PacketSamples]:
@@ -203,8 +204,12 @@ class PacketCapture:
         for row, sensor in enumerate(self.rig.sensors):
             if row not in chosen:
                 self._report.warn(
-                    f"{sensor.name}: no data packets from {sensor.address or 'any address'} "
-                    f"to port {sensor.port}{self._sent_instead(sensor)}"
+                    FindingKind.PACKETS_MISSING,
+                    sensor=sensor.name,
+                    address=sensor.address,
+                    anywhere=not sensor.address,
+                    port=sensor.port,
+                    found=self._sent_instead(sensor),
                 )
                 continue
             channels.append(self._channel(row, chosen[row]))
@@ -220,12 +225,22 @@ class PacketCapture:
                 and not known
                 and stream.packets > CAPTURE_STREAMS.foreign_ratio * most
             ):
-                self._report.warn(f"not read: {stream.text}")
+                self._report.warn(
+                    FindingKind.PACKETS_UNREAD,
+                    sender=stream.label,
+                    packets=stream.packets,
+                    why=stream.refused,
+                )
             expected = {"IMU": self.rig.imu_port, "GNSS": self.rig.gnss_port}.get(stream.kind)
             if expected is not None and stream.port != expected:
                 self._report.warn(
-                    f"not read: {stream.text}; the rig expects {stream.kind} at port {expected}: "
-                    f"give [{stream.kind.lower()}] port = {stream.port} in the rig file"
+                    FindingKind.SAMPLES_PORT,
+                    what=stream.kind,
+                    table=stream.kind.lower(),
+                    expected=expected,
+                    packets=stream.packets,
+                    sender=stream.label,
+                    port=stream.port,
                 )
 
     def _own_imu(self) -> str:
@@ -235,7 +250,7 @@ class PacketCapture:
 
     def _sent_instead(self, sensor: Sensor) -> str:
         others = [s for s in self.streams if s.refused and fits(sensor, s.source, s.port)]
-        return f"; found: {'; '.join(s.text for s in others)}" if others else ""
+        return "; ".join(s.text for s in others)
 
     def _beside(self, data: PacketStream) -> Datagrams:
         """First other packets of a LiDAR: those of its sender to other ports."""
@@ -322,7 +337,7 @@ def _match(
             f"{sensors[row].address or 'any address'} to port {sensors[row].port}"
         )
     for streams in left:
-        report.warn(f"{streams[0].label}: the rig has no sensor for these packets; not read")
+        report.warn(FindingKind.PACKETS_UNASSIGNED, sender=streams[0].label)
     return chosen
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import LIDARS, lidar_model
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
@@ -167,8 +168,11 @@ class PacketDecoder:
         fits = self._layout.likely_models(usual_s) if usual_s else ()
         if fits and self._sensor.model not in fits:
             self.report.warn(
-                f"{self._sensor.name}: a packet every {1e3 * usual_s:.3f} ms is what a {fits[0]} "
-                f"sends, but it is decoded as {self._sensor.model}"
+                FindingKind.MODEL_UNLIKELY,
+                sensor=self._sensor.name,
+                interval_ms=1e3 * usual_s,
+                likely=fits[0],
+                model=self._sensor.model,
             )
 
     def _count_missing(self, number: int) -> None:

@@ -18,6 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.finding import Finding
 from recon4.model.rig import Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
@@ -80,8 +81,10 @@ class Recognized:
     """Bytes of a data packet."""
     utc_offset_ns: int | None = None
     """UTC minus time of arrival, where positions prove that GPS drives the sensor's clock."""
-    remarks: tuple[str, ...] = ()
+    findings: tuple[Finding, ...] = ()
     """Warnings, as about a model byte that contradicts the data."""
+    refused: str = ""
+    """Why packets of this make are not read; empty for other kinds than ``other``."""
     rows: NDArray[np.bool_] | None = None
     """Which of the datagrams are of this sensor, (N,); None = all."""
     others: tuple[Recognized, ...] = ()

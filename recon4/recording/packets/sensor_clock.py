@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.packets.tuning import CLOCKS
 from recon4.recording.report import ImportReport
@@ -210,12 +211,16 @@ class SensorClock:
 
     def _say_free_running(self, offset_ns: int) -> None:
         self._report.count(f"clock_runs_freely_{self._name}")
-        say = self._report.derive if self._alone else self._report.warn
-        whole = "" if self.past_hour else " and whole hours"
-        say(
-            f"{self._name}: its clock is {offset_ns / SECOND_NS:+.3f} s{whole} off the recorder's "
-            "and no GPS drives it: its times are shifted to the recorder's clock"
-        )
+        ahead_s = offset_ns / SECOND_NS
+        if self._alone:
+            whole = "" if self.past_hour else " and whole hours"
+            self._report.derive(
+                f"{self._name}: its clock is {ahead_s:+.3f} s{whole} off the recorder's and no GPS "
+                "drives it: its times are shifted to the recorder's clock"
+            )
+            return
+        hours = not self.past_hour
+        self._report.warn(FindingKind.CLOCK_FREE, sensor=self._name, ahead_s=ahead_s, hours=hours)
 
     def _odd(
         self, t_us: NDArray[np.integer], t_sensor: Times, deviation: Times
@@ -291,12 +296,12 @@ class SensorClock:
             jump_ns = (arrival - self._last[0]) - (going_on - self._last[1])
             self._offset_ns = going_on - arrival
             self._host_jump_ns += jump_ns
-            self._report_jump("the recorder's clock", jump_ns)
+            self._report_jump("recorder", jump_ns)
         else:
             self._offset_ns += off_ns
             self._shift_ns = int(self._shift(going_on)) - off_ns
             self._rate = 0.0
-            self._report_jump("its clock", off_ns)
+            self._report_jump("sensor", off_ns)
         self._since_ns, self._window, self._run = going_on, [], 0
         self._block, self._filled = [], 0
         self._report_ahead()
@@ -308,5 +313,9 @@ class SensorClock:
     def _report_jump(self, whose: str, jump_ns: int) -> None:
         self._report.count("clock_jumps")
         self._report.warn(
-            f"{self._name}: {whose} jumped by {jump_ns / SECOND_NS:+.3f} s; times go on without it"
+            FindingKind.CLOCK_JUMP,
+            sensor=self._name,
+            whose=whose,
+            jump_s=jump_ns / SECOND_NS,
+            times="without-it",
         )

@@ -8,9 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from msgspec.structs import replace as replace_fields
 from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
+from recon4.model.finding import Finding
 from recon4.model.rig import Sensor
 from recon4.recording.formats.datagrams import (
     NO_DATAGRAMS,
@@ -75,9 +77,10 @@ class PacketStream:
         return self.found.model if self.found else ""
 
     @property
-    def remarks(self) -> tuple[str, ...]:
+    def findings(self) -> tuple[Finding, ...]:
         """Warnings, for example about a product byte that contradicts the data."""
-        return self.found.remarks if self.found else ()
+        found = self.found.findings if self.found else ()
+        return tuple(replace_fields(one, sensor=self.label) for one in found)
 
     @property
     def shared(self) -> str:
@@ -257,7 +260,7 @@ def _streams(
             kind=one.kind,
             found=one,
             utc_offset_ns=one.utc_offset_ns,
-            refused="; ".join(one.remarks) if one.kind == "other" else "",
+            refused=one.refused,
         )
         for one in (found, *found.others)
     ]

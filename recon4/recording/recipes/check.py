@@ -14,6 +14,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import ANGLES, LENGTHS, TIMES, PointRecipe, Units
 from recon4.recording.point_fields import NS_TIME
 from recon4.recording.recipes.apply import Column, Columns, as_points, chosen_list
@@ -67,11 +68,7 @@ def require_fitting(recipe: PointRecipe, sample: RecipeSample, report: ImportRep
     if text := _times(recipe, points, raw, period_s=sample.period_s):
         raise ConfigError(f"{where}: {text}")
     if _is_mirrored(points):
-        report.warn(
-            f"{where}: the points turn to the left, seen from above; LiDARs turn to the right. If "
-            "two columns are exchanged or an axis points the other way (y=-COLUMN), the map is "
-            "mirrored"
-        )
+        report.warn(FindingKind.POINTS_TURN_LEFT, name=sample.name)
 
 
 def _size(lists: Mapping[str, Columns]) -> int:

@@ -32,8 +32,8 @@ def with_doubts(proposal: Proposal, sample: RecipeSample) -> Proposal:
     try:
         require_fitting(proposal.recipe, sample, report)
     except ConfigError as error:
-        report.warn(str(error))
-    return proposal.with_doubts(report.warnings)
+        return proposal.with_doubts([str(error)])
+    return proposal.with_doubts(report.said())
 
 
 def require_known(unknown: Sequence[tuple[Stream, Proposal]], name: str) -> None:

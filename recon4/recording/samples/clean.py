@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
@@ -19,12 +20,6 @@ from recon4.recording.samples.units import GyroUnit, in_m_s2, in_rad_s
 from recon4.recording.stamps import strays
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
-
-_BY_FLOOR = "the map is leveled by its floor"
-_FORCES_ALONE = (
-    f". Its accelerations alone are not used either: without the turns of the body they do not "
-    f"tell gravity from the motion; {_BY_FLOOR}"
-)
 
 
 def join(parts: Sequence[Samples]) -> Samples | None:
@@ -70,19 +65,22 @@ def clean_imu(
     imu = _without_strays(imu, "imu", report)
     channels = imu_channels(_carried_on(imu, jumps_ns, report))
     if channels.no_gyroscope:
-        rest = "" if channels.no_accelerometer else _FORCES_ALONE
-        report.warn(f"the IMU has no gyroscope ({channels.no_gyroscope}): it is not used{rest}")
+        report.warn(
+            FindingKind.GYROSCOPE_MISSING,
+            forces=not channels.no_accelerometer,
+            **channels.no_gyroscope.values,
+        )
         return None
     turns, alone = _by_channel(channels.imu, report)
     imu = _sorted(turns, offset_s, "imu", report=report)
     imu = _without_stuck_forces(_without_repeated(imu, report))
     if channels.no_accelerometer:
-        report.warn(f"the IMU has no accelerometer ({channels.no_accelerometer}): {_BY_FLOOR}")
+        report.warn(FindingKind.ACCELEROMETER_MISSING, **channels.no_accelerometer.values)
     else:
         imu = with_forces(imu, _sorted(alone, offset_s, "imu", report=ImportReport()), report)
     report.count("imu_kept", len(imu))
     if not len(imu):
-        report.warn("no usable IMU sample")
+        report.warn(FindingKind.IMU_EMPTY)
         return None
     scaled = in_rad_s(imu, gyro_unit, report)
     return None if scaled is None else in_m_s2(scaled, report)
@@ -104,19 +102,15 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     if len(found) and not np.isfinite(found.height_m).any():
         report.derive("no GNSS position has a height: they cannot place the map")
     if not len(found):
-        report.warn(f"no usable GNSS position: {_why_none(gnss, damaged, invalid)}")
+        report.warn(
+            FindingKind.GNSS_EMPTY,
+            fixes=len(gnss),
+            no_fix=int(invalid.sum()),
+            no_place=int(damaged.sum()),
+            at_zero=int((~damaged & ~invalid).sum()),
+        )
         return None
     return found
-
-
-def _why_none(gnss: GnssSamples, damaged: NDArray[np.bool_], invalid: NDArray[np.bool_]) -> str:
-    """Why no position of some is usable."""
-    counts = {
-        "say that they are no fix": int(invalid.sum()),
-        "are no place on earth": int(damaged.sum()),
-        "are at latitude and longitude 0 or never change": int((~damaged & ~invalid).sum()),
-    }
-    return f"of {len(gnss)}, " + " and ".join(f"{n} {why}" for why, n in counts.items() if n)
 
 
 def _by_channel(imu: ImuSamples, report: ImportReport) -> tuple[ImuSamples, ImuSamples]:
@@ -195,10 +189,13 @@ def _without_repeated(imu: ImuSamples, report: ImportReport) -> ImuSamples:
     report.count("imu_repeated", len(repeated))
     longest_s = 1e-9 * max(int(imu.t_ns[run[-1]] - imu.t_ns[run[0] - 1]) for run in runs)
     first_s = 1e-9 * int(imu.t_ns[repeated[0]] - imu.t_ns[0])
-    times = "once" if len(runs) == 1 else f"{len(runs)} times"
     report.warn(
-        f"the IMU repeats a sample with new time stamps {times}, first {first_s:.1f} s after its "
-        f"start, for up to {longest_s:.1f} s: its driver hangs. {len(repeated)} samples dropped"
+        FindingKind.IMU_REPEATED,
+        sensor="IMU",
+        times=len(runs),
+        first_s=first_s,
+        longest_s=longest_s,
+        samples=len(repeated),
     )
     return _take(imu, np.delete(np.arange(len(imu)), repeated))
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
 from recon4.model.samples import GnssSamples
 from recon4.model.tuning import GEOID
@@ -74,11 +75,11 @@ def compare_heights(given: GnssSamples, found: GnssSamples, report: ImportReport
     low_m, high_m = GEOID.least_m, GEOID.most_m
     if low_m < abs(usual_m) < high_m and spread_m < HEIGHTS.spread_m:
         report.warn(
-            f"heights of the GNSS file lie {abs(usual_m):.1f} m (± {spread_m:.1f} m) "
-            f"{'above' if usual_m > 0 else 'below'} those in the recording, as a geoid does: one "
-            "of both is above sea level (orthometric), not above the ellipsoid. If it is the file, "
-            f"all heights of the map are off by as much: name its column orthometric_height_m, "
-            f"with a column geoid_separation_m of {-usual_m:.1f}"
+            FindingKind.HEIGHTS_DIFFER,
+            difference_m=abs(usual_m),
+            spread_m=spread_m,
+            side="above" if usual_m > 0 else "below",
+            separation_m=-usual_m,
         )
 
 

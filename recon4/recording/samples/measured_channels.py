@@ -7,12 +7,14 @@ covariance of -1. All of that is "not measured" here, in one place, and becomes 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.finding import Value
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.tuning import MEASURED
@@ -21,15 +23,42 @@ Rows = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
+class Unmeasured:
+    """Why a sensor has not measured a channel."""
+
+    why: Literal["absent", "zero", "constant"]
+    axes: str = ""
+    """Whose values never change."""
+    samples: int = 0
+    """In which they do not."""
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """As values of a finding."""
+        constant: dict[str, Value] = {"axes": self.axes, "samples": self.samples}
+        return {"why": self.why} | (constant if self.axes else {})
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        match self.why:
+            case "absent":
+                return "it has no values, or is declared as not measured"
+            case "zero":
+                return "all its values are 0"
+        return f"its values along {self.axes} never change in {self.samples} samples"
+
+
+@dataclass(frozen=True, slots=True)
 class ImuChannels:
     """The samples of an IMU, and what of it was not measured."""
 
     imu: ImuSamples
     """All-NaN rows where a channel was not measured."""
-    no_gyroscope: str
-    """Why there are no angular rates; empty = there are."""
-    no_accelerometer: str
-    """Why there are no accelerations; empty = there are."""
+    no_gyroscope: Unmeasured | None
+    """Why there are no angular rates; None = there are."""
+    no_accelerometer: Unmeasured | None
+    """Why there are no accelerations; None = there are."""
 
 
 def declared_absent(covariance: Any) -> bool:
@@ -51,7 +80,7 @@ def imu_channels(imu: ImuSamples, *, least: int = MEASURED.least_samples) -> Imu
     gyro, no_gyroscope = _measured(imu.gyro_rad_s, least)
     accel, no_accelerometer = _measured(_without_free_fall(imu.accel_m_s2), least)
     if no_accelerometer and _is_zero(imu.accel_m_s2):
-        no_accelerometer = "all its values are 0"
+        no_accelerometer = Unmeasured("zero")
     return ImuChannels(ImuSamples(imu.t_ns, gyro, accel), no_gyroscope, no_accelerometer)
 
 
@@ -71,14 +100,14 @@ def without_unmeasured(fixes: GnssSamples, report: ImportReport) -> GnssSamples:
     fixes = fixes.take(~at_zero)
     if len(fixes) >= MEASURED.least_fixes and _never_change(fixes.lat_rad, fixes.lon_rad):
         report.count("gnss_constant", len(fixes))
-        report.warn(f"the position of all {len(fixes)} GNSS fixes is the same: they are not used")
+        report.warn(FindingKind.GNSS_CONSTANT, fixes=len(fixes))
         return fixes.take(slice(0))
     heights, attitudes = fixes.height_m, fixes.rpy_ned_rad
     if len(fixes) >= MEASURED.least_fixes and np.all(heights == 0.0):
-        report.warn("all GNSS heights are 0: they count as not measured")
+        report.warn(FindingKind.GNSS_HEIGHTS_ZERO)
         heights = np.full_like(heights, np.nan)
     if len(fixes) >= MEASURED.least_fixes and _never_change(*attitudes.T):
-        report.warn("the attitude of the INS never changes: it counts as not measured")
+        report.warn(FindingKind.INS_CONSTANT)
         attitudes = np.full_like(attitudes, np.nan)
     sd = np.where(fixes.sd_enu_m > 0.0, fixes.sd_enu_m, np.nan)
     return replace(fixes, height_m=heights, sd_enu_m=sd, rpy_ned_rad=attitudes)
@@ -104,8 +133,7 @@ def with_forces(imu: ImuSamples, alone: ImuSamples, report: ImportReport) -> Imu
     accel, near = _interpolated(forces, imu.t_ns)
     if near[lacking].sum() + (~lacking).sum() < MEASURED.least_forces * len(imu):
         report.warn(
-            f"the accelerometer has {len(forces)} samples in {len(imu)} of the gyroscope, with "
-            "holes: it counts as not measured, the map is leveled by its floor"
+            FindingKind.ACCELEROMETER_SPARSE, samples=len(forces), gyroscope_samples=len(imu)
         )
         return ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(accel, np.nan))
     missing = lacking & ~near
@@ -113,8 +141,10 @@ def with_forces(imu: ImuSamples, alone: ImuSamples, report: ImportReport) -> Imu
     report.count("imu_accel_missing", int(np.count_nonzero(missing)))
     if missing.any():
         report.warn(
-            f"{np.count_nonzero(missing)} of {len(imu)} samples of the IMU have no acceleration, "
-            f"first {1e-9 * int(imu.t_ns[missing][0] - imu.t_ns[0]):.1f} s after its start: dropped"
+            FindingKind.ACCELERATIONS_MISSING,
+            missing=int(np.count_nonzero(missing)),
+            samples=len(imu),
+            first_s=1e-9 * int(imu.t_ns[missing][0] - imu.t_ns[0]),
         )
     accel = np.where(lacking[:, None], accel, imu.accel_m_s2)
     return ImuSamples(*(v[~missing] for v in _columns(replace(imu, accel_m_s2=accel))))
@@ -137,20 +167,18 @@ def _interpolated(forces: ImuSamples, t_ns: NDArray[np.int64]) -> tuple[Array, R
     return np.stack(axes, axis=1), near
 
 
-def _measured(values: Array, least: int) -> tuple[Array, str]:
+def _measured(values: Array, least: int) -> tuple[Array, Unmeasured | None]:
     """The values, all NaN if they were not measured, and why."""
     nothing = np.full_like(values, np.nan)
     finite = values[np.isfinite(values).all(axis=1)]
     if not len(finite):
-        return nothing, "it has no values, or is declared as not measured"
+        return nothing, Unmeasured("absent")
     constant = [axis for axis, column in zip("xyz", finite.T, strict=True) if not np.ptp(column)]
     if len(finite) < least or not constant:
-        return values, ""
+        return values, None
     if _is_zero(finite):
-        return nothing, "all its values are 0"
-    axes = " and ".join(", ".join(constant).rsplit(", ", 1))
-    s, change = ("", "changes") if len(constant) == 1 else ("s", "change")
-    return nothing, f"its value{s} along {axes} never {change} in {len(finite)} samples"
+        return nothing, Unmeasured("zero")
+    return nothing, Unmeasured("constant", ", ".join(constant), len(finite))
 
 
 def _without_free_fall(accel: Array) -> Array:

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.geometry.se3 import Array, so3_exp
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED
 from recon4.model.samples import ImuSamples
 from recon4.recording.report import ImportReport
@@ -18,6 +19,9 @@ GyroUnit = Literal["auto", "rad_s", "deg_s"]
 
 _ACCEL_UNITS = {"g": STANDARD_GRAVITY_M_S2, "mg": 1e-3 * STANDARD_GRAVITY_M_S2, "cm/s²": 1e-2}
 """Units in which sensors state accelerations, and their m/s²."""
+
+
+_FAST = "IMU: a tenth of its angular rates is above {:.1f}"
 
 
 def in_rad_s(imu: ImuSamples, unit: GyroUnit, report: ImportReport) -> ImuSamples | None:
@@ -37,20 +41,18 @@ def in_rad_s(imu: ImuSamples, unit: GyroUnit, report: ImportReport) -> ImuSample
     by_gravity = "" if unit == "deg_s" else _by_vertical(imu)
     if by_gravity == "rad_s":
         return imu
-    text = f"IMU: a tenth of its angular rates is above {high:.1f}"
     if unit == "auto" and high > np.rad2deg(IMU_UNITS.fastest_rad_s):
-        report.warn(
-            f"{text}, too much for rad/s and for deg/s: they are in another unit, the IMU is not "
-            "used"
-        )
+        report.warn(FindingKind.GYROSCOPE_UNIT, high=high)
         return None
     if unit == "auto" and high <= IMU_UNITS.fastest_rad_s and not by_gravity:
         # The LiDARs decide: `recon4.findings.witnesses.imu` names it if they do not agree.
         report.count(GYRO_UNIT_ASSUMED, len(imu))
-        report.derive(f"{text}: taken as rad/s ({np.rad2deg(high):.0f} deg/s)")
+        report.derive(f"{_FAST.format(high)}: taken as rad/s ({np.rad2deg(high):.0f} deg/s)")
         return imu
     report.count("imu_gyro_scaled", len(imu))
-    found = f"; against it: ingest.imu_gyro_unit=rad_s ({text})" if unit == "auto" else ""
+    found = (
+        f"; against it: ingest.imu_gyro_unit=rad_s ({_FAST.format(high)})" if unit == "auto" else ""
+    )
     report.derive(f"IMU: angular rates are in deg/s, stored in rad/s{found}")
     return replace(imu, gyro_rad_s=np.deg2rad(imu.gyro_rad_s))
 
@@ -78,10 +80,7 @@ def in_m_s2(imu: ImuSamples, report: ImportReport) -> ImuSamples:
             report.count("imu_accel_scaled", len(accel))
             report.derive(f"accelerometer was in {unit} (median length {usual:.3g}), now in m/s²")
             return replace(imu, accel_m_s2=imu.accel_m_s2 * scale)
-    report.warn(
-        f"accelerometer: median length {usual:.3g}, expected about 9.8 m/s² (gravity included): it "
-        "counts as not measured, the map is leveled by its floor"
-    )
+    report.warn(FindingKind.ACCELEROMETER_UNIT, usual=usual)
     return replace(imu, accel_m_s2=np.full_like(imu.accel_m_s2, np.nan))
 
 

@@ -111,7 +111,7 @@ def _read_all(path: Path, open_file: OpenFile) -> tuple[Reading, float]:
                 pass
     for _ in assembler.flush():
         pass
-    return Reading(items, salvaged=report.outcome != "complete" or bool(report.warnings)), total
+    return Reading(items, salvaged=report.outcome != "complete" or bool(report.findings)), total
 
 
 def _capture(path: Path) -> Reading:

@@ -146,7 +146,7 @@ def _read_metadata(path: Path) -> Reading:
     sound = payloads[packets.sound(payloads)]
     shots = packets.decode(packets.stamps_ns(sound), sound)
     assert np.isfinite(shots.xyz).all()
-    return Reading(len(shots), salvaged=bool(report.warnings or report.derived))
+    return Reading(len(shots), salvaged=bool(report.findings or report.derived))
 
 
 def _metadata_seeds() -> tuple[bytes, ...]:

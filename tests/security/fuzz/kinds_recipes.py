@@ -35,7 +35,7 @@ def _read(path: Path) -> Reading:
     rig = parse_rig(describe(path).first_rig, where="first rig")
     recording = open_recording(OpenRequest((path,), rig, IngestSettings(), report))
     items = sum(len(item) for item in recording.read() if isinstance(item, Shots))
-    return Reading(items, salvaged=report.outcome != "complete" or bool(report.warnings))
+    return Reading(items, salvaged=report.outcome != "complete" or bool(report.findings))
 
 
 RECIPE_KINDS = (

@@ -38,7 +38,7 @@ class ReadResult:
     outcome: str
     """``complete``, ``lossy`` or ``nothing``, as in the import report."""
     counts: dict[str, int]
-    warnings: tuple[str, ...]
+    said: tuple[str, ...]
     items: int
     """Shots, samples and poses."""
 
@@ -62,7 +62,7 @@ def read_recording(path: Path) -> ReadResult:
                 pass
     for _ in assembler.flush():
         pass
-    return ReadResult(report.outcome, dict(report.counts), tuple(report.warnings), items)
+    return ReadResult(report.outcome, dict(report.counts), tuple(report.said()), items)
 
 
 read_pcap = read_pcapng = read_bag1 = read_db3 = read_mcap = read_recording

@@ -1,11 +1,14 @@
 """Events, status and the queue on disk."""
 
+import json
 import sqlite3
 
 import pytest
 
 from recon4.errors import Cancelled
-from recon4.model.events import NodesPlaced, RunStarted, StageChanged
+from recon4.model.events import NodesPlaced, Remarked, RunStarted, StageChanged
+from recon4.model.finding_kinds import FindingKind
+from recon4.recording.report import warning
 from recon4_app.errors import Conflict, IllegalTransition, NotFound
 from recon4_app.jobs.events import EventWriter, event_of, read_events
 from recon4_app.jobs.folder import JobFolder
@@ -139,6 +142,17 @@ def test_events_are_read_as_they_come_and_a_line_cut_by_a_kill_is_skipped(tmp_pa
     assert [event.kind for event in events] == ["run", "nodes"]
     assert half == []
     assert [event.kind for event in rest] == ["run"]
+
+
+def test_a_warning_of_a_reader_is_a_record_in_the_events_and_words_in_the_log(tmp_path, caplog):
+    caplog.set_level("INFO")
+    writer = EventWriter(tmp_path)
+    writer.event(Remarked(finding=warning(FindingKind.RATE_UNFIT, requested_hz=7, rotation_hz=10)))
+    writer.close()
+
+    kept = json.loads((tmp_path / "events.jsonl").read_text().splitlines()[-1])
+    assert (kept["kind"], kept["finding"]["kind"]) == ("remark", "RATE-UNFIT")
+    assert "warning rate_hz = 7 does not fit the rotation of 10 Hz" in caplog.text
 
 
 def test_a_run_stops_once_asked(tmp_path):

@@ -5,8 +5,10 @@ import pytest
 from recon4.live.findings import findings, rates
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import DiskState, FileState, RecentFrames
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import count_text, wording
 from recon4.model.rig import load_rig, parse_rig
+from recon4.recording.report import warning
 from tests import live_messages
 from tests.live_messages import fix, notes, pose, sender
 
@@ -233,9 +235,10 @@ def test_live_and_finished_runs_say_a_loss_in_the_same_words(name):
 
 
 def test_a_clock_that_runs_freely_is_reported():
-    text = "horizontal: its clock is +5.000 s off the recorder's and no GPS drives it"
+    free = warning(FindingKind.CLOCK_FREE, sensor="horizontal", ahead_s=5.0)
 
-    assert found_in(notes=notes(warnings=[text])) == [("warning", text)]
+    ((level, text),) = found_in(notes=notes(findings=[free]))
+    assert level == "warning" and text.startswith("horizontal: its clock is +5.000 s off")
 
 
 @pytest.mark.parametrize(

@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 from recon4.cli.main import app
 from recon4.errors import ConfigError, StoreError
 from recon4.export.findings import export_findings, findings_file
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.wording import said, text_of
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.store.project import read_artifacts
 from recon4.store.seal import changing
 from tests.project_builder import build_project, loop_walk, write_summary

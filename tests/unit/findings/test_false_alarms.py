@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from recon4.findings.audit import check_walk
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.wording import text_of
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import ImuChoice, OdometryFigures
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict, known_history
 from recon4.settings import preset

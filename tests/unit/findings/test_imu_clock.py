@@ -5,11 +5,11 @@ from dataclasses import replace
 import pytest
 
 from recon4.findings.audit import check_walk
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import WalkRecord
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import ImuFault, OdometryFigures
 from recon4.model.usability import Usability
 from recon4.settings import preset

@@ -2,11 +2,11 @@
 
 import pytest
 
-from recon4.findings.finding import Finding
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.placing import Gnss
 from recon4.findings.wording import text_of
 from recon4.model.figures import FrameFigures, LevelFigures
+from recon4.model.finding import Finding
 
 FRAMES = FrameFigures(multiframes=10, points=1, rig="backpack", imu=True, gnss=True)
 

@@ -2,11 +2,11 @@
 
 import pytest
 
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.witnesses.rig import agreement
 from recon4.findings.wording import catalog, text_of
 from recon4.model.calibration_figures import CalibrationOutcome, GnssOutcome, RigOutcome
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 
 OBSERVED = ("consistent", "consistent", "not observable")
 

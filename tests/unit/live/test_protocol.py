@@ -12,6 +12,8 @@ from recon4.live.ipc.messages import gaps_message, plan_message, points_message
 from recon4.live.newest_messages import Newest
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import Coverage
+from recon4.model.finding_kinds import FindingKind
+from recon4.recording.report import warning
 from tests import live_messages
 
 
@@ -41,7 +43,9 @@ MESSAGES = [
     gaps_message(coverage()),
     protocol.Loop(near=True, closed=False),
     live_messages.fix(sd_m=[0.1, 0.1, 0.2]),
-    live_messages.notes(warnings=["slow"], counts={"packets": 9}),
+    live_messages.notes(
+        findings=[warning(FindingKind.CLOCK_FREE, sensor="a", ahead_s=1.5)], counts={"packets": 9}
+    ),
     protocol.Done(frames=3, problem=""),
 ]
 REQUESTS = [

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.placement import placement_in
 from recon4.findings.walk import WalkRecord
 from recon4.findings.wording import text_of
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rejected_fixes import RejectedRun, disputed_m
 from recon4.settings import preset
 from tests.said import found_in

@@ -16,6 +16,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, spin
+from tests.warned import K, warned
 
 SETTINGS = IngestSettings(min_range_m=0.5)
 
@@ -101,7 +102,7 @@ def test_a_rate_that_splits_revolutions_is_said():
     )
 
     assert len(frames) == 15
-    assert any("no whole revolutions" in text for text in report.warnings)
+    assert warned(report, K.RATE_UNFIT)
 
 
 def test_frames_are_given_out_while_reading():

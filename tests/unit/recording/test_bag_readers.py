@@ -23,6 +23,7 @@ from recon4.recording.report import ImportReport
 from tests.builders import bag_path, storage_file, write_room_bag
 from tests.security.fuzz.seeds_recordings import SEEDS
 from tests.security.mcap_bombs import mcap, mcap_message
+from tests.warned import K, warned
 
 
 def ours(path, report=None):
@@ -88,7 +89,7 @@ def test_a_damaged_chunk_costs_its_messages_only(tmp_path):
     assert set(left) <= set(before)
     assert report.outcome == "lossy"
     assert report.counts["chunks_damaged"] == 1
-    assert "bytes when decompressed, got" in report.warnings[0]
+    assert warned(report, K.CHUNK_LEFT_OUT, error="bytes when decompressed, got")
 
 
 def test_a_changed_byte_in_a_chunk_with_a_checksum_is_noticed(tmp_path):
@@ -119,7 +120,7 @@ def test_a_directory_that_counts_more_messages_than_there_are_is_said(tmp_path):
 
     assert report.outcome == "lossy"
     assert report.counts["messages_missing"] == 9999 - count
-    assert f"expected 9999 messages as in metadata.yaml, got {count}" in report.warnings[0]
+    assert warned(report, K.MESSAGES_MISSING, expected=9999, found=count)
 
 
 def test_a_summary_that_counts_more_messages_than_the_chunks_hold_is_said(tmp_path):
@@ -234,9 +235,9 @@ def test_remarks_without_end_are_counted_not_kept():
     report = ImportReport()
 
     for k in range(LIMITS.texts + 1000):
-        report.warn(f"message {k} is damaged")
+        report.warn(K.MESSAGES_DAMAGED, row=k)
 
-    assert len(report.warnings) == LIMITS.texts
+    assert len(report.findings) == LIMITS.texts
     assert report.counts["remarks_more"] == 1000
 
 

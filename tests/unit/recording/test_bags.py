@@ -16,6 +16,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud, room_packets, storage_file, write_room_bag
 from tests.builders import Bag as BagFile
+from tests.warned import K, warned
 
 KINDS = ("bag1", "db3", "mcap")
 
@@ -73,7 +74,7 @@ def test_a_folder_without_its_description_is_read_file_by_file(rooms, tmp_path):
     report = ImportReport()
 
     assert len(messages(folder, report)) == len(messages(rooms["db3"]))
-    assert any("one by one" in text for text in report.warnings)
+    assert warned(report, K.FOLDER_DESCRIPTION)
 
 
 def test_messages_of_several_files_come_in_order_of_time(tmp_path):
@@ -143,7 +144,7 @@ def test_a_cut_recording_still_becomes_points(rooms, tmp_path):
     points = sum(len(s) for s in of(items, Shots))
     assert 0.4 < points / sum(len(s) for s in of(read(rooms["bag1"])[0], Shots)) < 0.7
     assert report.outcome == "lossy"
-    assert sum("salvaged" in text for text in report.warnings) == 1
+    assert sum("messages" in one.values for one in report.findings) == 1
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -262,4 +263,4 @@ def test_a_missing_second_sensor_is_said(tmp_path):
     items, report, _ = read(path, load_rig("4recon"))
 
     assert {s.sensor for s in of(items, Shots)} == {0}
-    assert any("vertical of the rig is not in the recording" in t for t in report.warnings)
+    assert warned(report, K.SENSOR_NOT_RECORDED, sensor="vertical")

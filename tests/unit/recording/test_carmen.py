@@ -16,6 +16,7 @@ from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.report import ImportReport
 from tests.laser_rows import angles_of, rows_of
 from tests.planar_walks import carmen_lines, furnished_room, scanned, write_carmen
+from tests.warned import K, kinds, warned
 
 HEAD = "PARAM robot_frontlaser_offset 0.0 nohost 0\n"
 
@@ -49,7 +50,7 @@ def test_a_log_is_read_as_it_was_written(tmp_path, walk):
     np.testing.assert_allclose(angles_of(scans), angles_of(walk.scans), atol=1e-6)
     np.testing.assert_allclose(scans.odometry, walk.scans.odometry, atol=1e-6)
     assert report.outcome == "complete"
-    assert report.warnings == []
+    assert report.findings == []
 
 
 @pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
@@ -78,7 +79,7 @@ def test_a_compressed_log_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path, wa
     else:
         assert 0 < len(found.t_ns) < 1200
     assert report.outcome == "lossy"
-    assert "cut off" in " ".join(report.warnings)
+    assert warned(report, K.FILE_SALVAGED)
 
 
 @pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
@@ -93,7 +94,7 @@ def test_all_streams_of_a_compressed_log_are_read(tmp_path, walk, pack):
     padded, also = read(tmp_path / "padded")
 
     assert len(whole) == len(padded) == 30
-    assert report.warnings == also.warnings == []
+    assert report.findings == also.findings == []
 
 
 @pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
@@ -105,7 +106,7 @@ def test_what_follows_the_compressed_data_is_reported(tmp_path, walk, pack):
 
     assert len(scans) == 30
     assert report.outcome == "lossy"
-    assert "not compressed: not read" in " ".join(report.warnings)
+    assert warned(report, K.FILE_REST_UNREAD)
 
 
 def test_a_flaser_of_180_beams_begins_at_minus_90_degrees(tmp_path):
@@ -134,7 +135,7 @@ def test_scans_out_of_order_and_duplicates_are_repaired_and_counted(tmp_path):
     assert rows_of(scans)[:, 0].tolist() == [1.0, 2.0, 5.0, 4.0, 6.0]
     assert report.counts["scans_duplicate"] == 1
     assert report.counts["scans_unsorted"] == 1
-    assert len(report.warnings) == 1
+    assert kinds(report) == [K.SCANS_UNSORTED]
 
 
 def test_damaged_lines_are_left_out_and_the_first_is_named(tmp_path):
@@ -145,7 +146,7 @@ def test_damaged_lines_are_left_out_and_the_first_is_named(tmp_path):
 
     assert len(scans) == 2
     assert report.counts["scans_damaged"] == 4
-    assert "line 3" in report.warnings[0]
+    assert warned(report, K.SCAN_LEFT_OUT, line=3)
     assert report.outcome == "lossy"
 
 
@@ -168,7 +169,7 @@ def test_numbers_that_are_no_ranges_are_counted(tmp_path):
     assert report.counts["ranges_not_numbers"] == 2
 
 
-@pytest.mark.parametrize(("factor", "unit"), [(100.0, "centimeters"), (1000.0, "millimeters")])
+@pytest.mark.parametrize(("factor", "unit"), [(100.0, "cm"), (1000.0, "mm")])
 def test_other_units_are_converted_and_said(tmp_path, walk, factor, unit):
     large = replace(
         walk.scans, range_m=walk.scans.range_m * np.float32(factor), range_max_m=20.0 * factor
@@ -178,7 +179,7 @@ def test_other_units_are_converted_and_said(tmp_path, walk, factor, unit):
     scans, report = read(tmp_path / "walk.log")
 
     np.testing.assert_allclose(scans.range_m, walk.scans.range_m, atol=1e-3)
-    assert unit in " ".join(report.warnings)
+    assert warned(report, K.RANGE_UNIT, unit=unit)
     assert report.counts["scans_converted"] == len(scans)
 
 

@@ -52,7 +52,7 @@ def test_clouds_without_a_usable_point_are_said_with_extent_and_remedy(
 
     assert remedy in str(caught.value)
     assert remedy in text
-    assert "no usable points" in text
+    assert "No usable points" in text
 
 
 @pytest.mark.parametrize("as_bag", [False, True], ids=["folder", "bag"])
@@ -71,10 +71,10 @@ def test_info_says_that_clouds_are_empty(tmp_path):
 
     text = "\n".join(describe(written(tmp_path / "walk", empty, as_bag=False)).lines())
 
-    assert "no usable points" in text
+    assert "No usable points" in text
 
 
 def test_clouds_of_a_room_are_not_accused(tmp_path):
     text = "\n".join(describe(written(tmp_path / "walk", room_cloud(), as_bag=True)).lines())
 
-    assert "farther" not in text and "no usable" not in text
+    assert "farther" not in text and "No usable" not in text

@@ -10,6 +10,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, spin
 from tests.unit.recording.packet_builders import sensor
+from tests.warned import K, warned
 
 PERIOD_NS = 100_000_000
 
@@ -64,7 +65,7 @@ def test_time_is_worked_out_from_azimuth_in_firing_order():
     shots, report = decode(without(room_cloud(start_turn=0.3), "time"))
 
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=1e6)
-    assert any("firing order" in text for text in report.warnings)
+    assert warned(report, K.POINTS_TIMED_BY_AZIMUTH, order="firing")
 
 
 def test_time_is_worked_out_from_azimuth_ring_by_ring():
@@ -73,7 +74,7 @@ def test_time_is_worked_out_from_azimuth_ring_by_ring():
 
     shots, report = decode({key: column[order] for key, column in table.items()})
 
-    assert any("from the rear" in text for text in report.warnings)
+    assert warned(report, K.POINTS_TIMED_BY_AZIMUTH, order="from-rear")
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=1e6)
     quarter = np.searchsorted(shots.t_ns - T0_NS, 26_000_000)
     assert shots.xyz[quarter, 1] > 2.9  # clockwise from the rear: the left side comes first
@@ -223,7 +224,7 @@ def test_a_cloud_without_points_does_not_accuse_the_times_of_the_others(value):
     shots, report = decode(table)
 
     assert len(shots) == 0
-    assert report.warnings == []
+    assert report.findings == []
     assert report.counts["points_invalid"] == len(table["x"])
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from recon4.errors import CorruptFile
 from recon4.evaluation.evaluate import evaluate
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
 from recon4.recording.formats.columns import read_columns
 from recon4.recording.formats.poses import read_tum
@@ -140,7 +141,9 @@ def test_a_damaged_time_of_a_file_is_taken_from_its_neighbors(tmp_path, text, ro
 
     np.testing.assert_allclose(times.t_ns / 1e9, 100.0 + 0.1 * np.arange(ROWS), atol=1e-6)
     assert times.source == "times.txt"
-    assert f"1 of 100 times are damaged, the first is times.txt: time {row + 1}" in times.remark
+    (found,) = times.findings
+    assert found.kind is FindingKind.TIMES_DAMAGED
+    assert found.values == {"name": "times.txt", "first": row + 1, "damaged": 1, "times": ROWS}
 
 
 def test_a_file_of_times_with_many_damaged_ones_is_not_used(tmp_path):

@@ -8,6 +8,7 @@ from recon4.recording.frame_times import name_time_ns, read_times
 from recon4.recording.info import describe
 from tests.builders import T0_NS, room_cloud, write_bin, write_pcd, write_ply
 from tests.unit.recording.ingested import frame_folder, run
+from tests.warned import K, kinds, warned
 
 
 @pytest.mark.parametrize("write", [write_pcd, write_ply, write_bin], ids=["pcd", "ply", "bin"])
@@ -22,7 +23,7 @@ def test_a_folder_of_frames_is_one_frame_a_file(tmp_path, write):
 
     assert [len(f) for f in store] == [1280, 1440, 1600]
     assert store.index["t_ns"].tolist() == [0, 100_000_000, 200_000_000]
-    assert any("10 Hz from 0 is assumed" in text for text in store.report["warnings"])
+    assert warned(store.report, K.FRAMES_UNTIMED, rate_hz=10.0)
 
 
 def test_a_folder_with_one_frame_works(tmp_path):
@@ -52,7 +53,7 @@ def test_one_damaged_file_is_left_out_and_counted(tmp_path):
     assert len(store) == 2
     assert store.report["outcome"] == "lossy"
     assert store.report["counts"]["files_corrupt"] == 1
-    assert any("2.pcd: cut" in text for text in store.report["warnings"])
+    assert warned(store.report, K.FILE_LEFT_OUT, error="2.pcd: cut")
 
 
 def test_only_damaged_files_are_an_error(tmp_path):
@@ -127,25 +128,25 @@ def test_kitti_raw_timestamps_lie_beside_the_folder_of_the_frames(tmp_path):
     store = run(folder, out=tmp_path / "o")
 
     assert store.index["t_ns"].tolist() == [1317042145951199337, 1317042146054870000]
-    assert not any("assumed" in text for text in store.report["warnings"])
+    assert not warned(store.report, K.FRAMES_UNTIMED)
 
 
 @pytest.mark.parametrize(
-    ("lines", "remark"),
+    ("lines", "kind", "values"),
     [
-        ("0.0\n0.1\n0.2\n", "times.txt has 3 times for 2 files, not used"),
-        ("0.1\n0.1\n", "times.txt: time 2 is not later than the one before, not used"),
+        ("0.0\n0.1\n0.2\n", K.TIMES_NUMBER, {"times": 3, "files": 2}),
+        ("0.1\n0.1\n", K.TIMES_UNSORTED, {"first": 2, "damaged": 1, "times": 2}),
     ],
 )
-def test_times_that_do_not_fit_are_named_before_10_hz_are_assumed(tmp_path, lines, remark):
+def test_times_that_do_not_fit_are_named_before_10_hz_are_assumed(tmp_path, lines, kind, values):
     folder = frame_folder(tmp_path / "f", ["0.pcd", "1.pcd"])
     (folder / "times.txt").write_text(lines)
 
-    warnings = run(folder, out=tmp_path / "o").report["warnings"]
+    report = run(folder, out=tmp_path / "o").report
 
-    assert remark in warnings
-    assert any("10 Hz from 0 is assumed" in text for text in warnings)
-    assert remark in describe(folder).warnings
+    assert warned(report, kind, **values)
+    assert warned(report, K.FRAMES_UNTIMED, rate_hz=10.0)
+    assert warned(describe(folder), kind, **values)
 
 
 def test_deskewed_clouds_have_no_motion_inside(tmp_path):
@@ -159,8 +160,8 @@ def test_deskewed_clouds_have_no_motion_inside(tmp_path):
 
     assert plain[0].dt_ns.max() > 50_000_000
     assert deskewed[0].dt_ns.max() == 0
-    assert any("ingest.deskewed" in text for text in plain.report["warnings"])
-    assert not any("ingest.deskewed" in text for text in deskewed.report["warnings"])
+    assert K.POINTS_TIMED_BY_AZIMUTH in kinds(plain.report)
+    assert K.POINTS_TIMED_BY_AZIMUTH not in kinds(deskewed.report)
 
 
 def test_names_are_sorted_by_their_numbers(tmp_path):
@@ -174,7 +175,6 @@ def test_names_of_several_sensors_in_one_folder_are_a_warning(tmp_path):
     mixed = [f"{n}-{clock}{k}{m}4.pcd" for k in (1, 2, 3) for m, n in enumerate(("left", "top"))]
     one = [f"left-{clock}{k}14.pcd" for k in (1, 2, 3)]
 
-    found = describe(frame_folder(tmp_path / "mixed", mixed)).warnings
-    assert "begin in 2 ways ('left', 'top'), as of several sensors" in "\n".join(found)
-    found = describe(frame_folder(tmp_path / "one", one)).warnings
-    assert "as of several sensors" not in "\n".join(found)
+    found = describe(frame_folder(tmp_path / "mixed", mixed))
+    assert warned(found, K.FRAMES_MIXED, ways=2, some="'left', 'top'")
+    assert not warned(describe(frame_folder(tmp_path / "one", one)), K.FRAMES_MIXED)

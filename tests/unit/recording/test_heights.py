@@ -10,6 +10,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv
 from recon4.recording.samples.datagrams import SampleDecoder
 from recon4.recording.samples.heights import compare_heights, height_of_gga
+from tests.warned import K
 
 SEPARATION_M = 44.2
 
@@ -76,9 +77,9 @@ def test_a_file_above_sea_level_is_told_by_the_heights_in_the_recording():
 
     compare_heights(fixes(294.2 - SEPARATION_M, rate_hz=10), recorded, report)
 
-    (text,) = report.warnings
-    assert "lie 44" in text and "below those in the recording" in text
-    assert "geoid_separation_m of 44" in text
+    (found,) = report.findings
+    assert (found.kind, found.values["side"]) == (K.HEIGHTS_DIFFER, "below")
+    assert found.values["separation_m"] == pytest.approx(SEPARATION_M, abs=1.0)
 
 
 @pytest.mark.parametrize(
@@ -91,4 +92,4 @@ def test_other_differences_are_not_taken_for_a_geoid(height_m):
 
     compare_heights(fixes(height_m, rate_hz=10), fixes(294.2, rate_hz=1, count=20), report)
 
-    assert not report.warnings
+    assert not report.findings

@@ -19,6 +19,7 @@ from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.unit.recording.hesai_mirrors import mirror_table
 from tests.unit.recording.hesai_packets import WIDE, packet_sensor, table_of
 from tests.unit.recording.test_hesai_packets import decoded_with, spin
+from tests.warned import K, warned
 
 XT32 = MODELS["XT32"]
 
@@ -45,14 +46,14 @@ def test_the_table_with_as_many_rows_beside_the_recording_is_used():
 
     assert elevation == pytest.approx(-15.8, abs=1e-3)
     assert report.derived == ["lidar: angles of its beams from correction.csv"]
-    assert not report.warnings
+    assert not report.findings
 
 
 def test_a_table_of_another_model_with_as_many_channels_is_not_taken():
     elevation, report = height_of_lowest(table_of(MODELS["XT32M2X"].angles, "XT32.csv"))
 
     assert elevation == pytest.approx(-16.0, abs=1e-3)
-    assert "typical XT32" in report.warnings[0]
+    assert warned(report, K.ANGLES_TYPICAL, model="XT32")
 
 
 @pytest.mark.parametrize(("name", "expected"), [("left", -15.9), ("right", -16.1)])
@@ -71,8 +72,8 @@ def test_without_a_table_or_with_two_that_fit_a_typical_unit_stands_in_and_is_a_
     _, none = height_of_lowest()
     _, two = height_of_lowest(table_of(XT32.angles, "a.csv"), table_of(XT32.angles, "b.csv"))
 
-    assert "no correction file with 32 rows" in none.warnings[0]
-    assert "a.csv, b.csv fit: give the one of this sensor the name of the sensor" in two.warnings[0]
+    assert warned(none, K.ANGLES_TYPICAL, absent=True, rows=32)
+    assert warned(two, K.ANGLES_TYPICAL, fitting="a.csv, b.csv")
 
 
 @pytest.mark.parametrize(
@@ -90,7 +91,9 @@ def test_a_damaged_row_is_named_and_the_table_not_used(row, why):
 
     _, report = height_of_lowest(damaged)
 
-    assert report.warnings[0].startswith(f"bad.csv: not used as a table of angles: {why}")
+    assert report.findings[0].kind is K.ANGLES_UNREADABLE
+    assert report.findings[0].values["name"] == "bad.csv"
+    assert report.findings[0].values["error"].startswith(why)
 
 
 def test_tables_are_told_from_other_files_beside_a_recording():

@@ -13,6 +13,7 @@ from recon4.recording.packets.hesai.models import MODELS, RETURNS
 from recon4.settings import IngestSettings
 from tests.unit.recording.hesai_mirrors import mirror_table, mirrored
 from tests.unit.recording.hesai_packets import datagrams, packet_sensor, table_of
+from tests.warned import K, warned
 
 T0_US = 1_700_000_000_000_000
 NEEDS_TABLE = ("Pandar128", "AT128")
@@ -309,7 +310,7 @@ def test_packets_of_another_model_of_the_same_shape_are_a_warning():
 
     HESAI.open(sensor)
 
-    assert any("those of a XT32M2X; decoded as XT32" in text for text in sensor.report.warnings)
+    assert warned(sensor.report, K.MODEL_CONTRADICTED, says="XT32M2X", model="XT32")
 
 
 @pytest.mark.parametrize("name", NEEDS_TABLE)

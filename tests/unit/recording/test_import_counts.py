@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 import recon4
+from recon4.findings.wording import whole_text
 from recon4.model.count_words import COUNT_WORDINGS, CountKind
 from recon4.model.import_counts import count_text, losses, wording
 from recon4.recording.report import ImportReport
+from tests.warned import K, findings_of, kinds
 
 ROOT = Path(recon4.__file__).parent
 
@@ -77,7 +79,8 @@ def test_large_losses_are_warnings_and_small_ones_are_listed():
     report.count("packets_late", 99)
     report.count("packets_wrong_flag", 100)
     report.warn_of_losses()
-    assert len(report.warnings) == 1 and "100 of 10000" in report.warnings[0]
+    assert kinds(report) == [K.DATA_LOST]
+    assert "100 of 10000 data packets: " in whole_text(findings_of(report)[0])
     assert len(report.lost()) == 2
 
 
@@ -86,7 +89,7 @@ def test_what_the_reader_itself_says_is_not_repeated():
     report.count("messages", 10)
     report.count("messages_corrupt", 5)
     report.warn_of_losses()
-    assert not report.warnings and "5 of 10 messages" in report.lost()[0]
+    assert not report.findings and "5 of 10 messages" in report.lost()[0]
 
 
 def test_good_recordings_are_not_accused():
@@ -97,7 +100,7 @@ def test_good_recordings_are_not_accused():
     report.count("records_not_udp", 50)
     report.count("nmea_no_fix", 50)
     report.warn_of_losses()
-    assert not report.warnings and not report.lost() and not report.repaired()
+    assert not report.findings and not report.lost() and not report.repaired()
 
 
 def test_counts_of_one_sensor_name_it():

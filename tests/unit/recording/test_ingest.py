@@ -8,13 +8,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
-from recon4.model.events import Warned
+from recon4.model.events import Remarked
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from tests.builders import T0_NS, room_cloud, write_pcd, write_room_bag, write_room_pcap
 from tests.unit.recording.ingested import frame_folder, imu_csv, run
+from tests.warned import K, warned
 
 # -- from recording to frame store
 
@@ -95,7 +96,7 @@ def test_a_missing_second_sensor_is_counted(pcap, tmp_path):
     store = run(pcap, out=tmp_path / "o", rig=load_rig("4recon"))
 
     assert store.report["counts"]["frames_without_vertical"] == 10
-    assert any("vertical" in text for text in store.report["warnings"])
+    assert warned(store.report, K.PACKETS_MISSING, sensor="vertical")
 
 
 def test_progress_and_warnings_are_reported(pcap, tmp_path):
@@ -109,7 +110,7 @@ def test_progress_and_warnings_are_reported(pcap, tmp_path):
     run(pcap, out=tmp_path / "o", rig=load_rig("4recon"), progress=watch)
 
     assert started[0] == ("frames", 10, "multiframe")
-    assert any(isinstance(event, Warned) for event in watch.events)
+    assert any(isinstance(event, Remarked) for event in watch.events)
 
 
 def test_the_same_input_gives_the_same_bytes(pcap, tmp_path):
@@ -243,4 +244,4 @@ def test_the_report_is_json(pcap, tmp_path):
     run(pcap, out=tmp_path / "o")
 
     report = json.loads((tmp_path / "o" / "report.json").read_text("utf-8"))
-    assert {"kind", "outcome", "sensors", "counts", "gaps", "derived", "warnings"} <= set(report)
+    assert {"kind", "outcome", "sensors", "counts", "gaps", "derived", "findings"} <= set(report)

@@ -28,6 +28,7 @@ from tests.planar_walks import (
     scanned_in,
 )
 from tests.scan_captures import write_capture
+from tests.warned import K, warned
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +46,7 @@ def test_ranges_in_millimeters_below_a_limit_in_meters_are_converted(tmp_path, s
     read = read_laser2d([tmp_path / "bag"], report)
 
     assert np.nanmax(np.abs(read.range_m - scans.range_m)) < 1e-3
-    assert any("taken as millimeters" in text for text in report.warnings)
+    assert warned(report, K.RANGE_UNIT, unit="mm")
 
 
 def test_the_scans_of_a_bag_are_read(tmp_path, scans):
@@ -188,7 +189,7 @@ def test_a_scan_without_ranges_is_counted_and_the_others_are_read():
 
     assert found.beams.tolist() == [3, 1]
     assert report.counts["scans_damaged"] == 1
-    assert "expected 1 to 100000 ranges, got 0" in report.warnings[0]
+    assert warned(report, K.SCAN_LEFT_OUT, error="expected 1 to 100000 ranges, got 0")
 
 
 def test_the_step_counts_where_the_last_angle_contradicts_it():
@@ -262,4 +263,4 @@ def test_a_step_that_puts_all_beams_into_one_direction_is_refused(step_rad):
 
     assert len(found) == 1
     assert report.counts["scans_damaged"] == 1
-    assert "expected a first angle and a step between beams" in report.warnings[0]
+    assert warned(report, K.SCAN_LEFT_OUT, error="expected a first angle and a step between beams")

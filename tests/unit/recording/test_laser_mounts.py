@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Level
 from recon4.geometry.se2 import between, compose, from_se3
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import MOUNT_DOUBTS
 from recon4.model.rig import Rig, Sensor
 from recon4.model.usability import Usability
 from recon4.pipeline import process
@@ -22,6 +23,7 @@ from recon4.slam2d.stage import import_scans
 from tests.builders import T0_NS, bag_path
 from tests.planar_walks import cast, furnished_room
 from tests.robot_bags import RobotBag, mount
+from tests.warned import K, kinds, warned, words
 
 ANGLES = np.deg2rad(np.linspace(-130.0, 140.0, 181))
 STEP_NS = 100_000_000
@@ -63,7 +65,7 @@ def mounted(path, by_rig=None):
 
 
 def said(report):
-    return " | ".join([*report.derived, *report.warnings])
+    return " | ".join([*report.derived, words(report)])
 
 
 def assert_on_walls(scans, lasers):
@@ -94,7 +96,7 @@ def test_scans_and_odometry_are_those_of_the_laser_seen_from_above(tmp_path, nam
     assert_on_walls(found.scans, lasers)
     np.testing.assert_allclose(found.scans.odometry, lasers, atol=1e-6)
     assert ("upside down" in said(report)) == (MOUNTS[name].R[2, 2] < 0)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_info_says_how_the_laser_is_mounted(tmp_path):
@@ -113,7 +115,7 @@ def test_without_transforms_nothing_is_turned_or_accused(tmp_path):
 
     assert_on_walls(found.scans, lasers)
     np.testing.assert_allclose(found.scans.odometry, ROBOT, atol=1e-6)
-    assert report.warnings == [] and "tf" not in said(report)
+    assert report.findings == [] and "tf" not in said(report)
     assert "the odometry is taken as its own" in said(report)
 
 
@@ -124,7 +126,7 @@ def test_a_frame_that_the_transforms_do_not_know_is_said(tmp_path):
 
     assert found.mount is None
     assert "do not say how its frame laser_frame is mounted" in said(report)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def joint_bag(folder, kind, *transforms):
@@ -153,7 +155,7 @@ def test_a_mount_that_only_tf_repeats_is_read(tmp_path, kind):
 
     assert found.mount is not None and found.mount.is_upside_down
     assert "the laser is upside down" in said(report)
-    assert report.doubts == []
+    assert MOUNT_DOUBTS.isdisjoint(kinds(report))
 
 
 @pytest.mark.parametrize("tf", ["directly", "by a part between"])
@@ -168,8 +170,9 @@ def test_a_laser_that_tilts_on_a_joint_is_doubted(tmp_path, tf):
 
     _, report = mounted(path)
 
-    assert f"a joint that moves: base_link -> {laser} tilts by up to 40° (/tf)" in report.doubts[0]
-    assert report.doubts == report.warnings
+    assert kinds(report) == [K.LASER_ON_JOINT]
+    assert warned(report, K.LASER_ON_JOINT, parent="base_link", child=laser, source="/tf")
+    assert report.findings[0].values["tilt_rad"] == pytest.approx(np.deg2rad(40.0), abs=0.01)
 
 
 @pytest.mark.parametrize(
@@ -184,7 +187,7 @@ def test_a_laser_that_tilts_on_a_joint_is_doubted(tmp_path, tf):
 def test_a_joint_that_keeps_the_laser_level_is_not_accused(tmp_path, parent, moved):
     path = joint_bag(tmp_path, "bag1", (parent, "laser", moved))
 
-    assert mounted(path)[1].warnings == []
+    assert mounted(path)[1].findings == []
 
 
 def test_a_robot_that_tilts_as_a_whole_is_no_joint(tmp_path):
@@ -195,7 +198,7 @@ def test_a_robot_that_tilts_as_a_whole_is_no_joint(tmp_path):
         ("base_link", "laser", lambda k: mount(z=0.3)),
     )
 
-    assert mounted(path)[1].warnings == []
+    assert mounted(path)[1].findings == []
 
 
 def test_odometry_of_another_frame_of_the_robot_is_moved_from_there(tmp_path):
@@ -213,14 +216,14 @@ def test_a_tilted_laser_is_announced(tmp_path, pitch):
     found, report = mounted(path)
 
     assert found.tilt_deg == pytest.approx(20.0)
-    assert "the laser is tilted by 20°" in report.doubts[0]
-    assert report.doubts == report.warnings
+    assert kinds(report) == [K.LASER_TILTED]
+    assert warned(report, K.LASER_TILTED, tilt_rad=float(np.deg2rad(20.0)))
 
 
 def test_a_laser_that_leans_a_little_is_not_accused(tmp_path):
     path, _ = walk_bag(tmp_path, mount(roll=2.0), odometry=False)
 
-    assert mounted(path)[1].warnings == []
+    assert mounted(path)[1].findings == []
 
 
 def test_a_rig_file_wins_over_the_transforms_and_the_contradiction_is_said(tmp_path):
@@ -231,9 +234,9 @@ def test_a_rig_file_wins_over_the_transforms_and_the_contradiction_is_said(tmp_p
 
     np.testing.assert_allclose(found.scans.points(0)[:, 1], -agreeing.scans.points(0)[:, 1])
     assert_on_walls(agreeing.scans, lasers)
-    assert quiet.warnings == []
-    (text,) = report.doubts
-    assert "contradict each other about the laser" in text and "180°" in text
+    assert quiet.findings == []
+    assert warned(report, K.LASER_CONTRADICTED, angle_rad=np.pi)
+    text = words(report)
     assert "roll 180.0" in text and "yaw 30.0" in text
 
 
@@ -244,7 +247,7 @@ def test_a_rig_file_mounts_the_laser_of_a_bag_without_transforms(tmp_path):
 
     assert_on_walls(found.scans, lasers)
     np.testing.assert_allclose(found.scans.odometry, lasers, atol=1e-6)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_odometry_that_turns_against_the_stated_mount_is_a_contradiction(tmp_path):
@@ -261,7 +264,7 @@ def test_odometry_that_turns_against_the_stated_mount_is_a_contradiction(tmp_pat
     )
 
     assert figures.mirrored and figures.mount.startswith("the rig file: ")
-    assert figures.doubts == figures.warnings == ()
+    assert figures.doubts == ()
 
 
 @pytest.mark.parametrize("name", ["rolled by 180", "backward"])
@@ -294,7 +297,7 @@ def test_a_plan_by_a_steep_laser_is_not_to_be_used(tmp_path):
     summary = process(Sources((path,)), tmp_path / "map")
 
     assert summary.verdict.usability is Usability.DO_NOT_USE
-    assert "tilted by 80°" in summary.verdict.reasons[0]
+    assert "tilted by 80.0°" in summary.verdict.reasons[0]
 
 
 def rig_of(T_body_laser):

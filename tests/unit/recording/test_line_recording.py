@@ -22,6 +22,7 @@ from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
 from tests.laser_rows import rows_of, with_times
 from tests.robot_bags import mount
+from tests.warned import K, findings_of, kinds, warned
 
 START_NS = 1_700_000_000_000_000_000
 LINE_NS = 10_000_000
@@ -124,7 +125,7 @@ def test_a_missing_2d_laser_is_a_warning(tmp_path):
     store = read(tmp_path / "bag", tmp_path / "out")
 
     assert load_laser_scans(tmp_path / "out") is None
-    assert any("laser2d" in text for text in store.report["warnings"])
+    assert K.SENSOR_NOT_RECORDED in kinds(store.report)
 
 
 @pytest.mark.parametrize("roll_deg", [0.0, 180.0])
@@ -141,10 +142,10 @@ def test_transforms_that_contradict_the_rig_are_named(tmp_path, roll_deg):
     rig, report = open_with_report(tmp_path / "bag")
 
     assert rig.name == "wuerzburg"
-    assert len(report.warnings) == (roll_deg > 0)
+    assert len(report.findings) == (roll_deg > 0)
     if roll_deg:
-        assert "mount of IMU relative to laser2d" in report.warnings[0]
-        assert "180.0°" in report.warnings[0]
+        pair = {"part": "IMU", "other": "laser2d"}
+        assert warned(report, K.MOUNT_CONTRADICTED, angle_rad=np.pi, **pair)
 
 
 def write_transform(bag, parent, child, T):
@@ -189,7 +190,7 @@ def test_lines_that_are_lost_are_counted_and_said(tmp_path):
     store = read(tmp_path / "bag", tmp_path / "out")
 
     assert store.report["counts"]["lines_missing"] == 30
-    assert "profiler: 10% of the line scans are missing, 30 of 300" in store.report["warnings"]
+    assert warned(store.report, K.LINES_MISSING, sensor="profiler", missing=30, lines=300)
 
 
 def test_lines_without_any_return_are_not_lost(tmp_path):
@@ -203,7 +204,7 @@ def test_lines_without_any_return_are_not_lost(tmp_path):
     assert "lines_missing" not in store.report["counts"]
 
 
-@pytest.mark.parametrize(("factor", "unit"), [(100.0, "centimeters"), (1000.0, "millimeters")])
+@pytest.mark.parametrize(("factor", "unit"), [(100.0, "cm"), (1000.0, "mm")])
 def test_ranges_in_another_unit_are_converted_and_said(tmp_path, factor, unit):
     lines, scans = line_scans(300), line_scans(290, range_m=3.0)
     in_unit = [
@@ -218,8 +219,8 @@ def test_ranges_in_another_unit_are_converted_and_said(tmp_path, factor, unit):
     assert np.allclose(load_laser_scans(tmp_path / "out").range_m, 3.0, atol=1e-3)
     assert store.report["counts"]["lines_converted"] == 300
     assert store.report["counts"]["scans_converted"] == 290
-    warnings = [text for text in store.report["warnings"] if f"taken as {unit}" in text]
-    assert len(warnings) == 2
+    units = [one for one in findings_of(store.report) if one.kind is K.RANGE_UNIT]
+    assert [one.values["unit"] for one in units] == [unit, unit]
 
 
 def test_a_bag_without_line_scans_is_refused(tmp_path):

@@ -244,7 +244,7 @@ def test_models_are_told_apart_by_their_rate_and_their_view(name, data_type, vie
     payloads = encode_points(t_ns, shots, layout=layout, model=model)
     found = LIVOX.recognize(datagrams(payloads), ())
 
-    assert (found.kind, found.model, found.remarks) == ("data", name, ())
+    assert (found.kind, found.model, found.findings) == ("data", name, ())
     assert found.packet_s == pytest.approx(layout.shots / model.shots_hz)
 
 

@@ -18,6 +18,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.lvx_files import lvx
 from tests.unit.recording.test_livox_packets import AVIA, MID360, opened, packets, walls
+from tests.warned import K, kinds, warned
 
 VERSIONS = {(1, 0): AVIA, (1, 1): AVIA, (2, 0): MID360}
 
@@ -110,7 +111,7 @@ def test_a_file_that_ends_in_a_frame_is_read_to_its_last_packet(version, tmp_pat
 
     assert sum(map(len, read(path, report))) == 58
     assert report.outcome == "lossy" and report.counts["files_cut"] == 1
-    assert "ends inside a frame" in report.warnings[0]
+    assert kinds(report) == [K.FILE_SALVAGED]
 
 
 def test_a_frame_that_is_elsewhere_than_it_says_ends_the_reading(tmp_path):
@@ -122,7 +123,7 @@ def test_a_frame_that_is_elsewhere_than_it_says_ends_the_reading(tmp_path):
     report = ImportReport()
 
     assert sum(map(len, read(path, report))) == 20
-    assert f"the frame at byte {second}" in report.warnings[0]
+    assert warned(report, K.FRAME_LENGTH, at=second)
 
 
 def test_damaged_packages_and_unknown_devices_are_counted(tmp_path):
@@ -168,7 +169,7 @@ def test_a_file_opens_as_a_recording_with_points_and_imu(tmp_path):
     assert sum(map(len, samples)) == 20
     np.testing.assert_array_equal(np.concatenate([s.t_ns for s in samples]), t_ns[::10])
     assert min(s.t_ns[0] for s in shots if len(s)) == t_ns[0]
-    assert not report.warnings and "CRC" not in str(report.derived)
+    assert not report.findings and "CRC" not in str(report.derived)
     assert "Mid-360" in "\n".join(describe(path).lines())
 
 

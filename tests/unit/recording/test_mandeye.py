@@ -25,6 +25,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, write_pcd, write_room_pcap
+from tests.warned import K, warned
 
 POINT_NS, PARTS, RATE_HZ = 200_000, 3, 50
 G = 9.80665
@@ -118,7 +119,7 @@ def test_what_was_written_is_read_again(walk):
     np.testing.assert_allclose(gyro, imu.gyro_rad_s, atol=1e-7)
     np.testing.assert_allclose(accel, imu.accel_m_s2, atol=1e-7)
     assert report.counts["files"] == PARTS
-    assert not report.lost() and not report.warnings
+    assert not report.lost() and not report.findings
 
 
 def test_the_files_are_those_of_the_devices(walk):
@@ -176,7 +177,7 @@ def test_one_lidar_needs_no_rig(tmp_path):
 
     assert [s.model for s in recording.rig.sensors] == ["Mid-360"]
     assert recording.rig.imu_sensor == "" and sum(map(len, recording.read())) > 0
-    assert not report.warnings
+    assert not report.findings
 
 
 def test_a_rig_finds_its_lidars_by_their_serial_numbers(walk):
@@ -194,7 +195,7 @@ def test_a_last_file_that_is_damaged_is_left_out_and_counted(damage, copy):
     shots, _, report = read(copy)
 
     assert report.counts["files_corrupt"] == 1 and report.outcome == "lossy"
-    assert "lidar0002.laz" in report.warnings[0]
+    assert warned(report, K.FILE_LEFT_OUT, error="lidar0002.laz")
     assert joined(shots, "t_ns").max() < T0_NS + 10 * 10**9
 
 
@@ -232,7 +233,7 @@ def test_serial_numbers_that_change_are_a_warning(copy):
     (copy / "lidar0001.sn").write_text("0 OTHER\n", "utf-8")
     _, _, report = read(copy)
 
-    assert any("LiDAR 0 is OTHER, 47MDL1 in the files before" in text for text in report.warnings)
+    assert warned(report, K.SERIALS_CHANGE, lidar="0", serial="OTHER", before="47MDL1")
 
 
 def test_points_without_a_time_are_dropped_and_counted(copy):

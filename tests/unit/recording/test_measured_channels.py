@@ -8,6 +8,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu
 from tests.builders import T0_NS, Bag, bag_path, noisy, room_packets
 from tests.unit.recording.ingested import run
+from tests.warned import K, kinds, warned
 
 STEP_NS = 5_000_000
 NAN = np.full(3, np.nan)
@@ -63,7 +64,7 @@ def test_an_accelerometer_that_does_not_measure_is_said_and_the_gyroscope_used(l
     assert len(kept) == len(imu)
     assert np.isnan(kept.accel_m_s2).all()
     assert np.array_equal(kept.gyro_rad_s, imu.gyro_rad_s)
-    assert any("no accelerometer" in text and "floor" in text for text in report.warnings)
+    assert warned(report, K.ACCELEROMETER_MISSING)
 
 
 @pytest.mark.parametrize("lack", LACKING)
@@ -74,7 +75,7 @@ def test_an_imu_whose_gyroscope_does_not_measure_is_not_used_and_said(lack):
     kept, report = cleaned(imu)
 
     assert kept is None
-    assert [text for text in report.warnings if "no gyroscope" in text]
+    assert warned(report, K.GYROSCOPE_MISSING)
 
 
 def test_an_imu_that_works_is_left_as_it_is():
@@ -83,7 +84,7 @@ def test_an_imu_that_works_is_left_as_it_is():
     kept, report = cleaned(imu)
 
     assert np.array_equal(kept.accel_m_s2, imu.accel_m_s2)
-    assert report.warnings == []
+    assert report.findings == []
     assert report.counts == {"imu_kept": len(imu)}
 
 
@@ -94,7 +95,7 @@ def test_a_few_equal_samples_of_a_body_at_rest_are_measurements():
     kept, report = cleaned(still)
 
     assert np.isfinite(kept.accel_m_s2).all()
-    assert report.warnings == []
+    assert report.findings == []
 
 
 @pytest.mark.parametrize("scale", [0.02, 30.0, 1000.0], ids=["without gravity", "×30", "×1000"])
@@ -105,7 +106,7 @@ def test_accelerations_that_are_not_of_gravity_are_not_used(scale):
     kept, report = cleaned(imu)
 
     assert np.isnan(kept.accel_m_s2).all()
-    assert any("counts as not measured" in text for text in report.warnings)
+    assert kinds(report) == [K.ACCELEROMETER_UNIT]
 
 
 def test_motion_without_gravity_is_not_taken_for_accelerations_in_g():
@@ -142,7 +143,7 @@ def test_gyroscope_and_accelerometer_of_two_topics_are_joined():
     middle = (smooth[10] + smooth[11]) / 2
     assert kept.accel_m_s2[20] == pytest.approx(smooth[10])
     assert kept.accel_m_s2[21] == pytest.approx(middle)
-    assert report.warnings == []
+    assert report.findings == []
     assert "imu_nan" not in report.counts
 
 
@@ -157,7 +158,7 @@ def test_a_hole_of_the_accelerometer_is_a_gap_and_counted():
     assert np.isfinite(kept.accel_m_s2).all()
     assert report.counts["imu_accel_missing"] == 100
     assert report.counts["imu_accel_interpolated"] == 3
-    assert any("100 of 400 samples of the IMU have no acceleration" in t for t in report.warnings)
+    assert warned(report, K.ACCELERATIONS_MISSING, missing=100, samples=400)
 
 
 def test_an_accelerometer_that_sticks_in_motion_is_a_hole():
@@ -178,7 +179,7 @@ def test_an_accelerometer_that_mostly_fails_counts_as_not_measured():
 
     assert len(kept) == 400
     assert np.isnan(kept.accel_m_s2).all()
-    assert any("counts as not measured" in text for text in report.warnings)
+    assert kinds(report) == [K.ACCELEROMETER_SPARSE]
 
 
 # -- positions
@@ -203,7 +204,7 @@ def test_positions_that_work_are_left_as_they_are():
 
     assert len(kept) == 30
     assert np.isfinite(np.column_stack([kept.height_m, kept.sd_enu_m, kept.rpy_ned_rad])).all()
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_positions_at_zero_are_dropped_and_counted():
@@ -224,7 +225,7 @@ def test_a_position_that_never_changes_is_not_used_and_said():
 
     assert kept is None
     assert report.counts["gnss_constant"] == 30
-    assert any("the position of all 30 GNSS fixes is the same" in text for text in report.warnings)
+    assert warned(report, K.GNSS_CONSTANT, fixes=30)
 
 
 def test_heights_deviations_and_attitudes_of_zero_are_not_measured():
@@ -237,7 +238,7 @@ def test_heights_deviations_and_attitudes_of_zero_are_not_measured():
 
     assert len(kept) == 30
     assert np.isnan(np.column_stack([kept.height_m, kept.sd_enu_m, kept.rpy_ned_rad])).all()
-    assert len(report.warnings) == 2
+    assert kinds(report) == [K.GNSS_HEIGHTS_ZERO, K.INS_CONSTANT]
 
 
 # -- from a bag to the store
@@ -245,12 +246,13 @@ def test_heights_deviations_and_attitudes_of_zero_are_not_measured():
 
 @pytest.mark.parametrize("kind", ["bag1", "mcap"])
 @pytest.mark.parametrize(
-    ("absent", "said"), [(("accel",), "no accelerometer"), (("gyro",), "no gyroscope")]
+    ("absent", "said"),
+    [(("accel",), K.ACCELEROMETER_MISSING), (("gyro",), K.GYROSCOPE_MISSING)],
 )
 def test_what_messages_declare_as_not_measured_is_not_used(tmp_path, kind, absent, said):
     store = run(write_bag(tmp_path, kind, absent=absent), out=tmp_path / "o")
 
-    assert any(said in text for text in store.report["warnings"])
+    assert warned(store.report, said, why="absent")
     if absent == ("accel",):
         assert np.isnan(store.imu.accel_m_s2).all()
         assert len(store.imu) == 220
@@ -264,9 +266,7 @@ def test_a_bag_with_accelerations_of_zero_has_no_accelerometer(tmp_path):
     store = run(path, out=tmp_path / "o")
 
     assert np.isnan(store.imu.accel_m_s2).all()
-    assert any(
-        "no accelerometer (all its values are 0)" in text for text in store.report["warnings"]
-    )
+    assert warned(store.report, K.ACCELEROMETER_MISSING, why="zero")
 
 
 def write_bag(folder, kind, *, absent=(), accel=lambda k: noisy([0.0, 0.0, 9.8], k)):

@@ -7,6 +7,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, noisy, room_cloud
 from tests.robot_bags import RobotBag, mount
+from tests.warned import K, warned
 
 
 def write(folder, *transforms):
@@ -40,4 +41,4 @@ def test_the_imu_whose_mount_is_stated_is_preferred_to_a_faster_one(tmp_path, is
     )
 
     assert found.imu_topic == ("/imu" if is_stated else "/camera/imu")
-    assert any("equally good" in text for text in report.warnings) is not is_stated
+    assert warned(report, K.TOPICS_EQUAL) is not is_stated

@@ -15,6 +15,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud
 from tests.robot_bags import RobotBag, mount, write_walk
+from tests.warned import K, kinds, warned, words
 
 IMU_MOUNT = mount(0.02, -0.03, 0.05, roll=180, yaw=90)
 OUSTER = (("os_sensor", "os_lidar", mount(z=0.036, yaw=180)), ("os_sensor", "os_imu", IMU_MOUNT))
@@ -26,7 +27,7 @@ def opened(path, rig=None):
 
 
 def said(report):
-    return " | ".join([*report.derived, *report.warnings])
+    return " | ".join([*report.derived, words(report)])
 
 
 def assert_mount(found, expected, **tolerance):
@@ -91,7 +92,7 @@ def test_the_mount_of_the_imu_comes_from_the_transforms(tmp_path, kind):
     assert_mount(rig.T_body_imu, OUSTER[0][2].inverse() @ IMU_MOUNT)
     assert_mount(rig.sensors[0].T_body_sensor, SE3.identity())
     assert "mount of the IMU from /tf_static: os_lidar -> os_imu xyz" in said(report)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_the_lever_arm_of_the_antenna_comes_from_the_transforms(tmp_path):
@@ -109,7 +110,7 @@ def test_without_transforms_nothing_is_changed_or_said(tmp_path):
     assert_mount(rig.T_body_imu, SE3.identity())
     assert not rig.p_body_antenna.any()
     assert "tf" not in said(report) and "mount" not in said(report)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_an_upside_down_lidar_has_the_axes_of_the_robot(tmp_path):
@@ -137,14 +138,14 @@ def test_a_placeholder_of_zeros_is_said_to_be_one(tmp_path):
 
     assert_mount(rig.T_body_imu, SE3.identity())
     assert "a placeholder?" in said(report)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_an_imu_that_is_too_far_away_is_not_used(tmp_path):
     rig, report = opened(write_walk(tmp_path, [("os_lidar", "imu", mount(50))], imu="imu"))
 
     assert_mount(rig.T_body_imu, SE3.identity())
-    assert "too far, not used" in report.warnings[0]
+    assert warned(report, K.MOUNT_FAR)
 
 
 def test_a_mount_stated_in_two_ways_is_a_warning(tmp_path):
@@ -153,7 +154,7 @@ def test_a_mount_stated_in_two_ways_is_a_warning(tmp_path):
     rig, report = opened(write_walk(tmp_path, twice, imu="imu"))
 
     assert_mount(rig.T_body_imu, mount(0.1, yaw=90))
-    assert "/tf_static contradicts itself" in report.warnings[0]
+    assert warned(report, K.MOUNT_DISPUTED, source="/tf_static")
 
 
 def test_a_second_parent_of_a_sensor_that_disagrees_is_a_warning(tmp_path):
@@ -161,7 +162,7 @@ def test_a_second_parent_of_a_sensor_that_disagrees_is_a_warning(tmp_path):
 
     _, report = opened(write_walk(tmp_path, robot, imu="imu"))
 
-    assert "contradict each other" in report.warnings[0]
+    assert warned(report, K.MOUNT_LOOP)
 
 
 def test_contradictions_elsewhere_on_the_robot_are_only_counted(tmp_path):
@@ -169,7 +170,7 @@ def test_contradictions_elsewhere_on_the_robot_are_only_counted(tmp_path):
 
     _, report = opened(write_walk(tmp_path, robot, imu="imu"))
 
-    assert report.warnings == []
+    assert report.findings == []
     assert report.counts["transforms_contradictory"] == 1
 
 
@@ -255,7 +256,7 @@ def test_a_rig_that_agrees_is_not_accused(tmp_path):
     rig, report = opened(path, rig_of(mount(0.11, yaw=90.5)))
 
     assert_mount(rig.T_body_imu, mount(0.11, yaw=90.5))
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_a_rig_that_contradicts_the_transforms_is_used_and_announced(tmp_path):
@@ -263,7 +264,8 @@ def test_a_rig_that_contradicts_the_transforms_is_used_and_announced(tmp_path):
     rig, report = opened(path, rig_of(mount(0.15)))
 
     assert_mount(rig.T_body_imu, mount(0.15))
-    (text,) = report.warnings
+    assert kinds(report) == [K.MOUNT_CONTRADICTED]
+    text = words(report)
     assert "IMU relative to front" in text
     assert "xyz 0.150 0.000 0.000 m, roll 0.0 pitch 0.0 yaw 0.0° in the rig" in text
     assert "yaw 90.0° in /tf_static of the bag (os_lidar -> imu)" in text
@@ -277,8 +279,8 @@ def test_lidars_are_compared_in_pairs_whatever_the_body_is(tmp_path):
     _, agreeing = opened(path, rig_of(T_body_other=mount(-0.5)))
     _, differing = opened(path, rig_of(T_body_other=mount(-0.5, roll=180)))
 
-    assert agreeing.warnings == []
-    assert "rear relative to front" in differing.warnings[0] and "180.0°" in differing.warnings[0]
+    assert agreeing.findings == []
+    assert warned(differing, K.MOUNT_CONTRADICTED, part="rear", other="front", angle_rad=np.pi)
 
 
 def test_a_calibrated_rig_may_differ_from_the_drawing(tmp_path):
@@ -286,9 +288,9 @@ def test_a_calibrated_rig_may_differ_from_the_drawing(tmp_path):
     calibrated = RigCalibration(date="2026-01-01", method="joint", sd_deg=0.1, sd_mm=3.0, sd_ms=0.1)
 
     _, report = opened(path, rig_of(mount(0.13, yaw=2), calibration=calibrated))
-    assert report.warnings == []
+    assert report.findings == []
     _, report = opened(path, rig_of(mount(0.13, yaw=5), calibration=calibrated))
-    assert len(report.warnings) == 1
+    assert kinds(report) == [K.MOUNT_CONTRADICTED]
 
 
 def test_a_placeholder_accuses_no_rig_file(tmp_path):
@@ -296,7 +298,7 @@ def test_a_placeholder_accuses_no_rig_file(tmp_path):
 
     _, report = opened(path, rig_of(mount(0.2, yaw=90)))
 
-    assert report.warnings == []
+    assert report.findings == []
     assert "a placeholder?" in said(report)
 
 
@@ -306,5 +308,5 @@ def test_the_antenna_is_compared_by_its_place_alone(tmp_path):
     _, same = opened(path, rig_of(p_body_antenna=np.array([0.0, 0.0, 0.4])))
     _, other = opened(path, rig_of(p_body_antenna=np.array([0.0, 0.0, 0.1])))
 
-    assert same.warnings == []
-    assert "GNSS antenna" in other.warnings[0] and "30.0 cm" in other.warnings[0]
+    assert same.findings == []
+    assert warned(other, K.MOUNT_CONTRADICTED, part="GNSS antenna", distance_m=0.3)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.model.finding_kinds import MOUNT_DOUBTS
 from recon4.model.rig import parse_rig
 from recon4.recording.clock_compare import clock_offset_s
 from recon4.recording.info import describe
@@ -16,6 +17,7 @@ from recon4.store.line_store import load_lines
 from tests.builders import ROOM_M, T0_NS, bag_path
 from tests.robot_bags import RobotBag, mount
 from tests.unit.recording.ingested import run
+from tests.warned import K, kinds, warned
 
 ANGLES = np.linspace(-2.0, 2.0, 81)
 SCANS, SCAN_NS = 60, 50_000_000
@@ -116,7 +118,7 @@ def test_shots_without_a_pose_of_the_joint_are_counted_and_left_out(tmp_path):
     assert left_out in (12, 13)
     assert len(points_of(store)) == (SCANS - left_out) * len(ANGLES)
     assert off_walls_m(points_of(store)).max() < 2e-3
-    assert any(f"{left_out} lines without an angle" in text for text in store.report["warnings"])
+    assert warned(store.report, K.LINES_WITHOUT_ANGLE, lines=left_out)
 
 
 def test_transforms_that_are_recorded_late_are_used_and_doubted(tmp_path):
@@ -124,7 +126,7 @@ def test_transforms_that_are_recorded_late_are_used_and_doubted(tmp_path):
 
     assert off_walls_m(points_of(store)).max() < 2e-3
     assert len(points_of(store)) == SCANS * len(ANGLES)
-    assert any("times of the joint" in text for text in store.report["warnings"])
+    assert warned(store.report, K.JOINT_CLOCK)
 
 
 @pytest.mark.parametrize(
@@ -210,4 +212,4 @@ def test_lags_of_a_joint_on_the_same_clock_say_nothing(tmp_path):
     list(recording.read())
 
     assert clock_offset_s("joint", report) == pytest.approx(0.0, abs=0.01)
-    assert report.doubts == []
+    assert MOUNT_DOUBTS.isdisjoint(kinds(report))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.ouster.data_packets import ring_of_beams
 from recon4.recording.packets.ouster.encode import encode_packets, metadata_json
@@ -171,7 +172,9 @@ def test_a_file_of_another_serial_number_is_named():
 
     fit = choose(_head(other), find_metadata([_named("a.json", one)]))
 
-    assert "a.json is of the sensor 111, but the packets are of 222" in fit.doubts[0]
+    (doubt,) = fit.doubts
+    assert doubt.kind is FindingKind.METADATA_ELSEWHERE
+    assert doubt.values == {"name": "a.json", "serial": "111", "packets": "222"}
 
 
 def test_without_serial_numbers_names_decide_or_nobody():

@@ -20,6 +20,7 @@ from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.ouster_packets import companion, datagrams_of, of_port, opened
+from tests.warned import K, warned
 
 T0_NS = 987_654_321_000
 profiles = pytest.mark.parametrize("profile", PROFILES)
@@ -197,7 +198,7 @@ def test_of_two_sensors_behind_one_address_the_one_of_the_rig_is_read():
     assert usual.tolist() == [True] * 4 + [False] * 3
     assert named.tolist() == [False] * 4 + [True] * 3
     assert report.counts["packets_of_another_sensor"] == 3
-    assert any("(222): those of 111 are read" in text for text in report.warnings)
+    assert warned(report, K.PACKETS_MIXED, others="222", read="111")
 
 
 def test_a_mode_that_was_changed_after_the_metadata_was_stored_is_seen():
@@ -212,9 +213,7 @@ def test_a_mode_that_was_changed_after_the_metadata_was_stored_is_seen():
 
     assert packets.packet_s == pytest.approx(16 / 512 / 10, rel=1e-3)
     np.testing.assert_array_equal(turned, (36000 * returns.number[:, 0] // 512 - 18000) % 36000)
-    assert any(
-        "says 2048 columns in a revolution, its packets have 512" in t for t in report.warnings
-    )
+    assert warned(report, K.METADATA_COLUMNS, stated=2048, columns=512)
 
 
 def test_every_size_of_packets_is_recognized_without_metadata():
@@ -225,7 +224,7 @@ def test_every_size_of_packets_is_recognized_without_metadata():
         found = OUSTER.recognize(head, ())
 
         assert (found.kind, found.model, found.size) == ("data", "Ouster", metadata.layout.size)
-        assert "put the metadata json" in found.remarks[0]
+        assert [one.kind for one in found.findings] == [K.METADATA_NEEDED]
 
 
 def test_an_even_motor_is_not_needed_for_the_step_of_columns():

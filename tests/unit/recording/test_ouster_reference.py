@@ -116,6 +116,6 @@ def test_samples_are_recognized_with_model_mode_and_rate(data, name):
 
     found = OUSTER.recognize(head, [companion(folder / f"{beside}.json")])
 
-    assert (found.kind, found.model, found.mode, found.remarks) == ("data", model, mode, ())
+    assert (found.kind, found.model, found.mode, found.findings) == ("data", model, mode, ())
     assert found.rotation_hz == pytest.approx(rotation_hz, rel=0.01)
     assert found.packet_s == pytest.approx(np.median(np.diff(head.t_ns)) / 1e9, rel=0.5)

@@ -11,6 +11,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.units import SECOND_NS
 from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
+from tests.warned import K, warned
 
 
 @pytest.fixture(scope="module")
@@ -196,7 +197,7 @@ def test_a_wrong_product_byte_does_not_change_the_points_but_is_reported(clean):
     shots, report = decode_all(t_ns, payloads)
 
     assert_same_points(shots, expected)
-    assert any("HDL-32E (0x21); decoded as VLP-16" in text for text in report.warnings)
+    assert warned(report, K.MODEL_CONTRADICTED, says="HDL-32E (0x21)", model="VLP-16")
 
 
 def test_a_model_that_the_firing_pattern_contradicts_is_warned_of(clean):
@@ -204,7 +205,7 @@ def test_a_model_that_the_firing_pattern_contradicts_is_warned_of(clean):
 
     _, report = decode_all(t_ns, payloads, model="HDL-32E")
 
-    assert any("is what a VLP-16 sends" in text for text in report.warnings)
+    assert warned(report, K.MODEL_UNLIKELY, likely="VLP-16")
 
 
 def test_the_order_gives_nothing_before_the_window_has_passed():

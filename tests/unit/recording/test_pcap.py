@@ -11,6 +11,7 @@ from recon4.recording.formats.pcap import is_pcap, read_pcap
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import spin
+from tests.warned import K, warned
 
 SECONDS, NANOSECONDS = 1_700_000_000, 123_456_789
 
@@ -134,7 +135,7 @@ def test_a_record_header_of_nonsense_ends_the_reading(tmp_path):
 
     assert sum(len(batch) for batch in batches) == 2
     assert report.outcome == "lossy"
-    assert "packet at byte 220: expected a length of 1 to 262144" in report.warnings[0]
+    assert warned(report, K.CAPTURE_SALVAGED, at=220, most=262144)
 
 
 @pytest.mark.parametrize("size", [0, 4, 23])

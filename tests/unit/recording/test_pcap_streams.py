@@ -13,6 +13,7 @@ from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import rig_to_complete
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, rig, sensor, spin
+from tests.warned import K, kinds, warned
 
 FIRST, SECOND = "192.168.1.201", "192.168.1.202"
 
@@ -81,7 +82,7 @@ def test_a_hi_res_puck_is_told_from_a_vlp16_by_its_product_byte(tmp_path):
 
     (stream,) = scan_pcap(path)
 
-    assert (stream.model, stream.remarks) == ("VLP-16 Hi-Res", ())
+    assert (stream.model, stream.findings) == ("VLP-16 Hi-Res", ())
 
 
 def test_the_firing_pattern_outweighs_a_wrong_product_byte(tmp_path):
@@ -94,7 +95,7 @@ def test_the_firing_pattern_outweighs_a_wrong_product_byte(tmp_path):
 
     assert stream.model == "VLP-16"
     assert points == {0: 200 * 384}
-    assert any("taken for a VLP-16" in text for text in report.warnings)
+    assert warned(report, K.MODEL_BY_INTERVAL, model="VLP-16")
 
 
 def test_only_the_head_of_a_long_file_is_scanned_and_its_end_estimated(tmp_path):
@@ -183,7 +184,7 @@ def test_a_missing_second_sensor_is_warned_of_and_the_first_is_read(tmp_path):
     _, points, _, report = read([path], rig(sensor("a"), sensor("b", port=2369)))
 
     assert points == {0: 30 * 384}
-    assert "b: no data packets from any address to port 2369" in report.warnings
+    assert warned(report, K.PACKETS_MISSING, sensor="b", anywhere=True, port=2369)
 
 
 def test_a_stream_without_a_place_in_the_rig_is_warned_of(tmp_path):
@@ -192,7 +193,7 @@ def test_a_stream_without_a_place_in_the_rig_is_warned_of(tmp_path):
     _, points, _, report = read([path], rig(sensor("a")))
 
     assert points == {0: 30 * 384}
-    assert any("the rig has no sensor for these packets" in text for text in report.warnings)
+    assert warned(report, K.PACKETS_UNASSIGNED)
 
 
 def test_packets_of_a_wrong_length_on_the_port_are_counted(tmp_path):
@@ -250,7 +251,7 @@ def test_both_sensors_are_on_one_clock_though_neither_has_gps(tmp_path):
 
     assert abs(firsts[0] - firsts[1]) < 10_000
     assert abs(firsts[0] - T0_NS) < LATENCY_NS
-    assert len([text for text in report.warnings if "no GPS drives it" in text]) == 2
+    assert kinds(report).count(K.CLOCK_FREE) == 2
 
 
 def late(t0_ns, count=300):
@@ -291,7 +292,7 @@ def test_a_few_packets_of_a_stranger_are_not_taken_for_a_silent_sensor(tmp_path)
     _, points, _, report = read([path], rig(sensor("a"), sensor("b", port=2369)))
 
     assert points == {0: 1000 * 384}
-    assert any("10.9.9.9" in text and "not read" in text for text in report.warnings)
+    assert warned(report, K.PACKETS_UNASSIGNED, sender="10.9.9.9")
 
 
 def test_a_rig_with_addresses_keeps_a_third_lidar_out(tmp_path):

@@ -10,6 +10,7 @@ from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud
 from tests.unit.recording.packet_builders import sensor
 from tests.unit.recording.test_cloud_points import REL_NS, decode, with_field
+from tests.warned import K, warned
 
 HOUR_NS = 3_600_000_000_000
 BOOT_NS = 5_321_200_000_000
@@ -42,7 +43,7 @@ def test_single_damaged_times_are_dropped_and_the_others_used(name, values, wron
     np.testing.assert_allclose(shots.t_ns - T0_NS, kept, atol=1500)
     assert report.counts["points_wrong_time"] == 3
     assert report.counts["clouds_wrong_times"] == 0
-    assert not report.warnings
+    assert not report.findings
 
 
 def test_many_damaged_times_are_a_field_that_is_not_used_with_numbers():
@@ -55,7 +56,7 @@ def test_many_damaged_times_are_a_field_that_is_not_used_with_numbers():
     number = len(REL_NS[::3])
     assert any(f"{number} of {len(REL_NS)} points of a cloud" in text for text in report.lost())
     report.warn_of_losses()
-    assert any("1 of 1 clouds: the times" in text for text in report.warnings)
+    assert warned(report, K.DATA_LOST, number=1, total=1)
     assert number / len(REL_NS) > LOSSES.warned_ratio
 
 
@@ -73,7 +74,7 @@ def test_times_since_power_on_are_those_of_stamps_since_power_on(values):
     shots, report = decode(with_field("timestamp", values), t_ns=BOOT_NS)
 
     np.testing.assert_allclose(shots.t_ns - BOOT_NS, REL_NS, atol=3000)
-    assert not report.lost() and not report.warnings
+    assert not report.lost() and not report.findings
     assert not any("clock" in text for text in report.derived)
 
 
@@ -207,5 +208,5 @@ def test_times_of_a_part_of_a_revolution_are_in_the_unit_that_fits_it(
         shots = decoder.decode(table, t_ns=T0_NS + stamp_ns, period_ns=PART_NS)
 
         np.testing.assert_allclose(shots.t_ns - T0_NS, np.sort(since_ns), atol=5000)
-    assert report.warnings == []
+    assert report.findings == []
     assert not report.counts["clouds_wrong_times"]

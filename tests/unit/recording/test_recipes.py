@@ -22,6 +22,7 @@ from tests.unit.recording.point_bags import (
     structures,
     write_points,
 )
+from tests.warned import K, warned
 
 STRUCTURES = """std_msgs/Header header
 uint64 timebase
@@ -125,7 +126,7 @@ def test_points_of_a_message_are_those_that_its_recipe_says(name, kind, tmp_path
     np.testing.assert_allclose(found.t_ns - T0_NS, expected - T0_NS, atol=1100)
     np.testing.assert_array_equal(found.ring, ROOM["ring"][known])
     assert (found.intensity == 40).all()
-    assert not report.warnings and not report.counts["clouds_wrong_times"]
+    assert not report.findings and not report.counts["clouds_wrong_times"]
 
 
 @pytest.mark.parametrize("name", MADE)
@@ -232,9 +233,9 @@ def test_points_that_are_mirrored_are_a_warning(tmp_path):
     path = write_points(tmp_path, "mcap", definition, fill)
 
     _, _, report = read(path, rig=with_fields(text.replace("x=x,y=y", "x=y,y=x")))
-    assert any("mirrored" in text for text in report.warnings)
+    assert warned(report, K.POINTS_TURN_LEFT)
     _, _, report = read(path, rig=with_fields(text.replace("y=y", "y=-y")))
-    assert any("mirrored" in text for text in report.warnings)
+    assert warned(report, K.POINTS_TURN_LEFT)
 
 
 @pytest.mark.parametrize(

@@ -102,8 +102,8 @@ def test_info_of_good_samples_says_nothing_of_them(tmp_path):
 @pytest.mark.parametrize(
     ("scales", "said"),
     [
-        ((1.0, 0.0), "the IMU has no accelerometer (all its values are 0)"),
-        ((0.0, 1.0), "the IMU has no gyroscope (all its values are 0)"),
+        ((1.0, 0.0), "The IMU has no accelerometer (all its values are 0)"),
+        ((0.0, 1.0), "The IMU has no gyroscope (all its values are 0)"),
         ((57.3, 1.0), "100 of 100 IMU samples: angular rates in deg/s, stored in rad/s"),
         ((1.0, 3.0), "expected about 9.8 m/s²"),
         ((1.0, 1 / 9.81), "100 of 100 IMU samples: accelerations in another unit"),
@@ -116,9 +116,9 @@ def test_info_says_what_of_an_imu_will_not_be_used(tmp_path, scales, said):
 @pytest.mark.parametrize(
     ("fix", "status", "said"),
     [
-        ((np.nan, np.nan, np.nan), -1, "no usable GNSS position: of 10, 10 say that they are no"),
+        ((np.nan, np.nan, np.nan), -1, "No usable GNSS position of 10: 10 say that they are no"),
         ((np.nan, np.nan, np.nan), 0, "10 of 10 GNSS positions: no place on earth, dropped"),
-        ((50.0, 14.0, 300.0), -1, "no usable GNSS position: of 10, 10 say that they are no"),
+        ((50.0, 14.0, 300.0), -1, "No usable GNSS position of 10: 10 say that they are no"),
     ],
 )
 def test_info_says_that_no_position_can_be_used(tmp_path, fix, status, said):

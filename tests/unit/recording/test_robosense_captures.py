@@ -30,7 +30,7 @@ def test_a_capture_reads_angles_from_the_device_packets_at_another_port(tmp_path
     assert [s.model for s in capture.rig.sensors] == ["Ruby Plus"]
     assert sum(map(len, shots)) == 400 * 3 * 128
     assert any("device packets (DIFOP)" in text for text in report.derived)
-    assert not report.warnings
+    assert not report.findings
 
 
 def test_a_capture_reads_angles_from_a_file_beside_it(tmp_path):

@@ -23,6 +23,7 @@ from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, WIDE, sensor
+from tests.warned import K, kinds
 
 HZ = 10.0
 
@@ -201,15 +202,15 @@ def test_device_packets_overrule_a_file_and_a_file_the_factory():
         x, y = shots.xyz[0, :2] - [model.along_m, 0]
         return np.rad2deg(np.arctan2(-y, x)), report
 
-    factory, warned = first_azimuth()
+    factory, typical = first_azimuth()
     by_file, _ = first_azimuth(companions=[other, file])
     by_device, right = first_azimuth(companions=[file], beside=datagrams(mine))
 
     assert factory == pytest.approx(-4.07, abs=0.01)
     assert by_file == pytest.approx(-3.07, abs=0.01)
     assert by_device == pytest.approx(-2.07, abs=0.01)
-    assert "0.1° off" in warned.warnings[0]
-    assert not right.warnings
+    assert kinds(typical) == [K.ANGLES_TYPICAL]
+    assert not right.findings
 
 
 def test_a_device_packet_among_the_data_is_read_and_no_fault():
@@ -355,7 +356,7 @@ def test_an_airy_of_another_number_of_lines_is_refused_by_name():
     found = ROBOSENSE.recognize(datagrams(payloads), ())
 
     assert found.kind == "other"
-    assert "48 or 192 lines" in found.remarks[0]
+    assert "48 or 192 lines" in found.refused
 
 
 def test_a_revolution_of_packets_is_no_message_that_is_too_large():

@@ -105,7 +105,7 @@ def test_the_device_packet_tells_that_it_is_a_helios_5515_on_a_level_floor(data,
     assert not device.dual
     assert (found.model, found.kind) == ("Helios 5515", "data")
     assert found.packet_s == pytest.approx(0.000667, rel=0.01)
-    assert not result.report.warnings
+    assert not result.report.findings
     # It stands on a roof 0.68 m below: each of the rings from -55° to -22° sees it there.
     on_roof = np.abs(shots.xyz[:, 2] + 0.675) < 0.025
     assert np.bincount(shots.ring[on_roof], minlength=32)[:12].min() > 300

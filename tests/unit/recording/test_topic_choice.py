@@ -22,6 +22,7 @@ from tests.unit.recording.topic_bags import (
     scan,
     write,
 )
+from tests.warned import K, warned
 
 
 def opened(path, rig=None, **settings):
@@ -47,7 +48,7 @@ def test_an_imu_is_preferred_to_the_faster_gyroscope_of_a_camera(tmp_path, kind)
 
     assert found.imu_topic == "/imu/data"
     assert any("/camera/gyro/sample (no accelerometer)" in text for text in report.derived)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 LESSER = {
@@ -80,7 +81,7 @@ def test_the_imu_of_the_lidar_is_preferred_to_a_faster_one(tmp_path):
     found, report = opened(path)
 
     assert found.imu_topic == "/ouster/imu"
-    assert report.warnings == []
+    assert report.findings == []
     assert any("/zed/imu (by frame and name not the IMU of" in text for text in report.derived)
 
 
@@ -89,9 +90,10 @@ def test_a_choice_between_equals_is_a_warning_that_names_the_setting(tmp_path):
 
     _, report = opened(path)
 
-    (text,) = report.warnings
-    assert "equally good; ingest.imu_topic or topic of [imu] in a rig file" in text
-    assert "/right/imu (as good):" in text
+    (found,) = report.findings
+    assert found.kind is K.TOPICS_EQUAL
+    assert (found.values["setting"], found.values["table"]) == ("ingest.imu_topic", "imu")
+    assert "/right/imu" in found.values["rivals"]
 
 
 def test_raw_and_filtered_samples_of_one_imu_are_no_warning(tmp_path):
@@ -100,7 +102,7 @@ def test_raw_and_filtered_samples_of_one_imu_are_no_warning(tmp_path):
     found, report = opened(path)
 
     assert found.imu_topic == "/imu/data"
-    assert report.warnings == []
+    assert report.findings == []
     assert any("not /imu/data_raw" in text for text in report.derived)
 
 
@@ -118,7 +120,7 @@ def test_gyroscope_and_accelerometer_of_two_topics_are_one_imu(tmp_path):
     assert len(store.imu) >= 395
     assert np.isfinite(store.imu.accel_m_s2).all()
     assert store.imu.accel_m_s2[:, 2] == pytest.approx(9.81, abs=0.01)
-    assert not any("no accelerometer" in text for text in store.report["warnings"])
+    assert not warned(store.report, K.ACCELEROMETER_MISSING)
 
 
 def test_a_setting_names_the_imu(tmp_path):
@@ -143,7 +145,7 @@ def test_a_rig_file_names_the_imu_and_the_positions(tmp_path):
     found, report = opened(path, rig)
 
     assert (found.imu_topic, found.fix_topic) == ("/a", "/x")
-    assert report.warnings == []
+    assert report.findings == []
     again = parse_rig(format_rig(rig), where="r")
     assert (again.imu_topic, again.gnss_topic) == ("/a", "/x")
     assert opened(path, rig, imu_topic="/b")[0].imu_topic == "/b"
@@ -156,7 +158,7 @@ def test_an_imu_that_the_rig_names_and_the_bag_lacks_is_not_replaced(tmp_path):
     found, report = opened(path, parse_rig(text, where="r"))
 
     assert found.imu_topic == ""
-    assert any("/z of [imu]" in text and "which has /a" in text for text in report.warnings)
+    assert warned(report, K.TOPIC_NOT_RECORDED, topic="/z", table="imu", there="/a")
 
 
 def test_rigs_without_topics_are_written_as_before():
@@ -205,7 +207,7 @@ def test_poses_that_never_change_are_not_chosen(tmp_path):
     found, report = opened(path)
 
     assert found.odometry_topic == "/b"
-    assert report.warnings == []
+    assert report.findings == []
     assert opened(path, odometry_topic="/a")[0].odometry_topic == "/a"
 
 
@@ -266,7 +268,7 @@ def test_the_only_cloud_as_measured_is_the_lidar_and_the_others_are_named(tmp_pa
         "/cloud_registered_body (in the frame of the robot, body",
     ):
         assert words in text
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_info_says_the_same(tmp_path):

@@ -51,7 +51,7 @@ def test_static_transforms_of_every_kind_of_bag_are_read(tmp_path, kind):
     frames, report = frames_of(path)
 
     assert_mount(frames.T_a_b("base_link", "lidar"), mount(0.1, roll=180))
-    assert report.warnings == [] and report.derived == []
+    assert report.findings == [] and report.derived == []
 
 
 def test_transforms_of_early_ros_1_and_slashes_before_names_are_read(tmp_path):

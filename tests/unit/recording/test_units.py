@@ -7,6 +7,7 @@ from recon4.geometry.se3 import so3_exp
 from recon4.model.samples import ImuSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_imu
+from tests.warned import K, kinds, warned, words
 
 RATE_HZ = 100
 GRAVITY = np.array([0.0, 0.0, 9.81])
@@ -41,7 +42,7 @@ def test_rates_in_degrees_are_recognized_converted_and_said(fastest_deg_s):
     np.testing.assert_allclose(found.gyro_rad_s, imu.gyro_rad_s)
     assert report.counts["imu_gyro_scaled"] == len(imu)
     assert "are in deg/s, stored in rad/s" in report.derived[0]
-    assert report.warnings == []
+    assert report.findings == []
 
 
 @pytest.mark.parametrize("fastest_rad_s", [0.05, 1.0, 5.0, 15.0])
@@ -51,14 +52,14 @@ def test_rates_in_radians_are_left_and_not_accused(fastest_rad_s):
     found, report = cleaned(imu)
 
     np.testing.assert_array_equal(found.gyro_rad_s, imu.gyro_rad_s)
-    assert (report.warnings, report.derived) == ([], [])
+    assert (report.findings, report.derived) == ([], [])
 
 
 def test_where_nothing_decides_the_unit_is_assumed_and_counted():
     found, report = cleaned(swaying(6.0, axis=(0.0, 0.0, 1.0)))
 
     assert report.counts["imu_gyro_assumed"] == len(found)
-    assert "taken as rad/s" in report.derived[0] and not report.warnings
+    assert "taken as rad/s" in report.derived[0] and not report.findings
     assert float(np.abs(found.gyro_rad_s).max()) > 5.0
 
 
@@ -70,14 +71,14 @@ def test_the_setting_counts(unit):
 
     scale = 1.0 if unit == "rad_s" else np.deg2rad(1.0)
     np.testing.assert_allclose(found.gyro_rad_s, scale * imu.gyro_rad_s)
-    assert report.warnings == []
+    assert report.findings == []
 
 
 def test_rates_in_no_known_unit_are_not_used_and_the_map_goes_on():
     found, report = cleaned(swaying(30_000.0, axis=(0.0, 0.0, 1.0)))
 
     assert found is None
-    assert "in another unit, the IMU is not used" in report.warnings[0]
+    assert kinds(report) == [K.GYROSCOPE_UNIT]
 
 
 @pytest.mark.parametrize(("unit", "scale"), [("g", 1 / 9.80665), ("mg", 1e3 / 9.80665)])
@@ -97,4 +98,5 @@ def test_accelerations_without_a_gyroscope_are_said_not_to_level():
     found, report = cleaned(ImuSamples(imu.t_ns, np.zeros_like(imu.gyro_rad_s), imu.accel_m_s2))
 
     assert found is None
-    assert "Its accelerations alone are not used either" in report.warnings[0]
+    assert warned(report, K.GYROSCOPE_MISSING, why="zero", forces=True)
+    assert "Its accelerations alone are not used either" in words(report)

@@ -37,6 +37,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import rig_to_complete
 from recon4.recording.samples.clean import join
 from tests.unit.recording.packet_builders import WIDE, rig, sensor
+from tests.warned import K, warned
 
 PCD_VLP16 = np.dtype(
     [
@@ -257,7 +258,7 @@ def test_the_recordings_of_veloview_are_read_with_what_they_say(data):
     assert report.counts["packets"] == 1902
     assert not [name for name in report.counts if name.startswith("packets_")]
     assert recording.rotation_hz["pucks"] == pytest.approx(19.98, abs=0.01)
-    assert any("HDL-32E (0x21); decoded as VLP-16" in text for text in report.warnings)
+    assert warned(report, K.MODEL_CONTRADICTED, says="HDL-32E (0x21)", model="VLP-16")
 
 
 def test_monterey_is_on_gps_time_with_positions_and_inertial_samples(data):

@@ -12,6 +12,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import rig_to_complete
 from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
 from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture, read
+from tests.warned import K, warned, words
 
 
 def cut_to(path, snap_length):
@@ -72,7 +73,7 @@ def test_one_lidar_that_is_cut_is_a_warning_beside_the_other(tmp_path):
 
     assert points[0] > 0 and set(points) == {0}
     report.warn_of_losses()
-    assert any("100 of 200 captured packets: cut" in text for text in report.warnings)
+    assert warned(report, K.DATA_LOST, count="records_cut", number=100, total=200)
     assert any("to port 2369" in text for text in describe(path).lost)
 
 
@@ -101,7 +102,7 @@ def test_a_second_lidar_of_another_make_is_a_warning(tmp_path):
 
     _, _, _, report = read([path])
 
-    assert any(f"not read: 90 packets from {SECOND} to port 6699" in w for w in report.warnings)
+    assert warned(report, K.PACKETS_UNREAD, packets=90, sender=f"{SECOND} to port 6699")
     assert describe(path).unread
 
 
@@ -111,7 +112,7 @@ def test_a_few_datagrams_of_other_programs_are_no_warning(tmp_path):
 
     _, _, _, report = read([path])
 
-    assert not [text for text in report.warnings if "not read" in text]
+    assert not warned(report, K.PACKETS_UNREAD)
 
 
 def test_an_imu_at_a_port_that_the_rig_does_not_name_is_a_warning(tmp_path):
@@ -120,7 +121,8 @@ def test_an_imu_at_a_port_that_the_rig_does_not_name_is_a_warning(tmp_path):
 
     _, _, _, report = read([path])
 
-    assert any("give [imu] port = 7777 in the rig file" in text for text in report.warnings)
+    assert warned(report, K.SAMPLES_PORT, table="imu", port=7777)
+    assert "Give [imu] port = 7777 in the rig file." in words(report)
 
 
 def test_a_sensor_of_the_rig_whose_packets_are_refused_says_why(tmp_path):
@@ -132,8 +134,8 @@ def test_a_sensor_of_the_rig_whose_packets_are_refused_says_why(tmp_path):
 
     _, _, _, report = read([path], rig(sensor("a", port=2368), sensor("b", port=2369)))
 
-    found = next(text for text in report.warnings if text.startswith("b: no data packets"))
-    assert "80 of 80 data packets: blocks without their flag" in found
+    flags = "80 of 80 data packets: blocks without their flag"
+    assert warned(report, K.PACKETS_MISSING, sensor="b", found=flags)
 
 
 def test_a_capture_of_other_protocols_names_them(tmp_path):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Level
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.imu import Gravity
+from recon4.model.finding import Level
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory

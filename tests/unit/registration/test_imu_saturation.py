@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
 from tests.said import found_in, texts
 

@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Level
 from recon4.findings.witnesses.imu import ride_finding
 from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3, so3_exp
+from recon4.model.finding import Level
 from recon4.model.odometry_figures import HeightDoubt
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples

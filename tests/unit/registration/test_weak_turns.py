@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Level
 from recon4.findings.witnesses.motion import turn_finding
 from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
+from recon4.model.finding import Level
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.known_errors import KnownErrors
 from recon4.registration.degeneracy import of_rigid_pose, weakest_twist

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.geometry.se3 import SE3
 from recon4.model.calibration_figures import (
     CalibrationFigures,
     ParameterFigures,
     ParameterStatus,
 )
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.trajectory import Trajectory
 from recon4.report.beams import beam_charts

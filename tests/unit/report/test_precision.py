@@ -6,8 +6,8 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from recon4.findings.kinds import FindingKind
 from recon4.findings.measured import MeasuredRuns, sources
+from recon4.model.finding_kinds import FindingKind
 from tests.benchmarks.precision import (
     NAMES,
     KindCounts,

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.simulation.degradation import KINDS
 from recon4.simulation.families.families import family_of, pattern_of

@@ -11,10 +11,10 @@ import pytest
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import evaluate
 from recon4.findings.drift import drift_closed
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tile_writer import TileWriter
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin

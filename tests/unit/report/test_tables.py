@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.report.assessment import assess
 from recon4.report.figures import broken_at_holes
 from recon4.report.html import render

@@ -2,9 +2,9 @@
 
 import pytest
 
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.unused_data import unused_parts
 from tests.said import found_in
 

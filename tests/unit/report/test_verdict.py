@@ -5,8 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.findings.finding import Finding, Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.rig import rig_findings
@@ -16,6 +14,8 @@ from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.figures import FrameFigures
+from recon4.model.finding import Finding, Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import HeightDoubt, OdometryFigures
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory

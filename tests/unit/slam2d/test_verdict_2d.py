@@ -6,16 +6,17 @@ import numpy as np
 import pytest
 from msgspec.structs import replace as replace_struct
 
-from recon4.findings.finding import Level
-from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.findings.witnesses.planar import PlanarRecord, check_planar
 from recon4.findings.wording import text_of
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
+from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, Verdict, known_judgment
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
+from recon4.recording.report import warning
 from recon4.slam2d.steps import empty_steps
 from tests.project_builder import loop_walk, verified_graph
 
@@ -57,6 +58,20 @@ def test_loop_closures_that_no_alternative_path_confirms_are_said_beside_a_good_
     assert verdict_of(found).usability is Usability.GOOD
     notes = [one for one in found if one.kind is FindingKind.LOOPS_UNVERIFIED]
     assert [one.level for one in notes] == ([Level.NOTE] if said else [])
+
+
+@pytest.mark.parametrize(("tilt_deg", "level"), [(5.0, Level.CHECK), (40.0, Level.DO_NOT_USE)])
+def test_what_readers_say_of_the_mount_counts_and_the_rest_are_notes(tilt_deg, level):
+    said = (warning(FindingKind.SCANS_LATE, scans=3), warning(FindingKind.LASER_TILTED))
+    record = facts(Verdict.ACCEPTED)
+    record = replace(
+        record,
+        imported=ImportNotes(findings=said),
+        scans=replace_struct(record.scans, tilt_deg=tilt_deg),
+    )
+
+    assert [one.level for one in of_kind(record, FindingKind.SCANS_LATE)] == [Level.NOTE]
+    assert [one.level for one in of_kind(record, FindingKind.LASER_TILTED)] == [level]
 
 
 @pytest.mark.parametrize(

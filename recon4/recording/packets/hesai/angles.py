@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.hesai.tuning import HESAI_ANGLES
 
@@ -100,7 +101,7 @@ def angles_of(sensor: PacketSensor, channels: int, typical: Angles | None) -> An
         try:
             table = read_angles(companion)
         except NotAngles as error:
-            report.warn(f"{companion.name}: not used as a table of angles: {error}")
+            report.warn(FindingKind.ANGLES_UNREADABLE, name=companion.name, error=str(error))
             continue
         if table is not None and len(table.elevation_rad) == channels:
             tables[companion.name] = table
@@ -113,19 +114,14 @@ def angles_of(sensor: PacketSensor, channels: int, typical: Angles | None) -> An
         return fitting[chosen]
     if typical is not None:
         report.warn(
-            f"{name}: angles of a typical {sensor.sensor.model} (off by up to 0.3°): "
-            + _why_none(channels, sorted(fitting))
+            FindingKind.ANGLES_TYPICAL,
+            sensor=name,
+            model=sensor.sensor.model,
+            rows=channels,
+            fitting=", ".join(sorted(fitting)),
+            absent=not fitting,
         )
     return typical
-
-
-def _why_none(channels: int, fitting: Sequence[str]) -> str:
-    if fitting:
-        return f"{', '.join(fitting)} fit: give the one of this sensor the name of the sensor"
-    return (
-        f"no correction file with {channels} rows (Channel,Elevation,Azimuth) is beside the "
-        "recording"
-    )
 
 
 def _choose(tables: dict[str, Angles], words: Sequence[str]) -> str | None:

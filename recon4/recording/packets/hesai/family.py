@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
@@ -32,7 +34,7 @@ from recon4.recording.packets.hesai.mirrors import MirrorTable, mirrors_of, read
 from recon4.recording.packets.hesai.models import MODELS, RETURN_MODES, HesaiModel, model_of
 from recon4.recording.packets.hesai.tuning import HESAI_PACKETS
 from recon4.recording.packets.tuning import HEAD
-from recon4.recording.report import ImportReport
+from recon4.recording.report import ImportReport, warning
 
 _JT16_IMU = START + bytes((1, 8))
 
@@ -103,7 +105,7 @@ class Hesai:
             packet_s=packet_s(model, found.layout.blocks, found.mode),
             rotation_hz=speed if speed > 0 and model.name != "AT128" else float("nan"),
             size=found.layout.size,
-            remarks=_remarks(mode),
+            findings=_findings(mode),
         )
 
     def describes(self, companion: Companion) -> bool:
@@ -134,7 +136,10 @@ class Hesai:
             )
         if packets.model is not model:
             sensor.report.warn(
-                f"{name}: its packets are those of a {packets.model.name}; decoded as {model.name}"
+                FindingKind.MODEL_CONTRADICTED,
+                sensor=name,
+                says=packets.model.name,
+                model=model.name,
             )
             packets = HesaiPackets(model, packets.layout, packets.header, packets.mode)
         return HesaiFormat(packets, _directions(model, sensor), sensor)
@@ -189,10 +194,9 @@ def _usual(model: HesaiModel) -> HesaiPackets:
     return HesaiPackets(model, layout, header, firing_mode(1, layout.blocks))
 
 
-def _remarks(mode: int) -> tuple[str, ...]:
-    if mode in RETURN_MODES or mode == 0:
-        return ()
-    return (f"unknown return mode byte {mode:#04x}: read as single return",)
+def _findings(mode: int) -> tuple[Finding, ...]:
+    known = mode in RETURN_MODES or mode == 0
+    return () if known else (warning(FindingKind.RETURN_MODE, mode=mode),)
 
 
 def _directions(model: HesaiModel, sensor: PacketSensor) -> Angles | MirrorTable:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -47,7 +48,7 @@ from recon4.recording.packets.livox.sound import (
 )
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.tuning import HEAD
-from recon4.recording.report import ImportReport
+from recon4.recording.report import ImportReport, warning
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 _MODES = {1: "single", 2: "dual", 3: "triple"}
@@ -144,7 +145,7 @@ class LivoxFamily:
         sound = sound_points(payloads, layout, ImportReport(), by_crc=False)
         if 2 * np.count_nonzero(sound) <= len(head):
             return None
-        model, remark = likely_model(layout, payloads[sound])
+        model, is_known = likely_model(layout, payloads[sound])
         return Recognized(
             family=self.name,
             kind="data",
@@ -152,7 +153,7 @@ class LivoxFamily:
             mode=_MODES[layout.returns],
             packet_s=layout.shots * model.shot_s,
             size=layout.size,
-            remarks=(remark,) if remark else (),
+            findings=() if is_known else (warning(FindingKind.MODEL_UNKNOWN, model=model.name),),
         )
 
     def open(self, sensor: PacketSensor) -> LivoxFormat:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.geometry.se3 import SE3
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.datagrams import MAX_UDP_BYTES, Datagrams
 from recon4.recording.formats.pcap import OpenFile, open_plain
@@ -177,10 +178,7 @@ def _frames(file: IO[bytes], head: LvxHead, name: str, *, report: ImportReport) 
         if here != at or not 0 <= size <= LIMITS.lvx_frame_bytes:
             report.count("files_cut")
             report.outcome = "lossy"
-            report.warn(
-                f"{name}: the frame at byte {at} says that it reaches from {here} to {after}: read "
-                "up to there"
-            )
+            report.warn(FindingKind.FRAME_LENGTH, name=name, at=at, begin=here, end=after)
             return
         body = file.read(size)
         if len(body) < size:
@@ -192,7 +190,7 @@ def _frames(file: IO[bytes], head: LvxHead, name: str, *, report: ImportReport) 
 def _cut(name: str, report: ImportReport) -> None:
     report.count("files_cut")
     report.outcome = "lossy"
-    report.warn(f"{name}: ends inside a frame: read up to its last whole packet")
+    report.warn(FindingKind.FILE_SALVAGED, name=name)
 
 
 def _datagrams(body: bytes, head: LvxHead, arrival: _Arrival, *, report: ImportReport) -> Datagrams:

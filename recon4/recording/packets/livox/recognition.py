@@ -29,8 +29,8 @@ def likely_models(layout: PointLayout, packet_s: float) -> tuple[str, ...]:
     return tuple(names)
 
 
-def likely_model(layout: PointLayout, payloads: Payloads) -> tuple[LivoxModel, str]:
-    """The model of sound packets, and a remark if it is only assumed.
+def likely_model(layout: PointLayout, payloads: Payloads) -> tuple[LivoxModel, bool]:
+    """The model of sound packets, and whether it is known, not only assumed.
 
     Models that shoot alike differ in their field of view.
 
@@ -41,10 +41,10 @@ def likely_model(layout: PointLayout, payloads: Payloads) -> tuple[LivoxModel, s
     names = likely_models(layout, _packet_s(layout, payloads))
     default = "Mid-360" if layout.sdk == 2 else "Avia" if layout.data_type > 1 else "Mid-40"
     if not names:
-        return MODELS[default], f"the model of this Livox is not known: read as a {default}"
+        return MODELS[default], False
     if "Avia" not in names:
-        return MODELS[names[0]], ""
-    return MODELS[_by_view(layout, payloads)], ""
+        return MODELS[names[0]], True
+    return MODELS[_by_view(layout, payloads)], True
 
 
 def livox_of_points(xyz: NDArray[np.float32], lines: int) -> str:

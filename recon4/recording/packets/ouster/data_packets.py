@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.kernels import ouster as kernel
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
@@ -179,9 +180,10 @@ class OusterPackets:
         others = sorted(set(sent.tolist()) - {self._serial})
         if others:
             self._report.warn(
-                f"{self._sensor.sensor.name}: packets of other sensors come from the same address "
-                f"to the same port ({', '.join(map(str, others[:4]))}): those of {self._serial} "
-                "are read; capture each sensor at a port of its own"
+                FindingKind.PACKETS_MIXED,
+                sensor=self._sensor.sensor.name,
+                others=", ".join(map(str, others[:4])),
+                read=str(self._serial),
             )
         self._checks = 2 * int(self._checksum_fits(payloads).sum()) > len(payloads)
 

@@ -7,8 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace as replace_fields
 
 from recon4.errors import ConfigError
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
@@ -24,7 +27,6 @@ from recon4.recording.packets.ouster.imu_packets import is_known_packet
 from recon4.recording.packets.ouster.layouts import USUAL_LAYOUTS
 from recon4.recording.packets.ouster.metadata import is_metadata
 from recon4.recording.packets.ouster.metadata_choice import (
-    NEEDED,
     ChosenMetadata,
     MetadataFiles,
     choose,
@@ -37,6 +39,7 @@ from recon4.recording.packets.ouster.metadata_choice import (
     usual_serial,
 )
 from recon4.recording.packets.tuning import HEAD
+from recon4.recording.report import warning
 
 _NAME = "Ouster"
 UNKNOWN = _NAME
@@ -113,10 +116,11 @@ def _recognized_part(head: Datagrams, companions: Sequence[Companion]) -> Recogn
     try:
         fit = choose(head, found)
     except ConfigError as error:
-        return _unknown(head, str(error))
+        return _unknown(head, warning(FindingKind.METADATA_NEEDED, error=str(error)))
     if fit is not None and _most_are_known(head, fit.metadata.layout.size):
         return _recognized(head, fit)
-    return _unknown(head, "; ".join([NEEDED, *found.damaged]))
+    damaged = "; ".join(found.damaged)
+    return _unknown(head, warning(FindingKind.METADATA_NEEDED, absent=True, error=damaged))
 
 
 def _recognized(head: Datagrams, fit: ChosenMetadata) -> Recognized:
@@ -132,11 +136,11 @@ def _recognized(head: Datagrams, fit: ChosenMetadata) -> Recognized:
         rotation_hz=turning.rotation_hz,
         serial=usual_serial(metadata.layout, payloads) or metadata.serial,
         size=metadata.layout.size,
-        remarks=fit.doubts,
+        findings=fit.doubts,
     )
 
 
-def _unknown(head: Datagrams, remark: str) -> Recognized | None:
+def _unknown(head: Datagrams, why: Finding) -> Recognized | None:
     """Packets of a sensor whose metadata is not there, or other packets of an Ouster."""
     for layout in USUAL_LAYOUTS:
         if layout_fits(head, layout) and _most_are_known(head, layout.size):
@@ -149,7 +153,7 @@ def _unknown(head: Datagrams, remark: str) -> Recognized | None:
                 packet_s=layout.columns * step_s,
                 serial=usual_serial(layout, payloads),
                 size=layout.size,
-                remarks=(remark,),
+                findings=(why,),
             )
     return Recognized(family=_NAME, kind="samples") if _most_are_known(head, 0) else None
 
@@ -172,17 +176,25 @@ def _most_are_known(head: Datagrams, size: int) -> bool:
 def _say(sensor: PacketSensor, fit: ChosenMetadata, found: MetadataFiles, *, columns: int) -> None:
     """Report what the files say and what contradicts it."""
     name, metadata, report = sensor.sensor.name, fit.metadata, sensor.report
-    for text in (*fit.doubts, *found.damaged):
-        report.warn(f"{name}: {text}")
+    for doubt in fit.doubts:
+        report.add(replace_fields(doubt, sensor=name))
+    for error in found.damaged:
+        report.warn(FindingKind.METADATA_UNREADABLE, sensor=name, error=error)
     if metadata.columns_per_turn not in (0, columns):
         report.warn(
-            f"{name}: {metadata.name} says {metadata.columns_per_turn} columns in a revolution, "
-            f"its packets have {columns}: read so"
+            FindingKind.METADATA_COLUMNS,
+            sensor=name,
+            name=metadata.name,
+            stated=metadata.columns_per_turn,
+            columns=columns,
         )
     if metadata.model and sensor.sensor.model not in (UNKNOWN, metadata.model):
         report.warn(
-            f"{name}: the rig says {sensor.sensor.model}, {metadata.name} {metadata.product}: "
-            "decoded by this file"
+            FindingKind.METADATA_MODEL,
+            sensor=name,
+            model=sensor.sensor.model,
+            name=metadata.name,
+            product=metadata.product,
         )
     if fit.passed_over:
         report.derive(f"{name}: {metadata.name} is its metadata by its name, not {fit.passed_over}")

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Sensor
 from recon4.recording.formats.datagrams import Datagrams, address_text
 from recon4.recording.packets.family import Companion, Payloads, same_start
@@ -27,6 +29,7 @@ from recon4.recording.packets.ouster.layouts import (
 from recon4.recording.packets.ouster.metadata import OusterMetadata, read_metadata
 from recon4.recording.packets.ouster.tuning import SHARED_ADDRESS
 from recon4.recording.packets.tuning import HEAD
+from recon4.recording.report import warning
 
 NEEDED = (
     "packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor "
@@ -50,7 +53,7 @@ class ChosenMetadata:
     """The metadata of a sender."""
 
     metadata: OusterMetadata
-    doubts: tuple[str, ...]
+    doubts: tuple[Finding, ...]
     """How the packets contradict it."""
     passed_over: str
     """Files that only their names have ruled out."""
@@ -170,13 +173,11 @@ def _is_in(name: str, file_name: str) -> bool:
     return bool(re.search(f"(?<!{around}){re.escape(name)}(?!{around})", file_name))
 
 
-def _doubts(head: Datagrams, item: OusterMetadata) -> tuple[str, ...]:
+def _doubts(head: Datagrams, item: OusterMetadata) -> tuple[Finding, ...]:
     serial = usual_serial(item.layout, sound_head(head, item.layout))
     if serial and item.serial and serial != item.serial:
-        return (
-            f"{item.name} is of the sensor {item.serial}, but the packets are of {serial}: the "
-            "angles of its beams are those of another sensor; give the metadata of the right one",
-        )
+        values = {"name": item.name, "serial": str(item.serial), "packets": str(serial)}
+        return (warning(FindingKind.METADATA_ELSEWHERE, **values),)
     return ()
 
 

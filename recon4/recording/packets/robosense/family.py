@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
@@ -164,8 +165,7 @@ class SpinningFormat:
         self._report.derive(f"{name}: angles of its lasers from {angles.source}")
         if not angles.measured:
             self._report.warn(
-                f"{name}: the angles of its lasers are those of another {self._model.name}, some "
-                "0.1° off, until a device packet (DIFOP) comes: record its port 7788 too"
+                FindingKind.ANGLES_TYPICAL, sensor=name, model=self._model.name, difop=True
             )
         self._tables = spinning_tables(self._layout, angles, self._of.settings)
 
@@ -302,7 +302,7 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
         return replace(found, model="Bpearl V4") if kind == BPEARL_V4_TYPE else found
     if found.model == "Airy" and kind[1] not in (AIRY_VARIANT, AIRY_UNKNOWN_VARIANT):
         reason = f"an Airy of variant {kind[1]} (48 or 192 lines), whose packets are not decoded"
-        return replace(found, kind="other", remarks=(reason,))
+        return replace(found, kind="other", refused=reason)
     if found.model != "Helios 32":
         return found
     device = _device(head, MODELS["Helios 32"])

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.finding import Finding
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
@@ -45,7 +47,7 @@ from recon4.recording.packets.velodyne.position_packets import PositionDecoder, 
 from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
 from recon4.recording.packets.velodyne.wide_models import VLS128, VLS128_PRODUCT
 from recon4.recording.packets.velodyne.wide_packets import WideFormat, dual_packets, sound_wide
-from recon4.recording.report import ImportReport
+from recon4.recording.report import ImportReport, warning
 from recon4.units import SECOND_NS
 
 NAME = "Velodyne"
@@ -191,13 +193,13 @@ class VelodyneFormat:
     def _compare(self, return_mode: int) -> None:
         name = self._of.sensor.name
         if return_mode not in RETURN_MODES:
-            self._report.warn(
-                f"{name}: unknown return mode byte {return_mode:#04x}: read as single return"
-            )
+            self._report.warn(FindingKind.RETURN_MODE, sensor=name, mode=return_mode)
         if self._product is not None and self._product != self._model.product:
             self._report.warn(
-                f"{name}: its packets say {product_text(self._product)}; "
-                f"decoded as {self._model.name}"
+                FindingKind.MODEL_CONTRADICTED,
+                sensor=name,
+                says=product_text(self._product),
+                model=self._model.name,
             )
 
 
@@ -213,12 +215,12 @@ def _recognized_data(payloads: Payloads) -> Recognized | None:
     report = ImportReport()
     rows = np.flatnonzero(sound_packets(payloads, report))
     if len(rows) < len(payloads) // 2 or not len(rows):
-        return replace(found, kind="other", remarks=("; ".join(report.lost()),))
+        return replace(found, kind="other", refused="; ".join(report.lost()))
     packets = as_packets(payloads[rows])
     product = int(np.bincount(packets["product"]).argmax())
     return_mode = int(np.bincount(packets["return_mode"]).argmax())
     stamp_ns = packets["time_us"].astype(np.int64) * 1000
-    model, remarks = _model(product, return_mode, _usual_step_s(stamp_ns))
+    model, findings = _model(product, return_mode, _usual_step_s(stamp_ns))
     rotation, packet_s = Rotation(), float("nan")
     if model in MODELS:
         packet_s = MODELS[model].packet_s(return_mode)
@@ -231,7 +233,7 @@ def _recognized_data(payloads: Payloads) -> Recognized | None:
         mode=RETURN_MODES.get(return_mode, f"return mode {return_mode:#04x}"),
         packet_s=packet_s,
         rotation_hz=rotation.hz,
-        remarks=remarks,
+        findings=findings,
     )
 
 
@@ -258,18 +260,22 @@ def _usual_step_s(stamp_ns: Times) -> float:
     return float(np.median(steps)) / SECOND_NS if len(steps) > 4 else float("nan")
 
 
-def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[str, ...]]:
-    """Name of the model and a warning; the firing pattern overrules the product byte."""
+def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[Finding, ...]]:
+    """Name of the model and warnings; the firing pattern overrules the product byte."""
     model = likely_model(product, interval_s, return_mode)
     stated = PRODUCTS.get(product)
-    remarks = []
+    found = []
     if return_mode not in RETURN_MODES:
-        remarks.append(f"unknown return mode byte {return_mode:#04x}, read as single return")
+        found.append(warning(FindingKind.RETURN_MODE, mode=return_mode))
     if model and stated != model:
-        remarks.append(
-            f"its packets say {product_text(product)}, but they come every {1e3 * interval_s:.3f} "
-            f"ms as those of a {model}: taken for a {model}"
+        found.append(
+            warning(
+                FindingKind.MODEL_BY_INTERVAL,
+                says=product_text(product),
+                interval_ms=1e3 * interval_s,
+                model=model,
+            )
         )
     elif not model:
-        remarks.append(f"unknown product byte {product:#04x}; give a rig that names the model")
-    return model or "", tuple(remarks)
+        found.append(warning(FindingKind.MODEL_UNKNOWN, product=product))
+    return model or "", tuple(found)

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 import msgspec
 
-from recon4.findings.kinds import FindingKind
+from recon4.model.finding_kinds import FindingKind
 
 Value = bool | int | float | str
 Point = tuple[float, float, float]
