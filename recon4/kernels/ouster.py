@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
+from recon4.kernels.returns import (
+    ColumnShots,
+    Decoded,
+    decoded,
+    in_order,
+    new_points,
+    new_returns,
+    pack,
+    ring_marks,
+    sift,
+)
 
 _POLYNOMIAL = 0xC96C5795D7870F42
 """ECMA-182, lowest bit first."""
@@ -28,8 +42,20 @@ def _checksum_tables() -> NDArray[np.uint64]:
 CHECKSUM_TABLES = _checksum_tables()
 
 
-_LANES = 4
-"""Rows whose sums are computed side by side: each step waits for the one before it."""
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _after(word: np.uint64, tables: NDArray[np.uint64]) -> np.uint64:
+    """The sum after eight bytes; ``word``: those, changed by the sum before them."""
+    low = np.uint64(0xFF)
+    return np.uint64(
+        tables[7, word & low]
+        ^ tables[6, word >> np.uint64(8) & low]
+        ^ tables[5, word >> np.uint64(16) & low]
+        ^ tables[4, word >> np.uint64(24) & low]
+        ^ tables[3, word >> np.uint64(32) & low]
+        ^ tables[2, word >> np.uint64(40) & low]
+        ^ tables[1, word >> np.uint64(48) & low]
+        ^ tables[0, word >> np.uint64(56)]
+    )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -38,150 +64,131 @@ def checksums(
 ) -> NDArray[np.uint64]:
     """CRC-64/XZ of each row, (N,).
 
+    Four rows side by side, as each step waits for the one before it.
+
     Args:
         words: The rows, eight bytes at a time, (N, W).
         rest: What is left of them, (N, K).
         tables: `CHECKSUM_TABLES`.
     """
-    low = np.uint64(0xFF)
-    out = np.empty(words.shape[0], np.uint64)
-    out[:] = _ALL_ONES
-    for first in range(0, words.shape[0], _LANES):
-        last = min(first + _LANES, words.shape[0])
+    low, rows = np.uint64(0xFF), words.shape[0]
+    out = np.empty(rows, np.uint64)
+    for row in range(0, rows, 4):
+        one, two, three = min(row + 1, rows - 1), min(row + 2, rows - 1), min(row + 3, rows - 1)
+        a = b = c = d = _ALL_ONES
         for w in range(words.shape[1]):
-            for row in range(first, last):
-                x = out[row] ^ words[row, w]
-                out[row] = (
-                    tables[7, x & low]
-                    ^ tables[6, x >> np.uint64(8) & low]
-                    ^ tables[5, x >> np.uint64(16) & low]
-                    ^ tables[4, x >> np.uint64(24) & low]
-                    ^ tables[3, x >> np.uint64(32) & low]
-                    ^ tables[2, x >> np.uint64(40) & low]
-                    ^ tables[1, x >> np.uint64(48) & low]
-                    ^ tables[0, x >> np.uint64(56)]
-                )
-        for row in range(first, last):
-            for k in range(rest.shape[1]):
-                x = out[row]
-                out[row] = x >> np.uint64(8) ^ tables[0, (x ^ np.uint64(rest[row, k])) & low]
+            a = _after(a ^ words[row, w], tables)
+            b = _after(b ^ words[one, w], tables)
+            c = _after(c ^ words[two, w], tables)
+            d = _after(d ^ words[three, w], tables)
+        out[row], out[one], out[two], out[three] = a, b, c, d
+    for row in range(rows):
+        for k in range(rest.shape[1]):
+            x = out[row]
+            out[row] = x >> np.uint64(8) ^ tables[0, (x ^ np.uint64(rest[row, k])) & low]
     return out ^ _ALL_ONES
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _range(payload: NDArray[np.uint8], at: np.uintp, mask: int) -> np.int32:
-    units = np.int32(payload[at]) | np.int32(payload[at + np.uintp(1)]) << 8
-    return np.int32((units | np.int32(payload[at + np.uintp(2)]) << 16) & mask)
+class EchoWords(NamedTuple):
+    """Where a return lies in a pixel: words of four bytes."""
+
+    range_word: int
+    range_mask: int
+    intensity_word: int
+    intensity_shift: int
+    intensity_mask: int
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _intensity(payload: NDArray[np.uint8], at: np.uintp, mask: int) -> np.int32:
-    return np.int32(np.int32(payload[at]) | (np.int32(payload[at + np.uintp(1)]) << 8) & mask)
+@njit(cache=True, nogil=True, error_model="numpy")
+def _read(
+    pixels: NDArray[np.uint32], step: int, echo: EchoWords, row: int, of: ColumnShots
+) -> None:
+    """Read one return of all pixels of a column, of ``step`` words each."""
+    units, marks = of.units, of.marks
+    ranges = pixels[echo.range_word :: step]
+    intensities = pixels[echo.intensity_word :: step]
+    range_mask, shift = np.uint32(echo.range_mask), np.uint32(echo.intensity_shift)
+    intensity_mask = np.uint32(echo.intensity_mask)
+    for b in range(len(ranges)):
+        units[row, b] = ranges[b] & range_mask
+        marks[row, b] = (intensities[b] >> shift) & intensity_mask
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _place(
+    m: NDArray[np.float32],
+    beam: NDArray[np.float32],
+    unit_m: np.float32,
+    row: int,
+    of: ColumnShots,
+) -> None:
+    """Points of one return of all pixels of a column.
+
+    Args:
+        m: Rotation and translation of the column, (3, 4).
+        beam: Origin [m] and direction of each beam, (6, B).
+        unit_m: Meters per unit of the range.
+        row: Which return.
+        of: Has the distances, receives the points.
+    """
+    units, xyz = of.units, of.xyz
+    xx, xy, xz, x0 = m[0, 0], m[0, 1], m[0, 2], m[0, 3]
+    yx, yy, yz, y0 = m[1, 0], m[1, 1], m[1, 2], m[1, 3]
+    zx, zy, zz, z0 = m[2, 0], m[2, 1], m[2, 2], m[2, 3]
+    for b in range(beam.shape[1]):
+        r = np.float32(units[row, b]) * unit_m
+        x = beam[0, b] + r * beam[3, b]
+        y = beam[1, b] + r * beam[4, b]
+        z = beam[2, b] + r * beam[5, b]
+        xyz[row, 0, b] = xx * x + xy * y + xz * z + x0
+        xyz[row, 1, b] = yx * x + yy * y + yz * z + y0
+        xyz[row, 2, b] = zx * x + zy * y + zz * z + z0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def decode(
-    payloads: NDArray[np.uint8],
+    words: NDArray[np.uint32],
     columns: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
-    layout: tuple[tuple[int, int, int, int], ...],
+    layout: tuple[EchoWords, ...],
     pixel: tuple[int, bool, np.float32],
-    limits: NDArray[np.int64],
+    limits: tuple[int, int],
     turns: NDArray[np.float32],
-    beams: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint8]],
-) -> tuple[
-    NDArray[np.int64],
-    NDArray[np.float32],
-    NDArray[np.uint16],
-    NDArray[np.uint8],
-    NDArray[np.uint8],
-    NDArray[np.int64],
-]:
+    beams: tuple[NDArray[np.float32], NDArray[np.uint8]],
+) -> Decoded:
     """Decode sound packets to points.
 
     Args:
-        payloads: Data packets, (P, S).
+        words: Data packets, four bytes at a time, (P, S).
         columns: Time of each column [ns], (P, C); its row in ``turns``, negative = not valid,
-            (P, C); and where its pixels begin in a packet, (C,).
-        layout: For each return of a pixel: offset and mask of its range, offset and mask of the
-            second byte of its intensity.
-        pixel: Bytes of a pixel; whether of two returns the one of the higher intensity is the
+            (P, C); and the first word of its pixels in a packet, (C,).
+        layout: One or two returns of a pixel.
+        pixel: Words of a pixel; whether of two returns the one of the higher intensity is the
             first; meters per unit of the range.
-        limits: Smallest and largest range kept [units], (2,).
+        limits: Smallest and largest range kept [units].
         turns: Maps the frame that turns with the beams into that of the sensor at each column,
             rotation and translation, (W, 3, 4).
-        beams: Origin [m] and direction of each beam in the turning frame, (B, 3) each; its ring,
-            (B,).
+        beams: Origin [m] and direction of each beam in the turning frame, (6, B); its ring, (B,).
 
     Returns:
-        ``t_ns, xyz, intensity, ring, echo`` of the N points in order of time, and counts of
-        shots without return, returns too near and too far, (3,).
+        Points in order of time.
     """
-    t_ns, turn_rows, pixels_at = columns
-    pixel_bytes, by_intensity, unit_m = pixel
-    origin, direction, ring = beams
-    near, far = np.int32(limits[0]), np.int32(limits[1])
-    echoes = len(layout)
-    range_at, range_mask, intensity_at, intensity_mask = layout[0]
-    other_at, other_mask, other_intensity_at, other_intensity_mask = layout[-1]
-    size = payloads.shape[0] * turn_rows.shape[1] * origin.shape[0] * echoes
-    out_t = np.empty(size, np.int64)
-    out_xyz = np.empty((size, 3), np.float32)
-    out_intensity = np.empty(size, np.uint16)
-    out_ring = np.empty(size, np.uint8)
-    out_echo = np.empty(size, np.uint8)
-    silent, too_near, too_far = 0, 0, 0
-    n = np.uintp(0)
-    for p in range(payloads.shape[0]):
-        payload = payloads[p]
+    t_ns, turn_rows, first = columns
+    step, by_intensity, unit_m = pixel
+    ring, returns = ring_marks(beams[1]), len(layout)
+    of, n = new_returns(len(ring)), np.int64(0)
+    points = new_points(turn_rows.size * len(ring) * returns)
+    for p in range(words.shape[0]):
         for c in range(turn_rows.shape[1]):
-            row = turn_rows[p, c]
-            if row < 0:
+            if turn_rows[p, c] < 0:
                 continue
-            t = t_ns[p, c]
-            m = turns[row]
-            xx, xy, xz, x0 = m[0, 0], m[0, 1], m[0, 2], m[0, 3]
-            yx, yy, yz, y0 = m[1, 0], m[1, 1], m[1, 2], m[1, 3]
-            zx, zy, zz, z0 = m[2, 0], m[2, 1], m[2, 2], m[2, 3]
-            for b in range(origin.shape[0]):
-                at = np.uintp(pixels_at[c] + b * pixel_bytes)
-                units = _range(payload, at + np.uintp(range_at), range_mask)
-                intensity = _intensity(payload, at + np.uintp(intensity_at), intensity_mask)
-                other, other_intensity = np.int32(0), np.int32(0)
-                if echoes == 2:
-                    other = _range(payload, at + np.uintp(other_at), other_mask)
-                    other_intensity = _intensity(
-                        payload, at + np.uintp(other_intensity_at), other_intensity_mask
-                    )
-                    stronger = by_intensity and other_intensity > intensity
-                    if other != 0 and (units == 0 or stronger):
-                        units, other = other, units
-                        intensity, other_intensity = other_intensity, intensity
-                    if other == units:
-                        other = np.int32(0)
-                if units == 0:
-                    silent += 1
-                    continue
-                echo = np.uint8(0)
-                while units != 0:
-                    if units < near:
-                        too_near += 1
-                    elif units > far:
-                        too_far += 1
-                    else:
-                        r = np.float32(units) * unit_m
-                        x = origin[b, 0] + r * direction[b, 0]
-                        y = origin[b, 1] + r * direction[b, 1]
-                        z = origin[b, 2] + r * direction[b, 2]
-                        out_t[n] = t
-                        out_xyz[n, 0] = xx * x + xy * y + xz * z + x0
-                        out_xyz[n, 1] = yx * x + yy * y + yz * z + y0
-                        out_xyz[n, 2] = zx * x + zy * y + zz * z + z0
-                        out_intensity[n] = intensity
-                        out_ring[n] = ring[b]
-                        out_echo[n] = echo
-                        n += np.uintp(1)
-                        echo = np.uint8(1)
-                    units, intensity = other, other_intensity
-                    other = np.int32(0)
-    counts = np.array([silent, too_near, too_far], np.int64)
-    return out_t[:n], out_xyz[:n], out_intensity[:n], out_ring[:n], out_echo[:n], counts
+            pixels = words[p, first[c] : first[c] + step * len(ring)]
+            of.t_ns[:] = t_ns[p, c]
+            for row in range(returns):
+                _read(pixels, step, layout[row], row, of)
+            if returns == 2:
+                in_order(of, by_intensity)
+            for row in range(returns):
+                sift(of, row, ring, limits)
+                _place(turns[turn_rows[p, c]], beams[0], unit_m, row, of)
+            n = pack(n, of, returns, points)
+    return decoded(n, points, of)

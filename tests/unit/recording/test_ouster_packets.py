@@ -184,6 +184,14 @@ def test_the_sum_is_that_of_real_packets(data):
     np.testing.assert_array_equal(checksums(payloads), stated)
 
 
+def test_the_sum_of_a_packet_does_not_depend_on_those_beside_it():
+    packets = np.random.default_rng(5).integers(0, 256, (7, 61), dtype=np.uint8)
+    alone = [checksums(packet[None])[0] for packet in packets]
+
+    for count in range(len(packets) + 1):
+        assert checksums(packets[:count]).tolist() == alone[:count]
+
+
 def test_of_two_sensors_behind_one_address_the_one_of_the_rig_is_read():
     one, other = (nominal_metadata("OS1-32", serial=serial) for serial in ("111", "222"))
     payloads = np.concatenate(

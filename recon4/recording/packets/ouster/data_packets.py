@@ -22,14 +22,13 @@ from recon4.recording.packets.ouster.columns import (
     wrong_type,
 )
 from recon4.recording.packets.ouster.imu_packets import SAMPLE_SIZES, ImuPackets
-from recon4.recording.packets.ouster.layouts import CHECKSUM_BYTES, PacketLayout
+from recon4.recording.packets.ouster.layouts import CHECKSUM_BYTES, WORD, PacketLayout
 from recon4.recording.packets.ouster.metadata import OusterMetadata
 from recon4.recording.packets.ouster.metadata_choice import serials, sound_head, usual_serial
 from recon4.recording.packets.ouster.tuning import OUSTER_COLUMNS
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.tuning import HEAD
 
-_EchoBytes = tuple[tuple[int, int, int, int], ...]
 _WITHOUT_COLUMNS = "packets_without_columns"
 
 
@@ -144,9 +143,10 @@ class OusterPackets:
         assert payloads.shape[1] == self.size
         assert rows.max(initial=-1) < self._turn
         turns, beams = self._tables
+        words = np.ascontiguousarray(payloads).view("<u4")
         found = kernel.decode(
-            np.ascontiguousarray(payloads),
-            (t_ns[:, None] + columns.since_ns, rows, self._layout.pixels_at),
+            words,
+            (t_ns[:, None] + columns.since_ns, rows, self._layout.pixels_at // WORD),
             *_pixel_arguments(self._layout),
             self._limits(),
             turns,
@@ -201,11 +201,11 @@ class OusterPackets:
         stated = self._layout.records(payloads)["crc"]
         return np.asarray(checksums(payloads) == stated)
 
-    def _limits(self) -> NDArray[np.int64]:
+    def _limits(self) -> tuple[int, int]:
         """Smallest and largest range that is kept [units]."""
         settings, unit_m = self._sensor.settings, 1e-3 * self._layout.profile.unit_mm
         limits = np.array([settings.min_range_m, settings.max_range_m]) / unit_m
-        return np.array([np.ceil(limits[0] - 1e-6), np.floor(limits[1] + 1e-6)], dtype=np.int64)
+        return int(np.ceil(limits[0] - 1e-6)), int(np.floor(min(limits[1] + 1e-6, 1e9)))
 
 
 def checksums(payloads: Payloads) -> NDArray[np.uint64]:
@@ -221,20 +221,29 @@ def checksums(payloads: Payloads) -> NDArray[np.uint64]:
 
 def _pixel_arguments(
     layout: PacketLayout,
-) -> tuple[_EchoBytes, tuple[int, bool, np.float32]]:
+) -> tuple[tuple[kernel.EchoWords, ...], tuple[int, bool, np.float32]]:
     """Arguments ``layout`` and ``pixel`` of the kernel."""
     profile = layout.profile
-    echoes = [
-        (e.range_at, (1 << e.range_bits) - 1, e.intensity_at, 0xFF00 * (e.intensity_bytes - 1))
-        for e in profile.echoes
-    ]
+    echoes = []
+    for echo in profile.echoes:
+        assert echo.range_at % WORD == 0 and echo.range_bits < 31
+        assert echo.intensity_at % WORD + echo.intensity_bytes <= WORD
+        echoes.append(
+            kernel.EchoWords(
+                range_word=echo.range_at // WORD,
+                range_mask=(1 << echo.range_bits) - 1,
+                intensity_word=echo.intensity_at // WORD,
+                intensity_shift=8 * (echo.intensity_at % WORD),
+                intensity_mask=(1 << 8 * echo.intensity_bytes) - 1,
+            )
+        )
     unit_m = np.float32(1e-3 * profile.unit_mm)
-    return tuple(echoes), (profile.pixel_bytes, profile.has_signal, unit_m)
+    return tuple(echoes), (profile.pixel_bytes // WORD, profile.has_signal, unit_m)
 
 
 def _tables(
     metadata: OusterMetadata, columns: int
-) -> tuple[NDArray[np.float32], tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint8]]]:
+) -> tuple[NDArray[np.float32], tuple[NDArray[np.float32], NDArray[np.uint8]]]:
     """Arguments ``turns`` and ``beams`` of the kernel.
 
     Firmware User Manual 3.1, Lidar Range to XYZ, with n the distance from the axis to where the
@@ -259,11 +268,8 @@ def _tables(
     )
     x_m, z_m = metadata.p_lidar_beam_m.tolist()
     origin = np.array([x_m, 0.0, z_m]) - np.hypot(x_m, z_m) * direction
-    return turns.astype(np.float32), (
-        origin.astype(np.float32),
-        direction.astype(np.float32),
-        ring_of_beams(metadata),
-    )
+    beams = np.ascontiguousarray(np.column_stack([origin, direction]).T, dtype=np.float32)
+    return turns.astype(np.float32), (beams, ring_of_beams(metadata))
 
 
 def ring_of_beams(metadata: OusterMetadata) -> NDArray[np.uint8]:

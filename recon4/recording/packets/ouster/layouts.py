@@ -69,6 +69,8 @@ AROUND_SAMPLES_BYTES = 2 * HEADER_BYTES + NMEA_BYTES
 MAX_SAMPLES = 64
 ZONE_BYTES = 680
 """A packet of zone monitoring."""
+WORD = np.dtype("<u4").itemsize
+"""Bytes of a word: packets, headers, columns and pixels are whole words."""
 CHECKSUM_BYTES = 8
 """At the end of a data packet with a header."""
 
