@@ -20,7 +20,7 @@ import lazrs  # type: ignore[import-untyped]
 import numpy as np
 
 from recon4.errors import StoreError
-from recon4.export.las_points import las_blocks, las_header, las_points
+from recon4.export.las_points import las_blocks, las_header, las_points, las_records
 from recon4.export.laz import ErrorKeepingWriter
 from recon4.export.names import check_name
 from recon4.export.octree import Cube, Key, Octree, PointFiles, Records
@@ -124,7 +124,7 @@ def _sort_into(files: PointFiles, stream: Iterator[Any], header: Any) -> tuple[f
     low_s, high_s = np.inf, -np.inf
     header.partial_reset()
     for block in stream:
-        points = las_points(block, header)
+        points = las_points(block, header, las_records(len(block.xyz), header))
         header.grow(points)
         low_s = min(low_s, float(points.gps_time.min()))
         high_s = max(high_s, float(points.gps_time.max()))

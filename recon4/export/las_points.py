@@ -9,6 +9,7 @@ from typing import Any
 import laspy
 import numpy as np
 import pyproj
+from numpy.typing import NDArray
 
 import recon4
 from recon4.errors import GeoreferenceError
@@ -64,6 +65,9 @@ def las_header(source: PointSource, *, scale_m: float) -> Any:
     extra = [("ring", "u1", "beam, 0 = lowest"), ("frame_id", "u4", "multiframe")]
     extra += [(name, *OPTIONAL[name]) for name in OPTIONAL if name in tiles.fields]
     header.add_extra_dims([_dimension(*row) for row in extra])
+    for listed in header.vlrs.get("ExtraBytesVlr")[0].extra_bytes_structs:
+        # Laspy would state those of the first point of each call that writes some.
+        listed.options &= ~(listed.MIN_BIT_MASK | listed.MAX_BIT_MASK)
     header.global_encoding.wkt = True
     if source.crs:
         header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(source.crs)))
@@ -90,8 +94,18 @@ def _wkt(crs: str) -> str:
         return str(known.to_wkt())
 
 
-def las_points(block: Block, header: Any) -> Any:
+def las_records(count: int, header: Any) -> NDArray[np.void]:
+    """Room for records of a file, zeros, (N,)."""
+    return np.zeros(count, header.point_format.dtype())
+
+
+def las_points(block: Block, header: Any, records: NDArray[np.void]) -> Any:
     """Points of the map as records of a file.
+
+    Args:
+        block: The points.
+        header: Of `las_header`.
+        records: Receives the records, (N,): of `las_records`, or of other points.
 
     Raises:
         GeoreferenceError: If they are too far from the header's offset for its steps.
@@ -103,13 +117,15 @@ def las_points(block: Block, header: Any) -> Any:
         raise GeoreferenceError(
             f"the map is wider than {wide_km} km or has coordinates without meaning"
         )
-    points = laspy.ScaleAwarePointRecord.zeros(len(steps), header=header)
+    points = laspy.ScaleAwarePointRecord(
+        records, header.point_format, header.scales, header.offsets
+    )
     columns = block.columns
     points.X[:], points.Y[:], points.Z[:] = steps.T.astype(np.int32)
     points.intensity[:] = columns["intensity"]
-    points.return_number = columns["echo"] + 1
-    # The smallest it can be: a map does not store how many returns a shot had.
-    points.number_of_returns = columns["echo"] + 1
+    # The number of returns is the smallest it can be: a map does not store how many a shot had.
+    number = (columns["echo"] + 1) & 0xF
+    records["bit_fields"] = number | (number << 4)
     points.point_source_id[:] = columns["sensor"].astype(np.uint16) + 1
     points.gps_time[:] = point_time_s(columns["t_ns"], absolute=absolute)
     points["ring"][:] = columns["ring"]

@@ -7,7 +7,7 @@ spawned.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
-from recon4.export.las_points import crs_text, las_blocks, las_header, las_points
+from recon4.export.las_points import crs_text, las_blocks, las_header, las_points, las_records
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.export.tuning import LAZ
@@ -36,6 +36,15 @@ class _WrittenBounds:
     high: NDArray[np.int64] = field(default_factory=lambda: np.full(3, np.iinfo(np.int64).min))
     first: Any = None
     last: Any = None
+
+    def add(self, points: Any) -> None:
+        """Add some points, as records of the file."""
+        axes = points.X, points.Y, points.Z
+        self.count += len(points)
+        self.low = np.minimum(self.low, [steps.min() for steps in axes])
+        self.high = np.maximum(self.high, [steps.max() for steps in axes])
+        self.last = points.array[-1].copy()
+        self.first = points.array[0].copy() if self.first is None else self.first
 
 
 class ErrorKeepingWriter(io.BufferedWriter):
@@ -105,16 +114,28 @@ def _write(file: ErrorKeepingWriter, header: Any, stream: Iterable[Block]) -> _W
         laz_backend=laspy.LazBackend.LazrsParallel,
         closefd=False,
     ) as out:
-        for block in stream:
-            points = las_points(block, header)
+        for points in _together(stream, header):
             out.write_points(points)
-            steps = np.stack([points.X, points.Y, points.Z]).astype(np.int64)
-            written.count += len(points)
-            written.low = np.minimum(written.low, steps.min(axis=1))
-            written.high = np.maximum(written.high, steps.max(axis=1))
-            written.last = points.array[-1].copy()
-            written.first = points.array[0].copy() if written.first is None else written.first
+            written.add(points)
     return written
+
+
+def _together(stream: Iterable[Block], header: Any) -> Iterator[Any]:
+    """Records of many blocks at a time, of which each thread compresses a part.
+
+    They are valid until the next ones.
+    """
+    records, filled = las_records(LAZ.together, header), 0
+    of = header.point_format, header.scales, header.offsets
+    for block in stream:
+        count = len(block.xyz)
+        if filled + count > len(records):
+            yield laspy.ScaleAwarePointRecord(records[:filled], *of)
+            filled = 0
+        las_points(block, header, records[filled : filled + count])
+        filled += count
+    if filled:
+        yield laspy.ScaleAwarePointRecord(records[:filled], *of)
 
 
 def _check(path: Path, written: _WrittenBounds, header: Any) -> None:

@@ -103,25 +103,24 @@ class PointSource:
         watch = progress or Silent()
         watch.start("export", self.count, "points")
         for tile in chain(self.tiles, self.left_out or ()):
-            columns = tile.read(["xyz", *fields])
+            columns = tile.read_in_space(["xyz", *fields])
             columns["classification"] = _classification(tile)
-            order = tile.spatial_order()
             for first in range(0, len(tile), POINT_EXPORT.block):
-                rows = order[first : first + POINT_EXPORT.block]
-                taken = {name: np.take(column, rows, axis=0) for name, column in columns.items()}
-                xyz = taken.pop("xyz") + np.array(tile.origin_m)
-                yield Block(self.transform(xyz), taken)
-                watch.advance(len(rows))
+                rows = slice(first, first + POINT_EXPORT.block)
+                part = {name: column[rows] for name, column in columns.items()}
+                xyz = part.pop("xyz") + np.array(tile.origin_m)
+                yield Block(self.transform(xyz), part)
+                watch.advance(len(xyz))
 
 
 def _classification(tile: Tile) -> NDArray[np.uint8]:
-    """Classes of the points of a tile, (N,).
+    """Classes of the points of a tile in spatial order, (N,).
 
     Maps from before there were classes have stray returns only, as low or high noise.
     """
     if "classification" in tile.fields:
-        return np.asarray(tile.read(["classification"])["classification"], np.uint8)
+        return np.asarray(tile.read_in_space(["classification"])["classification"], np.uint8)
     if not tile.left_out:
         return np.zeros(len(tile), np.uint8)
-    alone = ~tile.read(["normal"])["normal"].any(axis=1)
+    alone = ~tile.read_in_space(["normal"])["normal"].any(axis=1)
     return np.where(alone, PointClass.HIGH_NOISE, PointClass.LOW_NOISE).astype(np.uint8)

@@ -133,19 +133,19 @@ def bits_to_bytes(bits: NDArray[np.uint64], out: NDArray[np.uint8]) -> None:
 @njit(cache=True, nogil=True, error_model="numpy")
 def bytes_to_numbers(
     packed: NDArray[np.uint8],
-    order: NDArray[np.int32],
+    rows: NDArray[np.int32],
     along: bool,
-    step: float,
+    step: Any,
     out: NDArray[Any],
 ) -> None:
     """The numbers of `numbers_to_bits` and `bits_to_bytes`, times a step.
 
     Args:
         packed: The bytes, uint8 (K, W, N).
-        order: Row of each number, int32 (N,).
+        rows: Row of each number, int32 (N,).
         along: As given to it.
-        step: Factor of the numbers; 1 for whole ones.
-        out: Receives them, float32 or int64 (N, K).
+        step: Factor of the numbers, whole for whole ones.
+        out: Receives them, float32 or whole numbers of any size, (at least N, K).
     """
     count = packed.shape[2]
     steps = np.empty(count, np.int64)
@@ -153,10 +153,10 @@ def bytes_to_numbers(
     for k in range(packed.shape[0]):
         if packed.shape[1] > 2:
             _steps(packed[k], steps)
-            _spread(steps, order, along, step, out[:, k])
+            _spread(steps, rows, along, step, out[:, k])
         else:
             _few_steps(packed[k], few)
-            _spread(few, order, along, step, out[:, k])
+            _spread(few, rows, along, step, out[:, k])
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -185,14 +185,14 @@ def _steps(packed: NDArray[np.uint8], steps: NDArray[np.int64]) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _spread(
-    steps: NDArray[Any], order: NDArray[np.int32], along: bool, step: float, out: NDArray[Any]
+    steps: NDArray[Any], rows: NDArray[np.int32], along: bool, step: Any, out: NDArray[Any]
 ) -> None:
     """Numbers, or their sums, times a step, to the rows that they are of."""
     value = np.int64(0)
     if along:
         for n in range(len(steps)):
             value += steps[n]
-            out[order[n]] = value * step
+            out[rows[n]] = value * step
     else:
         for n in range(len(steps)):
-            out[order[n]] = steps[n] * step
+            out[rows[n]] = steps[n] * step

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import FIELDS, Columns
-from recon4.mapping.tile_order import Order, spatial_order_of
+from recon4.mapping.tile_order import Rows, places_of, spatial_order_of
 from recon4.mapping.tile_packing import FIELD_PACKING, unpack
 from recon4.store.arrays import load_array
 from recon4.store.checked import CheckedArtifact
@@ -59,6 +59,11 @@ class TileColumns(Protocol):
             Altered: If they do not match.
             StoreError: If they cannot be read or are damaged.
         """
+
+    def read_in_space(
+        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+    ) -> Columns:
+        """All rows of a part of a tile, neighbors one after the other; otherwise as `read`."""
 
 
 def index_dtype(fields: Sequence[str]) -> np.dtype[Any]:
@@ -120,14 +125,36 @@ class PackedColumns:
         self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
     ) -> Columns:
         """See `TileColumns.read`."""
-        needed = [*names, *(["frame_id"] if "t_ns" in names and "frame_id" not in names else [])]
-        found = _room(needed, len(range(rows.start, rows.stop, rows.step or 1)))
+        found = _room(_needed(names), len(range(rows.start, rows.stop, rows.step or 1)))
         at = 0
         for block, taken in self._blocks(rows):
-            for name in needed:
-                values = self._block(name, block, checked=checked)[taken]
-                found[name][at : at + len(values)] = values
-            at += len(range(taken.start, taken.stop, taken.step))
+            count = len(range(taken.start, taken.stop, taken.step))
+            at_once = self.kept.none and count == self._count(block)
+            order = self.order(block) if at_once else None
+            for name, values in found.items():
+                part = values[at : at + count]
+                self._check(name, block, checked)
+                if order is not None:
+                    self._unpack(name, block, rows=order, out=part)
+                else:
+                    part[:] = self._block(name, block)[taken]
+            at += count
+        return self._with_times(found, names)
+
+    def read_in_space(
+        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+    ) -> Columns:
+        """See `TileColumns.read_in_space`."""
+        found = _room(_needed(names), rows.stop - rows.start)
+        places = {block: places_of(*self._within(block)) for block, _ in self._blocks(rows)}
+        # Field by field: the rows of one fit into the processor's cache.
+        for name, values in found.items():
+            for block, of_block in places.items():
+                self._check(name, block, checked)
+                self._unpack(name, block, rows=of_block, out=values)
+        return self._with_times(found, names)
+
+    def _with_times(self, found: Columns, names: Sequence[str]) -> Columns:
         if "t_ns" in names:
             found["t_ns"] += self.paths.began_ns(found["frame_id"])
         return {name: found[name] for name in names}
@@ -143,17 +170,21 @@ class PackedColumns:
             yield block, slice(at - first, stop - first, step)
             at += -(-(stop - at) // step) * step
 
-    def _block(self, name: str, block: int, *, checked: CheckedArtifact | None) -> NDArray[Any]:
-        """All rows of a field in a block."""
-        column, file = self.fields.index(name), f"{name}.zst"
-        ends = self.index["end"][:, column]
-        first, stop = int(ends[block - 1]) if block else 0, int(ends[block])
-        if checked is not None:
-            checked.check(f"tiles/{file}", first, stop)
-        return self.kept.get((name, block), lambda: self._unpacked(name, block, first, stop=stop))
+    def _block(self, name: str, block: int) -> NDArray[Any]:
+        """All rows of a field in a block, unpacked if they are not kept."""
 
-    def _unpacked(self, name: str, block: int, first: int, *, stop: int) -> NDArray[Any]:
+        def make() -> NDArray[Any]:
+            made = _room([name], self._count(block))[name]
+            order = self.kept.get(("", block), lambda: self.order(block))
+            self._unpack(name, block, rows=order, out=made)
+            return made
+
+        return self.kept.get((name, block), make)
+
+    def _unpack(self, name: str, block: int, *, rows: Rows, out: NDArray[Any]) -> None:
+        """Unpack a field of a block to some rows."""
         where = f"{self.folder.name}/{name}.zst"
+        first, stop = self._bytes(name, block)
         try:
             with (self.folder / f"{name}.zst").open("rb", buffering=0) as opened:
                 opened.seek(first)
@@ -161,16 +192,32 @@ class PackedColumns:
         except OSError as error:
             raise StoreError(f"{where} cannot be read: {error.strerror}") from error
         width = int(self.index["width"][block, self.fields.index(name)])
-        order = self.kept.get(("", block), lambda: self.order(block))
-        return unpack(name, data, width, order=order, where=f"{where}: block {block}")
+        unpack(name, (data, width), rows=rows, out=out, where=f"{where}: block {block}")
 
-    def order(self, block: int) -> Order:
+    def _check(self, name: str, block: int, checked: CheckedArtifact | None) -> None:
+        if checked is not None:
+            checked.check(f"tiles/{name}.zst", *self._bytes(name, block))
+
+    def _bytes(self, name: str, block: int) -> tuple[int, int]:
+        """First byte of a block of a field, and the one after its last."""
+        ends = self.index["end"][:, self.fields.index(name)]
+        return int(ends[block - 1]) if block else 0, int(ends[block])
+
+    def order(self, block: int) -> Rows:
         """Rows of a block in spatial order."""
+        return spatial_order_of(*self._within(block))
+
+    def _count(self, block: int) -> int:
+        _, first, stop = self._within(block)
+        return stop - first
+
+    def _within(self, block: int) -> tuple[int, int, int]:
+        """Rows of the part of a tile that a block lies in; its first there, and after its last."""
         stops = self.index["stop"]
         first, stop = int(stops[block - 1]) if block else 0, int(stops[block])
         part = int(np.searchsorted(self.parts, first, side="right")) - 1
         begin, end = self.parts[part : part + 2].tolist()
-        return spatial_order_of(end - begin, first - begin, stop - begin)
+        return end - begin, first - begin, stop - begin
 
 
 class KeptBlocks:
@@ -184,6 +231,11 @@ class KeptBlocks:
         self._bytes = 0
         self._kept: OrderedDict[tuple[str, int], NDArray[Any]] = OrderedDict()
         self._lock = threading.Lock()
+
+    @property
+    def none(self) -> bool:
+        """Whether nothing may be kept."""
+        return not self._most
 
     def get(self, key: tuple[str, int], make: Callable[[], NDArray[Any]]) -> NDArray[Any]:
         """A field of a block, unpacked if it is not kept."""
@@ -199,6 +251,11 @@ class KeptBlocks:
             while self._bytes > self._most:
                 self._bytes -= self._kept.popitem(last=False)[1].nbytes
         return made
+
+
+def _needed(names: Sequence[str]) -> list[str]:
+    """Fields that others are read from: times are counted from the start of a multiframe."""
+    return [*names, *(["frame_id"] if "t_ns" in names and "frame_id" not in names else [])]
 
 
 def _room(names: Sequence[str], count: int) -> Columns:

@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import StoreError
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import FIELDS, Columns
+from recon4.mapping.tile_order import spatial_order
 from recon4.store.checked import CheckedArtifact
 from recon4.store.earlier_names import TILE_FIELDS
 from recon4.store.growing_arrays import HEADER_BYTES
@@ -72,6 +73,14 @@ class EarlierColumns:
                 ) from error
             found[name] = mapped.view(np.ndarray)[:: rows.step]
         return found
+
+    def read_in_space(
+        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+    ) -> Columns:
+        """See `TileColumns.read_in_space`."""
+        order = spatial_order(rows.stop - rows.start)
+        found = self.read(names, rows, checked=checked)
+        return {name: np.take(values, order, axis=0) for name, values in found.items()}
 
 
 def _file(folder: Path, name: str) -> Path:

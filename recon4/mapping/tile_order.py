@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from recon4.kernels.tile_packing import spatial_rows
 from recon4.mapping.tuning import TILES
 
-Order = NDArray[np.int32]
-"""Rows of a block in spatial order, (N,)."""
+Rows = NDArray[np.int32]
+"""Rows of a block or of a part of a tile, (N,)."""
 
 
 def progressive(rows: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -48,17 +48,26 @@ def block_ends(count: int) -> list[int]:
     return [sample + (count - sample) * k // max(many, 1) for k in range(many + 1) if count]
 
 
-def spatial_order_of(count: int, first: int, stop: int) -> Order:
-    """Rows of a block, counted from its first, in spatial order.
+def spatial_order_of(count: int, first: int, stop: int) -> Rows:
+    """Rows of a block, counted from its first, in spatial order; arguments as in `places_of`."""
+    return _order_of(count, first, stop)[0]
+
+
+def places_of(count: int, first: int, stop: int) -> Rows:
+    """Places of a block's rows in the spatial order of its part of the tile, increasing.
 
     Args:
         count: Rows of its part of the tile.
         first: First of them in the block.
         stop: The one after its last.
     """
-    order, places = np.empty((2, stop - first), np.int32)
-    spatial_rows(count, _strata(), first, stop, order, places)
-    return order
+    return _order_of(count, first, stop)[1]
+
+
+def _order_of(count: int, first: int, stop: int) -> tuple[Rows, Rows]:
+    rows, places = np.empty((2, stop - first), np.int32)
+    spatial_rows(count, _strata(), first, stop, rows, places)
+    return rows, places
 
 
 def stored_blocks(rows: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
@@ -68,6 +77,4 @@ def stored_blocks(rows: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
         rows: In spatial order, (N,).
     """
     for first, stop in pairwise([0, *block_ends(len(rows))]):
-        order, places = np.empty((2, stop - first), np.int32)
-        spatial_rows(len(rows), _strata(), first, stop, order, places)
-        yield rows[places]
+        yield rows[places_of(len(rows), first, stop)]

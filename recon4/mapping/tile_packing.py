@@ -20,8 +20,8 @@ from recon4.kernels.tile_packing import (
     lengths_to_bits,
     numbers_to_bits,
 )
-from recon4.mapping.tile import DEVIATION, FIELDS
-from recon4.mapping.tile_order import Order
+from recon4.mapping.tile import DEVIATION, FIELDS, as_half
+from recon4.mapping.tile_order import Rows
 from recon4.mapping.tuning import TILES
 from recon4.store.compressed import compress, expand
 from recon4.store.tuning import PACKING
@@ -78,30 +78,37 @@ def pack(name: str, values: NDArray[Any]) -> tuple[bytes, int]:
     return compress(out.data), width
 
 
-def unpack(name: str, data: bytes, width: int, *, order: Order, where: str) -> NDArray[Any]:
-    """The values of `pack`, (N,) or (N, K).
+def unpack(
+    name: str, packed: tuple[bytes, int], *, rows: Rows, out: NDArray[Any], where: str
+) -> None:
+    """Write the values of `pack` to some rows.
 
     Args:
         name: Of the field.
-        data: What `pack` returned.
-        width: What it returned, too.
-        order: Row of each value, (N,).
+        packed: What `pack` returned.
+        rows: Of each value, (N,).
+        out: Receives the values, (at least N,) or (at least N, K).
         where: File and block, for errors.
 
     Raises:
         StoreError: If the data are damaged or of another number of rows.
     """
     dtype, many = np.dtype(FIELDS[name][0]), FIELDS[name][1]
-    packing, count = FIELD_PACKING[name], len(order)
+    packing, count = FIELD_PACKING[name], len(rows)
+    data, width = packed
     expanded = expand(data, many * width * count, where)
-    packed = np.frombuffer(expanded, np.uint8).reshape(many, width, count)
-    in_steps = packing.step > 0.0 and dtype.kind == "f"
-    out = np.empty((count, many), np.float32 if in_steps else np.int64)
-    bytes_to_numbers(packed, order, packing.along, packing.step if in_steps else 1.0, out)
-    found = out.reshape(count) if many == 1 else out
-    if dtype.kind != "f":
-        return (found * int(packing.step) if packing.step else found).astype(dtype, copy=False)
-    return found.astype(dtype, copy=False) if in_steps else found.astype(np.int16).view(dtype)
+    digits = np.frombuffer(expanded, np.uint8).reshape(many, width, count)
+    into = out.reshape(len(out), many)
+    if packing.step and dtype == np.float32:
+        bytes_to_numbers(digits, rows, packing.along, packing.step, into)
+    elif packing.step and dtype == np.float16:
+        lengths, every = np.empty((count, many), np.float32), np.arange(count, dtype=np.int32)
+        bytes_to_numbers(digits, every, packing.along, packing.step, lengths)
+        into[rows] = as_half(lengths)
+    else:
+        # Numbers without a sign and halves are bits, which the kernel cuts off as it stores them.
+        bits = into.view(f"i{dtype.itemsize}")
+        bytes_to_numbers(digits, rows, packing.along, int(packing.step) or 1, bits)
 
 
 def as_stored(name: str, values: NDArray[Any]) -> NDArray[Any]:

@@ -9,8 +9,9 @@ Rows ``start`` to ``stop`` belong to a tile; any first part of them is an even s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
@@ -97,16 +98,29 @@ class Tile:
             Altered: If the tile is checked and its bytes do not match the hashes.
             StoreError: If the map does not have a field, or a file is damaged.
         """
+        taken = rows or slice(0, len(self) if limit is None else min(limit, len(self)), 1)
+        within = slice(self.start + taken.start, self.start + taken.stop, taken.step or 1)
+        return self._read(fields, partial(self.columns.read, rows=within))
+
+    def read_in_space(self, fields: Sequence[str]) -> Columns:
+        """Read some fields of all points, neighbors one after the other; otherwise as `read`."""
+        every = slice(self.start, self.stop, 1)
+        return self._read(fields, partial(self.columns.read_in_space, rows=every))
+
+    def _read(self, fields: Sequence[str], stored: Callable[..., Columns]) -> Columns:
         unknown = sorted(set(fields) - set(self.fields))
         if unknown:
             raise StoreError(f"the map has no field {unknown}; it has {list(self.fields)}")
-        taken = rows or slice(0, len(self) if limit is None else min(limit, len(self)), 1)
         derived = set(fields) - set(self.columns.fields)
         needed = (set(fields) - derived) | (set(_DERIVED_FROM) if derived else set())
         moved = RAW_OFFSET in self.columns.fields and bool(
             derived or (self.raw and "xyz" in needed)
         )
-        columns = self._stored(sorted(needed | ({RAW_OFFSET} if moved else set())), taken)
+        names = sorted(needed | ({RAW_OFFSET} if moved else set()))
+        try:
+            columns = stored(names, checked=self.checked)
+        except Altered as error:
+            raise Altered(f"tile {self.ijk} of the map was changed: {error}") from error
         at = columns["xyz"] if "xyz" in columns else np.empty((0, 3), np.float32)
         measured = at + columns[RAW_OFFSET].astype(np.float32) if moved else at
         if derived:
@@ -116,13 +130,6 @@ class Tile:
         if self.raw and "xyz" in fields:
             columns["xyz"] = measured
         return {name: columns[name] for name in fields}
-
-    def _stored(self, names: Sequence[str], rows: slice) -> Columns:
-        within = slice(self.start + rows.start, self.start + rows.stop, rows.step or 1)
-        try:
-            return self.columns.read(names, within, checked=self.checked)
-        except Altered as error:
-            raise Altered(f"tile {self.ijk} of the map was changed: {error}") from error
 
     def xyz_m(self, *, limit: int | None = None) -> Array:
         """Points in the map [m], float64 (N, 3)."""

@@ -74,6 +74,8 @@ def test_laz_holds_every_point_with_all_that_is_known_of_it(folder, tmp_path):
     expected_s = (column(tiles, "t_ns") - 315_964_800 * 10**9) / 1e9 + 18 - 1e9
     np.testing.assert_allclose(cloud.gps_time, expected_s, rtol=0, atol=1e-6)
     assert cloud.header.global_encoding.gps_time_type == laspy.header.GpsTimeType.STANDARD
+    listed = cloud.header.vlrs.get("ExtraBytesVlr")[0].extra_bytes_structs
+    assert not any(one.min_is_relevant() or one.max_is_relevant() for one in listed)
     assert cloud.header.global_encoding.wkt
     assert cloud.header.parse_crs().to_epsg() in {None, 32633}
     assert cloud.header.parse_crs().sub_crs_list[0].to_epsg() == 32633

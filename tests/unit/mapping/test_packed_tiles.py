@@ -154,9 +154,12 @@ def test_whole_numbers_of_any_size_come_back(values):
     order = np.arange(len(values), dtype=np.int32)[::-1].copy()
     exact = numbers // TILES.time_step_ns * TILES.time_step_ns
 
-    data, width = pack("t_ns", exact)
+    packed = pack("t_ns", exact)
 
-    np.testing.assert_array_equal(unpack("t_ns", data, width, order=order, where=""), exact[::-1])
+    found = np.zeros(len(exact) + 1, np.int64)
+    unpack("t_ns", packed, rows=order, out=found, where="")
+    np.testing.assert_array_equal(found[:-1], exact[::-1])
+    assert found[-1] == 0
 
 
 @pytest.mark.parametrize("name", ["xyz", "normal", "echo"])
