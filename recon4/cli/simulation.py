@@ -42,7 +42,7 @@ def simulate(  # noqa: PLR0913 - options of a command
     ] = "",
     bag: Annotated[
         bool | None,
-        typer.Option(help="Also write a rosbag2 (not of Livox); default: if all are Velodynes."),
+        typer.Option(help="Also write a rosbag2; default: if all are Velodynes."),
     ] = None,
     degrade: Annotated[
         list[str] | None,

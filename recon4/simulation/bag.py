@@ -15,8 +15,8 @@ from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
-from recon4.recording.packets.messages import PACKET_MESSAGES as READ_MESSAGES
-from recon4.simulation.bag_packets import PACKET_MESSAGES
+from recon4.simulation.bag_packets import PACKET_MESSAGES, PacketMessage
+from recon4.simulation.livox_messages import livox_message
 
 
 class NavSatLevel(IntEnum):
@@ -25,6 +25,11 @@ class NavSatLevel(IntEnum):
     NO_FIX = -1
     FIX = 0
     GBAS_FIX = 2
+
+
+def _message_of(model: str) -> PacketMessage:
+    maker = lidar_model(model).maker
+    return livox_message(model) if maker == "Livox" else PACKET_MESSAGES[maker]
 
 
 @contextmanager
@@ -47,9 +52,9 @@ class BagWriter:
         self._writer = writer
         self._rig = rig
         self._store = get_typestore(Stores.ROS2_HUMBLE)
-        self._messages = [PACKET_MESSAGES[lidar_model(s.model).maker] for s in rig.sensors]
-        for kind in {one.kind for one in self._messages}:
-            for name, text in READ_MESSAGES[kind].definitions.items():
+        self._messages = [_message_of(sensor.model) for sensor in rig.sensors]
+        for one in {one.kind: one for one in self._messages}.values():
+            for name, text in one.definitions.items():
                 self._store.register(get_types_from_msg(text, name))
         self._topics = [
             self._connect(sensor.topic, message.kind)

@@ -1,4 +1,7 @@
-"""How the drivers of the makers publish packets: one message for some of them."""
+"""How the drivers of the makers publish packets: one message for some of them.
+
+The drivers of Livox publish points instead: `recon4.simulation.livox_messages`.
+"""
 
 from __future__ import annotations
 
@@ -9,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.recording.packets.messages import PACKET_MESSAGES as READ_MESSAGES
+
 Packet = tuple[Any, NDArray[np.uint8]]
 """Stamp of arrival, and bytes, (B,)."""
 Types = Callable[[str], Any]
@@ -17,13 +22,15 @@ Types = Callable[[str], Any]
 
 @dataclass(frozen=True, slots=True)
 class PacketMessage:
-    """A type of message that carries packets; `recon4.recording.packets` reads it."""
+    """A type of message that carries packets, or their points; recon4 reads it."""
 
     kind: str
     collected: int
     """Packets in a message."""
     make: Callable[[Types, Any, Sequence[Packet]], Any]
     """Of the types, a header and the packets."""
+    definitions: Mapping[str, str]
+    """The type and those it is made of: name -> text in ROS's language."""
 
 
 def _velodyne(types: Types, header: Any, packets: Sequence[Packet]) -> Any:
@@ -49,11 +56,15 @@ def _ouster(types: Types, _: Any, packets: Sequence[Packet]) -> Any:
     return types("ouster_ros/msg/PacketMsg")(buf=data)
 
 
+def _message(kind: str, collected: int, make: Callable[..., Any]) -> PacketMessage:
+    return PacketMessage(kind, collected, make, READ_MESSAGES[kind].definitions)
+
+
 PACKET_MESSAGES: Mapping[str, PacketMessage] = {
     # What the driver collects is a little more than a revolution.
-    "Velodyne": PacketMessage("velodyne_msgs/msg/VelodyneScan", 76, _velodyne),
-    "Hesai": PacketMessage("hesai_ros_driver/msg/UdpFrame", 180, _hesai),
-    "RoboSense": PacketMessage("rslidar_msg/msg/RslidarPacket", 1, _robosense),
-    "Ouster": PacketMessage("ouster_ros/msg/PacketMsg", 1, _ouster),
+    "Velodyne": _message("velodyne_msgs/msg/VelodyneScan", 76, _velodyne),
+    "Hesai": _message("hesai_ros_driver/msg/UdpFrame", 180, _hesai),
+    "RoboSense": _message("rslidar_msg/msg/RslidarPacket", 1, _robosense),
+    "Ouster": _message("ouster_ros/msg/PacketMsg", 1, _ouster),
 }
-"""By maker. The driver of Livox publishes points."""
+"""By maker."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress
-from recon4.simulation.bag_packets import PACKET_MESSAGES
 from recon4.simulation.degradation import (
     BEAM_ANGLE,
     ONLY_PROFILER,
@@ -47,19 +46,11 @@ def simulate(
             `recon4.simulation.degradation.KINDS`; None = none.
 
     Raises:
-        ConfigError: If a degradation or the bag cannot be written.
+        ConfigError: If a degradation cannot be written.
         StoreError: If the folder exists with something in it or cannot be written.
     """
-    families = {sensor.model: family_of(sensor.model) for sensor in setup.rig.sensors}
-    others = [m for m, family in families.items() if family.name not in PACKET_MESSAGES]
-    if bag and others:
-        makers = ", ".join(PACKET_MESSAGES)
-        raise ConfigError(
-            f"a rosbag2 is written of packets of {makers}, got {', '.join(others)}, whose driver "
-            "publishes points"
-        )
     if bag is None:
-        bag = all(family is VELODYNES for family in families.values())
+        bag = all(family_of(sensor.model) is VELODYNES for sensor in setup.rig.sensors)
     record(setup, {out: degradations or {}}, bag=bag, progress=progress)
 
 
