@@ -63,8 +63,6 @@ class LiveMap:
         self._coverage = Coverage()
         self._places = PlaceIndex(self._settings, scratch=self._scratch)
         self._path = ShownPath()
-        self._here_m = np.zeros(3)
-        """Last position before tracking was lost [m]."""
         self._lost = self._lost_steps = 0
         self._recovery: Recovery | None = None
         self._gate = LoopGate()
@@ -96,12 +94,13 @@ class LiveMap:
             self._preview.reset()
             messages.append(PathMessage([]))
         self._motion.push(step)
-        step, lost = self._resume(step) if interrupted else self._follow(frame, step)
+        step, lost = self._resume(frame, step) if interrupted else self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
         pose = self._pose(frame, step, T_map_body, lost=lost)
         if lost:
             return pose, messages
-        self._extend_path(T_map_body.t)
+        self._path.extend(T_map_body.t)
+        self.tracker.last_known.set(T_map_body, frame.t_ns + frame.duration_ns)
         messages += self._add_points(frame, step)
         if frame.t_ns - self._summary_ns >= LIVE_MAP.summary_every_ns:
             self._summary_ns = frame.t_ns
@@ -115,17 +114,26 @@ class LiveMap:
         others.append(self._motion.message())
         return Snapshot(list(self._path.places), chunk, others)
 
-    def _extend_path(self, p_map: Array) -> None:
-        self._here_m = p_map
-        self._path.extend(p_map)
-
-    def _resume(self, step: OdometryStep) -> tuple[OdometryStep, bool]:
+    def _resume(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
         """After a pause: assume the position of its start until relocalization confirms it."""
-        if not len(self._places):
-            return step, False
-        self._recovery = Recovery(self._places, self._here_m, expected=self.tracker.T_map_odom)
-        self._lost, self._lost_steps = 1, 0
-        return step, True
+        self._recovery = self._recover(frame, step, expected=True)
+        self._lost, self._lost_steps = int(self._recovery is not None), 0
+        return step, self._recovery is not None
+
+    def _recover(self, frame: Multiframe, step: OdometryStep, *, expected: bool) -> Recovery | None:
+        """Search the place where the odometry began again; None without places.
+
+        Args:
+            frame: Its first multiframe.
+            step: The result of that.
+            expected: Whether the body may not have moved since it was lost.
+        """
+        tracker = self.tracker
+        end_ns = frame.t_ns + frame.duration_ns
+        reach = tracker.last_known.reach(step.T_odom_body, end_ns, with_imu=tracker.with_imu)
+        if reach is None or not len(self._places):
+            return None
+        return Recovery(self._places, reach, expected=tracker.T_map_odom if expected else None)
 
     def _follow(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
         """The step to continue with, and whether tracking is lost.
@@ -139,8 +147,8 @@ class LiveMap:
         if self._lost_steps >= LIVE_MAP.search_after:
             step = self.tracker.restart(frame)
             self._lost_steps = 0
-            if self._recovery is None and len(self._places):
-                self._recovery = Recovery(self._places, self._here_m)
+            paused = self._recovery is not None and self._recovery.is_expected
+            self._recovery = self._recover(frame, step, expected=paused)
             return step, True
         if self._recovery is None or step.lost:
             return step, step.lost

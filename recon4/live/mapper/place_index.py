@@ -12,6 +12,7 @@ from recon4.live.mapper.plan_match import plan_hypotheses
 from recon4.live.mapper.spill_file import SpillFile
 from recon4.live.mapper.tuning import PLACE_INDEX
 from recon4.pose_graph.tuning import graph_tuning
+from recon4.registration.overlap import make_range_image, seen_through
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
@@ -114,6 +115,20 @@ class PlaceIndex:
         )
         return found if fits else None
 
+    def seen_through(self, source: Array, T_map_body: SE3) -> float:
+        """Fraction of a view in the free space of the nearest place, or the reverse, 0..1.
+
+        The larger of both; where a view belongs, hardly any: no ray passes through a wall.
+
+        Args:
+            source: Segment midpoints in the body frame [m], (N, 3).
+            T_map_body: Pose of the view.
+        """
+        nearest = self._places[self.near(T_map_body.t, most=1)[0]]
+        ends_body = np.ascontiguousarray(self._spill.get(nearest.ends_body), dtype=np.float64)
+        view, place = make_range_image(source), make_range_image(ends_body)
+        return seen_through(view, place, T_map_body.inverse() @ nearest.T_map_body)
+
     def near(self, p_map: Array, *, most: int, apart_m: float = 0.0) -> list[int]:
         """Rows of the nearest places that are at least ``apart_m`` from each other."""
         at_m = self._at[: len(self), :3]
@@ -126,20 +141,23 @@ class PlaceIndex:
                 break
         return chosen
 
-    def relocate(self, source: Array, R: Array, place: int) -> list[tuple[SE3, float]]:
-        """Find possible poses of a view near a place with any heading, each with its match ratio.
+    def relocate(
+        self, source: Array, R: Array, place: int, *, heading: tuple[float, float] | None = None
+    ) -> list[tuple[SE3, float]]:
+        """Find possible poses of a view near a place, each with its match ratio.
 
         Args:
             source: Segment midpoints in the body frame [m], (N, 3).
             R: Attitude of the body, (3, 3); roll and pitch are taken from it.
             place: Row of a place.
+            heading: Turn of ``R`` in the map and how far it can be from that [rad]; None = any.
         """
         T = self._places[place].T_map_body
         level = SE3(R, np.zeros(3)) @ source
         target = np.concatenate([self._in_map(k) for k in self._around(place)]) - T.t
         found: list[Registration] = []
         for yaw, shift_m in plan_hypotheses(
-            _walls(target), _walls(level), most=PLACE_INDEX.hypotheses
+            _walls(target), _walls(level), most=PLACE_INDEX.hypotheses, heading=heading
         ):
             initial = SE3(so3_exp([0.0, 0.0, yaw]) @ R, T.t + np.append(shift_m, 0.0))
             one = self.locate(source, initial, place)

@@ -10,7 +10,13 @@ from recon4.geometry.se3 import Array
 from recon4.live.mapper.tuning import PLAN_MATCH
 
 
-def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tuple[float, Array]]:
+def plan_hypotheses(
+    target_m: Array,
+    source_m: Array,
+    *,
+    most: int,
+    heading: tuple[float, float] | None = None,
+) -> list[tuple[float, Array]]:
     """Rotations and shifts that align most walls of a view with walls of the map, best first.
 
     The number of points of the view on walls of the map is, for one rotation and all shifts, the
@@ -20,6 +26,7 @@ def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tupl
         target_m: Horizontal wall points of the map relative to the place [m], (N, 2).
         source_m: Horizontal wall points of the view relative to the sensor [m], (M, 2).
         most: Number of hypotheses.
+        heading: Yaw and how far the true one can be from it [rad]; None = any.
 
     Returns:
         Yaw [rad] and shift [m] (2,) that map the view onto the map, up to 5 m away.
@@ -29,7 +36,7 @@ def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tupl
         return []
     walls = ndimage.gaussian_filter(np.minimum(_raster(target_m), 1.0), 1.0)
     spectrum = np.fft.rfft2(walls)
-    yaws = np.arange(0.0, 2 * np.pi, PLAN_MATCH.yaw_step_rad)
+    yaws = _yaws(heading)
     reach = round(PLAN_MATCH.shift_m / PLAN_MATCH.cell_m)
     shifts = np.arange(-reach, reach + 1)
     scores = np.stack([_scores(spectrum, source_m, yaw)[np.ix_(shifts, shifts)] for yaw in yaws])
@@ -37,8 +44,16 @@ def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tupl
     for _ in range(most):
         k, i, j = np.unravel_index(int(np.argmax(scores)), scores.shape)
         found.append((float(yaws[k]), np.array([shifts[i], shifts[j]]) * PLAN_MATCH.cell_m))
-        _suppress(scores, (int(k), int(i), int(j)))
+        _suppress(scores, yaws, (int(k), int(i), int(j)))
     return found
+
+
+def _yaws(heading: tuple[float, float] | None) -> Array:
+    """The yaws that are tried [rad]."""
+    center, reach = heading or (np.pi, np.pi)
+    steps = int(min(reach, np.pi) / PLAN_MATCH.yaw_step_rad)
+    yaws: Array = center + PLAN_MATCH.yaw_step_rad * np.arange(-steps, steps + 1.0)
+    return yaws
 
 
 def _scores(spectrum: NDArray[np.complex128], source_m: Array, yaw: float) -> Array:
@@ -57,12 +72,10 @@ def _raster(p_m: Array) -> Array:
     return counts.reshape(PLAN_MATCH.cells, PLAN_MATCH.cells).astype(np.float64)
 
 
-def _suppress(scores: Array, at: tuple[int, int, int]) -> None:
+def _suppress(scores: Array, yaws: Array, at: tuple[int, int, int]) -> None:
     """Exclude the neighborhood of a maximum, which belongs to the same hypothesis."""
-    turn, near = (
-        round(PLAN_MATCH.apart_rad / PLAN_MATCH.yaw_step_rad),
-        round(PLAN_MATCH.apart_m / PLAN_MATCH.cell_m),
-    )
-    rows = np.arange(at[0] - turn, at[0] + turn + 1) % len(scores)
+    turned = np.abs(np.angle(np.exp(1j * (yaws - yaws[at[0]]))))
+    rows = np.flatnonzero(turned < PLAN_MATCH.apart_rad)
+    near = round(PLAN_MATCH.apart_m / PLAN_MATCH.cell_m)
     a, b = max(at[1] - near, 0), max(at[2] - near, 0)
     scores[rows, a : at[1] + near + 1, b : at[2] + near + 1] = -np.inf

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.live.mapper.last_known import LastKnown
 from recon4.live.mapper.live_attitude import IMU_WRONG, NOT_UPRIGHT, is_upright
 from recon4.live.mapper.tuning import LIVE_TRACKER
 from recon4.model.multiframe import Multiframe
@@ -58,6 +59,8 @@ class Tracker:
         """Whether the last multiframe started a new map frame; the map before it is void."""
         self._tracked = SE3.identity()
         """Last ``T_map_body`` before tracking was lost."""
+        self.last_known = LastKnown(rig)
+        """Set by who knows that a pose is certain; turned on by the IMU."""
         self.T_map_odom = SE3.identity()
         """Pose of the odometry frame in the map; moved by loop closures and relocalization."""
         self.with_imu = False
@@ -73,6 +76,7 @@ class Tracker:
         if not len(imu):
             return
         self._imu.append(imu)
+        self.last_known.extend(imu)
         self._turn_rate_changes |= bool(np.any(imu.gyro_rad_s != self._imu[0].gyro_rad_s[0]))
         if self._imu_ns is not None:
             self._imu_hole_ns = max(self._imu_hole_ns, int(imu.t_ns[0]) - self._imu_ns)
@@ -161,13 +165,16 @@ class Tracker:
         """Choose the IMU again by the last multiframes, and go on with what was chosen."""
         imu = join(list(self._imu))
         recent = _Recent(self._rig, [frame for frame, _ in self._recent], imu)
-        if imu is not None and imu_channels(imu).no_gyroscope:
-            # Certain, so it needs no proof by the LiDARs.
+        # Certain, so it needs no proof by the LiDARs.
+        certain = imu is not None and bool(imu_channels(imu).no_gyroscope)
+        if certain:
             found = without_imu(recent, self._settings)
         else:
             found = choose_imu(recent, self._settings, [range(len(recent))])
         if found.best is None or found.imu.choice == AS_RECORDED:
             return step
+        if not certain and found.best.score.lost > LIVE_TRACKER.still_lost:
+            return step  # LiDARs that see nothing accuse no IMU
         self._use(found.imu)
         T_map_body, last = self.T_map_odom @ step.T_odom_body, found.best.last
         self._odometry = found.best.odometry

@@ -47,6 +47,24 @@ IMU_WAIT = ImuWaitTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LastKnownTuning:
+    """Where the body can be after tracking was lost."""
+
+    fastest_m_s: float = 3.0
+    """Speed of somebody who runs with a backpack [m/s]."""
+    slack_m: float = 1.0
+    """Distance that is always possible: the last multiframes before the loss are inexact."""
+    drift_rad_s: float = 0.01
+    slack_rad: float = 0.2
+    """Error of the turn by a gyroscope: a constant rate, and what it has at once."""
+    longest_hole_ns: int = 200_000_000
+    """Over a longer time without samples the turn is not known [ns]."""
+
+
+LAST_KNOWN = LastKnownTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LatencyTuning:
     """Multiframes that are left out."""
 
@@ -230,6 +248,9 @@ class RecoveryTuning:
     sure_score: float = 3.0
     """A place that was not expected must fit for longer: the true one may not be in the map at
     all."""
+    max_seen_through: float = 0.06
+    """Largest fraction of a view in the free space of a place that nothing predicted, as in
+    ``RecognitionTuning``."""
     missed: float = 0.4
     """Loss of score of the expected place by a view that is not registered, as from behind a
     door."""
@@ -334,6 +355,8 @@ class LiveTrackerTuning:
     """Number of them, lost or with a large residual, that starts a check."""
     far_m: float = 0.08
     """A larger residual [m]."""
+    still_lost: int = 4
+    """Number of them that may still be lost by the IMU that a check chose."""
     early_frames: int = 100
     """If the IMU is rejected before this multiframe, the map made with it is reset."""
     interrupted_ns: int = 2_000_000_000
