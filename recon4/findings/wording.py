@@ -12,6 +12,7 @@ the value named by its ``if`` is not true. Formats after the colon, besides thos
 ``count``   a whole number with its thousands apart
 ``label``   name of a count of the import: what it counts (`recon4.model.count_words`)
 ``counts``  several such counts, ``name=number name=number``
+``noun``    name of a count: what is counted; ``fates`` of several: what became of how many
 ``word``    the text of a word, from ``words`` of the kind, else from those of the catalog
 ========== ==========================================================================
 """
@@ -31,7 +32,7 @@ from msgspec.structs import replace
 
 from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
-from recon4.model.import_counts import count_label, count_text
+from recon4.model.import_counts import count_fate, count_label, count_noun, count_text
 
 _T = TypeVar("_T")
 _DEGREE_DIGITS = {"deg": 2, "deg1": 1, "deg3": 3}
@@ -177,16 +178,21 @@ class _Filling(string.Formatter):
             case "label":
                 return count_label(value)
             case "counts":
-                return _counts(value)
+                counts = _counts(value)
+                return "; ".join(count_text(name, counts) for name in counts)
+            case "fates":
+                counts = _counts(value)
+                return "; ".join(f"{number}: {count_fate(name)}" for name, number in counts.items())
+            case "noun":
+                return count_noun(value)
             case "word":
                 return self._words.get(value) or catalog().words.get(value, value)
         return super().format_field(value, format_spec)
 
 
-def _counts(value: str) -> str:
+def _counts(value: str) -> dict[str, int]:
     pairs = (one.partition("=") for one in value.split())
-    counts = {name: int(number) for name, _, number in pairs}
-    return "; ".join(count_text(name, counts) for name in counts)
+    return {name: int(number) for name, _, number in pairs}
 
 
 def _length(value_m: float) -> str:

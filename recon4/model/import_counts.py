@@ -61,6 +61,18 @@ def count_label(name: str) -> str:
     return f"{_noun(words)}: {words.text}{f' ({sensor})' if sensor else ''}"
 
 
+def count_noun(name: str) -> str:
+    """What is counted, such as ``scans of the 2-D laser``; its name if it has no words."""
+    words = COUNT_WORDINGS.get(name)
+    return name.replace("_", " ") if words is None else words.noun or words.text
+
+
+def count_fate(name: str) -> str:
+    """What became of what is counted; the name of the count if it has no words."""
+    words = _words(name)
+    return name.replace("_", " ") if words is None else words.text
+
+
 def count_text(name: str, counts: Mapping[str, int], *, detail: str = "") -> str:
     """A count as text, such as ``3 of 30000 points: a time …, dropped``.
 

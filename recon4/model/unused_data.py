@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from recon4.model.count_words import COUNT_WORDINGS
+from recon4.model.finding import Value
 from recon4.model.import_counts import Loss, losses, wording
 from recon4.model.tuning import LOSSES
 
@@ -36,14 +36,15 @@ class UnusedPart:
         return not any(loss.ratio >= LOSSES.warned_ratio for loss in self.reasons)
 
     @property
-    def text(self) -> str:
-        """One sentence: how many of how many, and why."""
-        because = "; ".join(f"{loss.number}: {wording(loss.name)[0].text}" for loss in self.reasons)
-        words = COUNT_WORDINGS[self.name]
-        return (
-            f"{self.number} of {self.total} {words.noun or words.text} are not used "
-            f"({100.0 * self.number / self.total:.0f} %): {because}."
-        )
+    def values(self) -> dict[str, Value]:
+        """As values of a finding: how many of how many, and how many for each reason."""
+        return {
+            "data": self.name,
+            "number": self.number,
+            "total": self.total,
+            "ratio": self.number / self.total,
+            "reasons": " ".join(f"{loss.name}={loss.number}" for loss in self.reasons),
+        }
 
 
 def unused_parts(counts: Mapping[str, int]) -> list[UnusedPart]:

@@ -12,9 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import Recon4Error
+from recon4.findings.witnesses.base import finding
 from recon4.findings.wording import whole_text
 from recon4.geometry.se2 import from_se3
 from recon4.model.finding import Level
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import import_notes
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -176,7 +178,10 @@ def _judge_frames(outcome: Outcome, out: Path) -> Trajectory:
     store = FrameStore.open(next(out.glob("artifacts/*/index.npy")).parent)
     counts = store.report["counts"]
     outcome.said += map(whole_text, import_notes(store.report).findings)
-    outcome.said += [part.text for part in unused_parts(counts)]
+    unused = [
+        finding(FindingKind.IMPORT_UNUSED, Level.CHECK, p.values) for p in unused_parts(counts)
+    ]
+    outcome.said += map(whole_text, unused)
     usual = sum(counts.get(f"points_{k}", 0) for k in ("near", "far", "of_incomplete_frames"))
     if variant.points:
         outcome.used_ratio = (store.points + usual) / variant.points

@@ -30,7 +30,7 @@ class Import:
         for part in unused_parts(notes.counts):
             if part.is_severe or part.is_scattered:
                 level = Level.DO_NOT_USE if part.is_severe else Level.CHECK
-                yield finding(FindingKind.IMPORT_UNUSED, level, {"text": part.text})
+                yield finding(FindingKind.IMPORT_UNUSED, level, part.values)
 
 
 def gyro_unit_assumed(notes: ImportNotes, level: Level) -> Iterator[Finding]:

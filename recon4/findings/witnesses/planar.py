@@ -101,7 +101,7 @@ def _imported(notes: ImportNotes) -> Iterator[Finding]:
             yield replace(one, level=Level.NOTE)
     for part in unused_parts(notes.counts):
         level = Level.DO_NOT_USE if part.is_severe else Level.CHECK
-        yield finding(FindingKind.IMPORT_UNUSED, level, {"text": part.text})
+        yield finding(FindingKind.IMPORT_UNUSED, level, part.values)
 
 
 def _mounting(record: PlanarRecord) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from recon4.errors import StoreError
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.imports import Import
 from recon4.findings.wording import text_of
-from recon4.model.finding import Level
+from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import MOUNT_DOUBTS, FindingKind
 from recon4.model.import_notes import import_notes
 
@@ -35,6 +35,14 @@ def test_sentences_about_a_mount_stay_doubts_about_it():
     others = [text_of(one) for one in notes.findings if one.kind not in MOUNT_DOUBTS]
     assert (doubts, others) == ([TILTED], [CLOCK])
     assert notes.counts == {"scans": 3}
+
+
+def test_a_finding_that_an_earlier_version_stored_as_a_sentence_still_says_it():
+    stored = {"text": "512 of 603 scans are not used."}
+
+    found = Finding(kind=FindingKind.IMPORT_UNUSED, level=Level.CHECK, values=stored)
+
+    assert text_of(found) == stored["text"]
 
 
 @pytest.mark.parametrize("damaged", [{"warnings": [1]}, {"findings": [{"kind": "NO-SUCH"}]}])

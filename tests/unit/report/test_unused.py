@@ -3,10 +3,17 @@
 import pytest
 
 from recon4.findings.walk import WalkRecord
-from recon4.model.finding import Level
+from recon4.findings.wording import text_of
+from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.unused_data import unused_parts
 from tests.said import found_in
+
+
+def words_of(part):
+    """What a map says of it."""
+    found = Finding(kind=FindingKind.IMPORT_UNUSED, level=Level.CHECK, values=part.values)
+    return text_of(found)
 
 
 def levels(counts):
@@ -21,7 +28,7 @@ def test_all_reasons_count_together_and_are_named():
     (part,) = unused_parts(counts)
 
     assert (part.number, part.total) == (512, 603)
-    assert part.text == (
+    assert words_of(part) == (
         "512 of 603 scans of the 2-D laser are not used (85 %): 500: cannot be decoded, left out; "
         "12: earlier than the one before, left out."
     )
@@ -30,7 +37,7 @@ def test_all_reasons_count_together_and_are_named():
 def test_what_is_counted_where_it_is_used_has_its_plain_name():
     (part,) = unused_parts({"gnss_kept": 15, "gnss_nan": 10})
 
-    assert part.text.startswith("10 of 25 GNSS positions are not used (40 %): ")
+    assert words_of(part).startswith("10 of 25 GNSS positions are not used (40 %): ")
 
 
 @pytest.mark.parametrize(
