@@ -1,4 +1,4 @@
-"""The stage ``classes``: which measured points are of the carrier or of something that moves.
+"""The stage ``classes``: which measured points are of the carrier, move, or are reflected.
 
 A point is compared with other scans of the walk. Where several see through it, it was on something
 that has moved on: what moves with the sensors is the carrier, everything else a person or a
@@ -7,8 +7,9 @@ vehicle. `docs/explanation/map.md` explains it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,8 +21,9 @@ from recon4.classes.views import RegularViews, in_body
 from recon4.geometry.se3 import Array
 from recon4.kernels.seen_through import VERDICT, RangeViews, find_seen_through, spread_to_neighbors
 from recon4.mapping.build import in_order
+from recon4.mapping.mirrors import Mirror, Sight
 from recon4.mapping.tuning import MAP_BUILD
-from recon4.mapping.undistort import place
+from recon4.mapping.undistort import place, place_with_origins
 from recon4.model.classes import CLASSES, PointClass
 from recon4.model.figures import ClassFigures
 from recon4.model.frames import RecordedFrames
@@ -36,6 +38,7 @@ def write_classes(
     trajectory: Trajectory,
     out: Path,
     *,
+    mirrors: Sequence[Mirror] = (),
     progress: Progress | None = None,
 ) -> ClassFigures:
     """Classify all points of a walk, and write the classes into a folder.
@@ -46,6 +49,7 @@ def write_classes(
         frames: The multiframes.
         trajectory: ``T_map_body``, dense.
         out: The stage's folder.
+        mirrors: In the map.
         progress: Receives the progress.
 
     Raises:
@@ -54,7 +58,7 @@ def write_classes(
     """
     counts = np.zeros(256, np.int64)
     with ClassWriter(out) as writer:
-        for classes in classify(frames, trajectory, progress=progress):
+        for classes in classify(frames, trajectory, mirrors=mirrors, progress=progress):
             writer.append(classes)
             counts += np.bincount(classes, minlength=256)
     found = {facts.title: int(counts[k]) for k, facts in CLASSES.items() if counts[k]}
@@ -62,21 +66,26 @@ def write_classes(
 
 
 def classify(
-    frames: RecordedFrames, trajectory: Trajectory, *, progress: Progress | None = None
+    frames: RecordedFrames,
+    trajectory: Trajectory,
+    *,
+    mirrors: Sequence[Mirror] = (),
+    progress: Progress | None = None,
 ) -> Iterator[NDArray[np.uint8]]:
     """Classes of the points of each multiframe, (N,).
 
     Args:
         frames: The multiframes.
         trajectory: ``T_map_body``, dense.
+        mirrors: In the map.
         progress: Receives the progress.
     """
     watch = progress or Silent()
-    carrier = _learn_carrier(frames, trajectory, watch)
+    known = _Compared(frames, trajectory, _learn_carrier(frames, trajectory, watch), mirrors)
     views = RegularViews(frames, trajectory)
 
     def work(given: tuple[Multiframe, RangeViews | None]) -> NDArray[np.uint8]:
-        return _classes(*given, frames=frames, trajectory=trajectory, carrier=carrier)
+        return _classes(*given, known=known)
 
     # Images of scans are made here, in order, so that the threads only read them.
     given = ((frame := frames[k], views.near(frame.t_mid_ns)) for k in range(len(frames)))
@@ -99,23 +108,29 @@ def _learn_carrier(
     return volume.filled()
 
 
-def _classes(
-    frame: Multiframe,
-    views: RangeViews | None,
-    *,
-    frames: RecordedFrames,
-    trajectory: Trajectory,
-    carrier: CarrierCubes,
-) -> NDArray[np.uint8]:
-    p_map = place(frame, trajectory, frames.rig)
-    p_body = in_body(frame.xyz, frame.sensor, frames.rig)
-    verdict = _verdicts(frame, p_map, views)
+@dataclass(frozen=True, slots=True, eq=False)
+class _Compared:
+    """What the points of all multiframes are compared with, beside other scans."""
+
+    frames: RecordedFrames
+    trajectory: Trajectory
+    carrier: CarrierCubes
+    mirrors: Sequence[Mirror]
+
+
+def _classes(frame: Multiframe, views: RangeViews | None, *, known: _Compared) -> NDArray[np.uint8]:
+    rig = known.frames.rig
+    placed = place_with_origins(frame, known.trajectory, rig)
+    p_body = in_body(frame.xyz, frame.sensor, rig)
+    verdict = _verdicts(frame, placed.xyz_m, views)
     moving = np.zeros(len(frame), np.bool_)
     count = np.zeros(SPREAD.shape, np.int16)
     spread_to_neighbors(p_body, verdict, SPREAD.cube_m, SPREAD.few, count, moving)
     classes = np.full(len(frame), PointClass.UNCLASSIFIED, np.uint8)
     classes[moving] = PointClass.MOVING
-    classes[carrier.of(p_body, verdict)] = PointClass.CARRIER
+    for mirror in known.mirrors:
+        classes[mirror.reflects(Sight(placed.xyz_m, placed.origin_m))] = PointClass.REFLECTION
+    classes[known.carrier.of(p_body, verdict)] = PointClass.CARRIER
     return classes
 
 

@@ -17,6 +17,8 @@ class ViewTuning:
     reach_ns: int = 10_500_000_000
     """They are at least and at most this far away in time [ns]: after a second a person has left
     his place, and trajectories drift."""
+    best_ns: int = 5_000_000_000
+    """Those nearest to this far away are asked first [ns]: a car has left its place, too."""
     kept_ns: int = 11_500_000_000
     """Images this near in time are in memory: threads may be a second apart [ns]."""
     rows_deg: float = 2.0

@@ -47,7 +47,7 @@ class RegularViews:
         """
         away_ns = np.abs(self._t_ns - t_ns)
         near = np.flatnonzero((away_ns >= VIEWS.apart_ns) & (away_ns <= VIEWS.reach_ns))
-        near = near[np.argsort(away_ns[near], kind="stable")]
+        near = near[np.argsort(np.abs(away_ns[near] - VIEWS.best_ns), kind="stable")]
         for old in [k for k in self._place if away_ns[k] > VIEWS.kept_ns]:
             self._free.append(self._place.pop(old))
         for k in near.tolist():

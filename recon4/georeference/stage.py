@@ -18,10 +18,10 @@ from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
 from recon4.georeference.tuning import LEVEL_STAGE, GnssTuning
-from recon4.mapping.mirrors import Sight, find_mirrors
+from recon4.mapping.mirrors import Mirror, Sight, find_mirrors, save_mirrors
 from recon4.mapping.undistort import place_with_origins
 from recon4.model.corrections import apply_corrections
-from recon4.model.figures import AntennaFigures, LevelFigures, MirrorFigures
+from recon4.model.figures import AntennaFigures, LevelFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.rejected_fixes import disputed_m, rejected_runs
@@ -75,17 +75,18 @@ class LeveledMap:
     """Audit of the antenna; None = too few fixes."""
     uncertainty: PoseUncertainty | None
     """Covariances of the poses of the nodes; None = not stated."""
-    mirrors: tuple[MirrorFigures, ...] = ()
+    mirrors: tuple[Mirror, ...] = ()
     """Walls that show the room before them."""
 
     def save(self, out: Path) -> LevelFigures:
-        """Write ``trajectory.npz``, the files of the graph, ``georeference.json`` and, where
-        covariances are stated, ``uncertainty.npz``.
+        """Write ``trajectory.npz``, the files of the graph, ``georeference.json``,
+        ``mirrors.npz`` and, where covariances are stated, ``uncertainty.npz``.
         """
         if self.uncertainty is not None:
             save_uncertainty(out, self.uncertainty)
         save_trajectory(out / "trajectory.npz", self.trajectory)
         save_graph(out, self.graph)
+        save_mirrors(out / "mirrors.npz", self.mirrors)
         record: dict[str, object] = {
             "levelling": self.leveling.record(),
             "georeference": self.georeference.record(),
@@ -102,7 +103,7 @@ class LeveledMap:
             uncertainty=(
                 uncertainty_figures(self.uncertainty, self.trajectory) if self.uncertainty else None
             ),
-            mirrors=self.mirrors,
+            mirrors=tuple(mirror.figures for mirror in self.mirrors),
         )
 
 
@@ -164,7 +165,7 @@ def level_and_georeference(
     )
 
 
-def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[MirrorFigures, ...]:
+def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[Mirror, ...]:
     """Mirrors in a map of LiDARs; a profiler sees too little of a wall at once."""
     if frames.rig.row_of("profiler") is not None or not len(frames):
         return ()

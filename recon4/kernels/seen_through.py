@@ -16,7 +16,7 @@ class RangeViews(NamedTuple):
     """Scans of S sensors as images of ranges; V of M are asked."""
 
     asked: NDArray[np.int64]
-    """Rows of those that are asked, nearest in time first, (V,)."""
+    """Rows of those that are asked, in this order, (V,)."""
     R: NDArray[np.float64]
     """Rotations of the sensors in the map, (M, S, 3, 3)."""
     t: NDArray[np.float64]

@@ -10,18 +10,22 @@ smaller than `MIRRORS.min_area_m2`.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import label
+from scipy.ndimage import binary_dilation, label
 from scipy.spatial import cKDTree
 
+from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tuning import MIRRORS
 from recon4.model.figures import MirrorFigures
+from recon4.store.arrays import load_arrays, save_arrays
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +42,7 @@ class Sight:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Wall:
+class Wall:
     """A vertical plane ``normal . p = offset``; the normal points to the side of the carrier."""
 
     normal: Array
@@ -58,7 +62,75 @@ class _Wall:
         return np.floor(np.stack([p @ along, p[:, 2]], axis=1) / MIRRORS.grid_m).astype(np.int64)
 
 
-def find_mirrors(sight: Sight) -> list[MirrorFigures]:
+@dataclass(frozen=True, slots=True, eq=False)
+class Mirror:
+    """The part of a wall that shows the room before it."""
+
+    wall: Wall
+    cells: NDArray[np.int64]
+    """Cells on the wall of `Wall.cells`, (K, 2)."""
+    figures: MirrorFigures
+
+    def reflects(self, sight: Sight) -> NDArray[np.bool_]:
+        """Which points are reflections: their beams cross the mirror or its rim, (N,)."""
+        found = np.zeros(len(sight.point_m), np.bool_)
+        before, behind = self.wall.height(sight.origin_m), -self.wall.height(sight.point_m)
+        rows = np.flatnonzero((before > 0.0) & (behind > MIRRORS.reflected_m))
+        if not len(rows):
+            return found
+        part = before[rows] / (before[rows] + behind[rows])
+        origin = sight.origin_m[rows]
+        at = origin + part[:, None] * (sight.point_m[rows] - origin)
+        low = self.cells.min(axis=0) - 2
+        mirrored = np.zeros(self.cells.max(axis=0) + 3 - low, np.bool_)
+        mirrored[tuple((self.cells - low).T)] = True
+        mirrored = binary_dilation(mirrored, np.ones((3, 3)))
+        cell = np.clip(self.wall.cells(at) - low, 0, np.array(mirrored.shape) - 1)
+        found[rows] = mirrored[tuple(cell.T)]
+        return found
+
+
+def save_mirrors(path: Path, mirrors: Sequence[Mirror]) -> None:
+    """Write the planes and cells of mirrors."""
+    cells = [mirror.cells for mirror in mirrors]
+    save_arrays(
+        path,
+        {
+            "normal": np.array([mirror.wall.normal for mirror in mirrors]).reshape(-1, 3),
+            "offset_m": np.array([mirror.wall.offset_m for mirror in mirrors], np.float64),
+            "area_m2": np.array([mirror.figures.area_m2 for mirror in mirrors], np.float64),
+            "middle_m": np.array([mirror.figures.middle_m for mirror in mirrors]).reshape(-1, 2),
+            "behind": np.array([mirror.figures.behind for mirror in mirrors], np.float64),
+            "count": np.array([len(one) for one in cells], np.int64),
+            "cells": np.concatenate([np.empty((0, 2), np.int64), *cells]),
+        },
+    )
+
+
+def load_mirrors(path: Path) -> list[Mirror]:
+    """Read what `save_mirrors` wrote.
+
+    Raises:
+        StoreError: If the file is missing or damaged.
+    """
+    columns = ["normal", "offset_m", "area_m2", "middle_m", "behind", "count"]
+    found = load_arrays(path, [*columns, "cells"])
+    rows = {len(found[name]) for name in columns}
+    if len(rows) != 1 or found["count"].sum() != len(found["cells"]):
+        raise StoreError(f"{path.name}: expected as many rows of each column, got {rows}")
+    ends = np.cumsum(found["count"])
+    mirrors = []
+    for k, (normal, offset_m, area_m2, middle_m, behind, count) in enumerate(
+        zip(*(found[name] for name in columns), strict=True)
+    ):
+        x, y = middle_m.tolist()
+        figures = MirrorFigures(area_m2=float(area_m2), middle_m=(x, y), behind=float(behind))
+        cells = found["cells"][ends[k] - count : ends[k]]
+        mirrors.append(Mirror(Wall(normal, float(offset_m)), cells, figures))
+    return mirrors
+
+
+def find_mirrors(sight: Sight) -> list[Mirror]:
     """Find mirrors, the largest first.
 
     Args:
@@ -77,7 +149,7 @@ def find_mirrors(sight: Sight) -> list[MirrorFigures]:
         return []
     steep = _Steep(sight[kept], _to_sensor(sight[kept], found.normal[kept].astype(np.float64)))
     mirrors = [_mirror(wall, steep, sight) for wall in _walls(steep)]
-    return sorted((m for m in mirrors if m is not None), key=lambda m: -m.area_m2)
+    return sorted((m for m in mirrors if m is not None), key=lambda m: -m.figures.area_m2)
 
 
 def _to_sensor(sight: Sight, normal: Array) -> Array:
@@ -100,11 +172,11 @@ class _Steep:
         return cKDTree(self.sight.point_m, balanced_tree=False, compact_nodes=False)
 
 
-def _walls(steep: _Steep) -> list[_Wall]:
+def _walls(steep: _Steep) -> list[Wall]:
     """The largest vertical planes, each once."""
     rows = np.flatnonzero(np.abs(steep.normal[:, 2]) < MIRRORS.vertical)
     rows = rows[:: 1 + len(rows) // MIRRORS.most_points]
-    found: list[_Wall] = []
+    found: list[Wall] = []
     while len(rows) > MIRRORS.min_support and len(found) < MIRRORS.most_walls:
         slot, key = _bins(steep, rows)
         count = np.bincount(key)
@@ -135,17 +207,17 @@ def _bins(steep: _Steep, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDA
     return slot, (shift - shift.min()) * slots + slot
 
 
-def _fitted(sight: Sight, normal: Array, angle_rad: float) -> _Wall:
+def _fitted(sight: Sight, normal: Array, angle_rad: float) -> Wall:
     axis = np.array([np.cos(angle_rad), np.sin(angle_rad), 0.0])
     mean = (normal * np.sign(normal @ axis)[:, None]).mean(axis=0) * [1.0, 1.0, 0.0]
     if (length := float(np.linalg.norm(mean))) > 0.0:  # else all are across the axis of their bin
         axis = mean / length
     offset_m = float(np.median(sight.point_m @ axis))
     before = np.median(sight.origin_m @ axis) > offset_m
-    return _Wall(axis, offset_m) if before else _Wall(-axis, -offset_m)
+    return Wall(axis, offset_m) if before else Wall(-axis, -offset_m)
 
 
-def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFigures | None:
+def _mirror(wall: Wall, steep: _Steep, every: Sight) -> Mirror | None:
     """The part of a wall that shows the room before it; None = less than counts."""
     sight, normal = steep.sight, steep.normal
     before, behind = wall.height(sight.origin_m), -wall.height(sight.point_m)
@@ -175,7 +247,40 @@ def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFigures | None:
     x, y, _ = at[mirrored[which]].mean(axis=0).tolist()
     crossing = wall.height(every.origin_m) > MIRRORS.before_m
     crossing &= wall.height(every.point_m) < -MIRRORS.behind_m
-    return MirrorFigures(area_m2=area_m2, middle_m=(x, y), behind=float(crossing.mean()))
+    figures = MirrorFigures(area_m2=area_m2, middle_m=(x, y), behind=float(crossing.mean()))
+    other = (count >= MIRRORS.min_beams) & (shown < (1.0 - MIRRORS.min_ratio) * count)
+    return Mirror(
+        wall,
+        _whole(wall, every[np.flatnonzero(crossing)], cells[mirrored], but=cells[other]),
+        figures,
+    )
+
+
+def _whole(
+    wall: Wall, through: Sight, mirrored: NDArray[np.int64], *, but: NDArray[np.int64]
+) -> NDArray[np.int64]:
+    """All cells of the openings that mirrored ones are in, (K, 2).
+
+    Most beams end at a floor or a wall that says nothing; but no beam crosses a wall.
+
+    Args:
+        wall: The wall.
+        through: Beams that cross it.
+        mirrored: Cells that show the room before the wall, (M, 2).
+        but: Cells that show something else, (L, 2).
+    """
+    before, behind = wall.height(through.origin_m), -wall.height(through.point_m)
+    part = before / (before + behind)
+    at = wall.cells(through.origin_m + part[:, None] * (through.point_m - through.origin_m))
+    low = np.minimum(at.min(axis=0), mirrored.min(axis=0))
+    crossed = np.zeros(np.maximum(at.max(axis=0), mirrored.max(axis=0)) - low + 1, np.bool_)
+    crossed[tuple((at - low).T)] = True
+    inside = ((but >= low) & (but < low + crossed.shape)).all(axis=1)
+    crossed[tuple((but[inside] - low).T)] = False
+    crossed[tuple((mirrored - low).T)] = True
+    opening = label(crossed)[0]
+    wanted = np.unique(opening[tuple((mirrored - low).T)])
+    return np.argwhere(np.isin(opening, wanted)) + low
 
 
 def _opening_ratio(
@@ -199,7 +304,7 @@ def _opening_ratio(
     return np.asarray((shows / np.maximum(every, 1))[opening])
 
 
-def _is_entered(wall: _Wall, steep: _Steep, reflected: Array) -> bool:
+def _is_entered(wall: Wall, steep: _Steep, reflected: Array) -> bool:
     """Whether what looks like a reflection, (N, 3), was seen from behind the wall, too."""
     inside = np.flatnonzero(wall.height(steep.sight.origin_m) < -MIRRORS.before_m)
     if not len(inside):

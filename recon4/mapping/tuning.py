@@ -66,6 +66,8 @@ class MirrorTuning:
     """A smaller wall is no mirror [m²]."""
     entered_ratio: float = 0.5
     """A room is real if this ratio of it was seen from behind the wall, too."""
+    reflected_m: float = 0.1
+    """A reflection lies at least this far behind the mirror."""
     most_beams: int = 20_000
     most_points: int = 60_000
     """No more beams through a wall, and points on walls, are used."""

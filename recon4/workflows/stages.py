@@ -236,6 +236,7 @@ def _classes(
     calibration: Path | None = None,
 ) -> ClassFigures:
     from recon4.classes.stage import write_classes
+    from recon4.mapping.mirrors import load_mirrors
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
 
@@ -243,6 +244,7 @@ def _classes(
         open_frames(frames, calibration, odometry),
         load_trajectory(level / "trajectory.npz"),
         context.out,
+        mirrors=load_mirrors(level / "mirrors.npz"),
         progress=context.progress,
     )
 
@@ -325,8 +327,8 @@ GRAPH = Stage("graph", 10, GraphReads, _graph, GraphFigures)
 VERIFICATION = Stage("verification", 3, VerificationReads, _verification, VerificationFigures)
 REVIEW = Stage("review", 4, VerificationReads, _review, ReviewFigures)
 REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)
-LEVEL = Stage("level", 30, LevelReads, _level, LevelFigures)
+LEVEL = Stage("level", 31, LevelReads, _level, LevelFigures)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures)
 INTENSITY: Stage[IntensityReads, Figures] = Stage("intensity", 2, IntensityReads, _intensity)
-CLASSES = Stage("classes", 1, ReadsNothing, _classes, ClassFigures)
+CLASSES = Stage("classes", 2, ReadsNothing, _classes, ClassFigures)
 MAP = Stage("map", 13, MapReads, _map, MapFigures)

@@ -1,6 +1,7 @@
 """Mirrors that double a room, found in what a LiDAR maps of it."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ import pytest
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.placing import Mirrors
 from recon4.geometry.tuning import SURFACES
-from recon4.mapping.mirrors import Sight, find_mirrors
+from recon4.mapping.mirrors import Sight, find_mirrors, load_mirrors, save_mirrors
 from recon4.model.figures import LevelFigures
 from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.setup import SimulationSetup, prepare
@@ -52,15 +53,17 @@ def without_mirrors(world: World) -> World:
 
 
 @pytest.mark.parametrize("world", ["mirrors", "mirrors:2"])
-def test_a_mirror_is_found_with_its_place_and_size(world: str) -> None:
+def test_a_mirror_is_found_with_its_place_and_size(world: str, tmp_path: Path) -> None:
     setup = prepare(world, seconds=20.0, seed=1)
     mesh = setup.world.mesh
     glass = mesh.vertices_m[mesh.triangles[mesh.reflectivity <= SURFACES.mirror]].reshape(-1, 3)
     glass = glass[glass[:, 1] < 0.2]
     area_m2 = np.ptp(glass[:, 0]) * np.ptp(glass[:, 2])
 
-    found = find_mirrors(sights(setup))
+    seen = sights(setup)
+    mirrors = find_mirrors(seen)
 
+    found = [mirror.figures for mirror in mirrors]
     assert len(found) >= 1
     x, y = found[0].middle_m
     assert glass[:, 0].min() < x < glass[:, 0].max()
@@ -68,6 +71,14 @@ def test_a_mirror_is_found_with_its_place_and_size(world: str) -> None:
     assert 0.4 * area_m2 < found[0].area_m2 < 1.3 * area_m2
     assert 0.02 < found[0].behind < 0.6
     level = LevelFigures(leveled_by="imu", tilt_deg=0.0, crs="", local="", mirrors=tuple(found))
+    reflected = mirrors[0].reflects(seen)
+    y_m = seen.point_m[:, 1]
+    assert y_m[reflected].max() < 0.05
+    assert reflected[y_m < -0.15].mean() > 0.9
+    save_mirrors(tmp_path / "mirrors.npz", mirrors)
+    again = load_mirrors(tmp_path / "mirrors.npz")
+    assert [mirror.figures for mirror in again] == found
+    np.testing.assert_array_equal(again[0].reflects(seen), reflected)
     said = texts(Mirrors().check(WalkRecord(level=level)))
     assert len(said) == len(found) and all("doubles the room" in text for text in said)
 
@@ -140,7 +151,7 @@ def _reach(origin, d, between):
 def test_a_like_room_is_no_reflection_once_it_was_entered() -> None:
     (doubtful,) = find_mirrors(like_rooms((-3.0, -2.0, -1.0)))
 
-    assert doubtful.middle_m[0] == pytest.approx(0.0, abs=0.1)
+    assert doubtful.figures.middle_m[0] == pytest.approx(0.0, abs=0.1)
     assert find_mirrors(like_rooms((-3.0, -2.0, -1.0, 1.0, 2.0, 3.0))) == []
 
 
