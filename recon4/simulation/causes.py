@@ -131,5 +131,7 @@ def _to_carrier(setup: SimulationSetup, points: Array, t_s: Array) -> Array:
     T_map_body = setup.walk.poses(t_s)
     p_body = np.einsum("nji,nj->ni", T_map_body.R, points - T_map_body.t)
     away_m = np.hypot(p_body[:, 0] - TORSO.x_m, p_body[:, 1] - TORSO.y_m)
-    high = (p_body[:, 2] > TORSO.bottom_m) & (p_body[:, 2] < TORSO.top_m + TOLERANCE.body_m)
+    high = (p_body[:, 2] > TORSO.bottom_m + TOLERANCE.body_m) & (
+        p_body[:, 2] < TORSO.top_m + TOLERANCE.body_m
+    )
     return np.where(high, np.abs(away_m - TORSO.radius_m), np.inf)

@@ -1,0 +1,162 @@
+"""Classes of points on simulated walks, against the true cause of each point, and what they change.
+
+    python -m tests.benchmarks.classes [SCENE ...] [--seed 11] [--work FOLDER]
+
+The carrier returns beams. Points are placed by the true poses, so the figures are those of the
+stages `classes` and `map` alone: how many points of each cause are kept or left out, and the mean
+distance of the delivered points from the true surfaces, without classes and with them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import tempfile
+import time
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from recon4.classes.stage import write_classes
+from recon4.evaluation.table import text_table
+from recon4.geometry.raycast import Scene
+from recon4.mapping.build import MapInputs, build_map
+from recon4.mapping.mirrors import Mirror, Sight, find_mirrors
+from recon4.mapping.undistort import place_with_origins
+from recon4.model.classes import PointClass
+from recon4.model.trajectory import Trajectory
+from recon4.recording.formats.poses import read_tum
+from recon4.settings import MapSettings
+from recon4.simulation.causes import Cause, causes
+from recon4.simulation.crowd import ALONE, Crowd
+from recon4.simulation.frames import simulate_frames
+from recon4.simulation.lidar import LidarModel
+from recon4.simulation.setup import Models, SimulationSetup, prepare
+from recon4.store.classes import StoredClasses
+from recon4.store.frames import FrameStore
+
+
+@dataclass(frozen=True, slots=True)
+class WalkScene:
+    """A walk in a world."""
+
+    world: str
+    seconds: float
+    crowd: Crowd = ALONE
+
+
+SCENES = {
+    "office": WalkScene("office", 20.0),
+    "staircase": WalkScene("staircase", 25.0),
+    "corridor": WalkScene("corridor", 20.0),
+    "people": WalkScene("office", 20.0, Crowd(people=2)),
+    "cars": WalkScene("street", 20.0, Crowd(people=1, vehicles=2)),
+    "mirrors": WalkScene("mirrors", 16.0),
+}
+EVERY = 4
+"""One of this many points of a map is measured."""
+
+
+def main() -> None:
+    """Run the scenes and print their tables."""
+    parser = argparse.ArgumentParser()
+    parser.add_argument("scenes", nargs="*", default=list(SCENES))
+    parser.add_argument("--seed", type=int, default=11)
+    parser.add_argument("--work", type=Path)
+    a = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        for name in a.scenes:
+            print(f"\n{name}\n{figures(name, a.work or Path(folder), seed=a.seed)}", flush=True)
+
+
+def figures(name: str, work: Path, *, seed: int) -> str:
+    """The tables of a scene; its walk is kept in the folder for the next run."""
+    scene, folder = SCENES[name], work / f"{name}-{seed}"
+    models = Models(lidar=replace(LidarModel(), carrier_returns=True))
+    setup = prepare(scene.world, seconds=scene.seconds, seed=seed, models=models, crowd=scene.crowd)
+    if not folder.exists():
+        folder.mkdir(parents=True)
+        simulate_frames(setup, folder)
+    frames, truth = FrameStore.open(folder), read_tum(folder / "truth.tum")
+    classes = work / "classes"
+    shutil.rmtree(classes, ignore_errors=True)
+    classes.mkdir()
+    mirrors = mirrors_of(frames, truth)
+    begun = time.process_time()
+    write_classes(frames, truth, classes, mirrors=mirrors)
+    ms = 1e3 * (time.process_time() - begun) / len(frames)
+    stored = StoredClasses.open(classes)
+    found = by_cause(frames, truth, stored, setup=setup)
+    maps = [
+        map_figures(label, frames, truth, work, classes=given, world=setup.surroundings.scene)
+        for label, given in (("without", None), ("with", stored))
+    ]
+    size = (classes / "classes.zst").stat().st_size / frames.points
+    head = ("", "points", "mean cm", "median cm", "> 10 cm %", "> 50 cm %")
+    cost = f"{ms:.1f} ms of CPU a multiframe, {size:.3f} bytes a point"
+    return f"{found}\n{cost}\n\n{text_table(head, maps)}"
+
+
+def mirrors_of(frames: FrameStore, truth: Trajectory) -> list[Mirror]:
+    """Mirrors in a sample of the walk, as the stage `level` finds them."""
+    placed = []
+    for k in range(0, len(frames), 1 + len(frames) // 60):
+        frame = frames[k]
+        frame = frame.take(slice(None, None, 1 + len(frame) // 6000))
+        placed.append(place_with_origins(frame, truth, frames.rig))
+    points = np.concatenate([one.xyz_m for one in placed])
+    return find_mirrors(Sight(points, np.concatenate([one.origin_m for one in placed])))
+
+
+def by_cause(
+    frames: FrameStore, truth: Trajectory, stored: StoredClasses, *, setup: SimulationSetup
+) -> str:
+    """How many points of each cause are left out, and how many have the class of their cause."""
+    counts = np.zeros((len(Cause), 256), np.int64)
+    for k in range(0, len(frames), 2):
+        frame = frames[k]
+        placed = place_with_origins(frame, truth, frames.rig)
+        t_ns = frame.t_ns + frame.dt_ns.astype(np.int64)
+        cause = causes(setup, placed.xyz_m, placed.origin_m, t_ns=t_ns)
+        np.add.at(counts, (cause, stored.of(k, len(frame))), 1)
+    rows = []
+    for cause in Cause:
+        of, every = counts[cause], int(counts[cause].sum())
+        if every:
+            columns = (PointClass.MOVING, PointClass.CARRIER, PointClass.REFLECTION)
+            parts = [f"{100 * of[one] / every:.2f}" for one in columns]
+            kept = f"{100 * of[PointClass.UNCLASSIFIED] / every:.3f}"
+            of_all = f"{100 * every / counts.sum():.3f}"
+            rows.append((cause.name.lower(), of_all, kept, *parts))
+    head = ("cause", "of all %", "kept %", "moving %", "carrier %", "reflection %")
+    return text_table(head, rows)
+
+
+def map_figures(
+    label: str,
+    frames: FrameStore,
+    truth: Trajectory,
+    work: Path,
+    *,
+    classes: StoredClasses | None,
+    world: Scene,
+) -> tuple[str, ...]:
+    """Distances of the delivered points of a map from the true surfaces."""
+    out = work / "map"
+    shutil.rmtree(out, ignore_errors=True)
+    out.mkdir()
+    tiles = build_map(MapInputs(frames, truth, classes=classes), out, settings=MapSettings())
+    away = np.concatenate([world.distance(tile.xyz_m()[::EVERY]) for tile in tiles])
+    shown = (100 * away.mean(), 100 * np.median(away))
+    far = (100 * (away > limit_m).mean() for limit_m in (0.1, 0.5))
+    return (
+        label,
+        f"{len(tiles)}",
+        *(f"{one:.3f}" for one in shown),
+        *(f"{one:.4f}" for one in far),
+    )
+
+
+if __name__ == "__main__":
+    main()
