@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-_DIGIT = 11
+_DIGIT = 14
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -211,35 +211,45 @@ def joined_returns(rank, returns, other_rank, other):  # type: ignore[no-untyped
 @njit(cache=True, nogil=True, error_model="numpy")
 def voxel_keys(
     f4: NDArray[np.float32],
-    voxel_m: float,
-    cell_voxels: int,
-    side_cells: int,
-    halo_cells: int,
+    i2: NDArray[np.int16],
+    u1: NDArray[np.uint8],
+    cells: tuple[float, int, int, int],
     shift: int,
     out: NDArray[np.int64],
+    ranks: NDArray[np.int64],
 ) -> None:
     """Cell and voxel of each record, with its row in the lower ``shift`` bits, int64 (N,).
 
     Args:
         f4: The records as float32, (N, 8).
-        voxel_m: Edge of a voxel [m].
-        cell_voxels: Voxels along a cell.
-        side_cells: Cells of tile and halo along an edge.
-        halo_cells: Cells of the halo.
+        i2: The records as int16, (N, 16).
+        u1: The records as uint8, (N, 32).
+        cells: Edge of a voxel [m], voxels along a cell, cells along tile and halo, of the halo.
         shift: Bits of the row.
         out: Receives the keys.
+        ranks: Receives `voxel_rank`, with the returns in the lowest eight bits, int64 (N,).
     """
+    voxel_m, cell_voxels, side_cells, halo_cells = cells
+    # What each coordinate adds to the number of a voxel, as `voxel_at` counts: no divisions.
+    along = np.empty((3, side_cells * cell_voxels), np.int64)
+    for v in range(along.shape[1]):
+        cell, inside = v // cell_voxels, v % cell_voxels
+        for d in range(3):
+            along[d, v] = cell * side_cells**d * cell_voxels**3 + inside * cell_voxels**d
     for n in range(len(f4)):
-        voxel = voxel_at(f4, n, voxel_m, cell_voxels, side_cells, halo_cells)
+        voxel: Any = np.int64(0)
+        for d in range(3):
+            at: Any = np.int64(np.floor(f4[n, d] / voxel_m)) + halo_cells * cell_voxels
+            voxel += along[d, min(max(at, 0), along.shape[1] - 1)]
         out[n] = (voxel << shift) | n
+        ranks[n] = (voxel_rank(i2, u1, n) << 8) | u1[n, 31]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def nearest_in_voxels(
     order: NDArray[np.int64],
     shift: int,
-    i2: NDArray[np.int16],
-    u1: NDArray[np.uint8],
+    ranks: NDArray[np.int64],
     rows: NDArray[np.int64],
     returns: NDArray[np.uint8],
 ) -> int:
@@ -248,8 +258,7 @@ def nearest_in_voxels(
     Args:
         order: Sorted result of `voxel_keys`, (N,).
         shift: As given to it.
-        i2: The records as int16, (N, 16).
-        u1: The records as uint8, (N, 32).
+        ranks: Of `voxel_keys`: the records themselves lie scattered over much more memory, (N,).
         rows: Receives the rows, voxel by voxel, int64 (N,); may be ``order`` itself.
         returns: Receives the returns of the voxel, at most `MAX_RETURNS`, uint8 (N,). The limited
             sum is the same however the records are grouped.
@@ -263,15 +272,15 @@ def nearest_in_voxels(
     voxel = np.int64(-1)
     for n in range(len(order)):
         row = order[n] & mask
-        rank = voxel_rank(i2, u1, row)
+        rank, own = ranks[row] >> 8, ranks[row] & 0xFF
         if order[n] >> shift != voxel:
             voxel = order[n] >> shift
             count += 1
             best = rank
             rows[count] = row
-            returns[count] = u1[row, 31]
+            returns[count] = own
             continue
-        returns[count] = joined_returns(best, np.int64(returns[count]), rank, np.int64(u1[row, 31]))
+        returns[count] = joined_returns(best, np.int64(returns[count]), rank, own)
         if rank < best:
             best = rank
             rows[count] = row

@@ -133,14 +133,14 @@ def in_voxel_order(records: Records, grid: Grid) -> Records:
         return records
     views = Views.of(records)
     shift = n.bit_length()
-    order = np.empty(n, np.int64)
-    cells = (grid.cell_voxels, grid.side_cells, grid.halo_cells)
-    voxel_keys(views.f4, grid.voxel_m, *cells, shift, order)
+    order, ranks = np.empty((2, n), np.int64)
+    cells = grid.voxel_m, grid.cell_voxels, grid.side_cells, grid.halo_cells
+    voxel_keys(views.f4, views.i2, views.u1, cells, shift, order, ranks)
     order = radix_sort(order, shift, shift + grid.key_bits, np.empty(n, np.int64))
     if not grid.thin:
         return np.take(records, order & ((1 << shift) - 1))
     returns = np.empty(n, np.uint8)
-    count = nearest_in_voxels(order, shift, views.i2, views.u1, order, returns)
+    count = nearest_in_voxels(order, shift, ranks, order, returns)
     kept = np.take(records, order[:count])
     kept["returns"] = returns[:count]
     return kept
