@@ -16,12 +16,15 @@ import numpy as np
 from numba import types
 from numba.core import event
 
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.signatures import SIGNATURES, kernel_name, spelled
 from recon4.live.mapper.live_map import LiveMap
 from recon4.mapping.tiles import TileSet
+from recon4.model.pose_graph import PoseGraph
 from recon4.model.rig import Sensor
 from recon4.pipeline import process
+from recon4.pose_graph.alternative_paths import PathIndex
+from recon4.pose_graph.files import load_graph
 from recon4.progress import Silent
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.packets.decoder import open_decoder
@@ -29,6 +32,8 @@ from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
+from recon4.registration.plane_map import PlaneMap
+from recon4.registration.scan_registration import make_scan, overlay_plans
 from recon4.settings import IngestSettings, override, preset
 from recon4.settings.reads import OdometryReads, part_of
 from recon4.simulation.backpack import measured_seconds, prepare_backpack, simulate_backpack
@@ -113,6 +118,17 @@ def _lidars(folder: Path) -> None:
     for frame in frames:
         live.push(frame)
         without_imu.push(frame)
+    _longer_walk(frames[0].xyz.astype(np.float64), load_graph(made["graph"]))
+
+
+def _longer_walk(p: Array, graph: PoseGraph) -> None:
+    """What walks of seconds lack: places left behind, loops that are searched and rejected."""
+    planes = PlaneMap()
+    planes.add(p)
+    planes.forget_beyond(1.0, np.zeros(3))
+    overlay_plans(make_scan(p), make_scan(p), count=1, height_m=0.0)
+    paths = PathIndex.build(graph.relations, nodes=len(graph), max_edges=3)
+    paths.remove([0])
 
 
 def _backpack(folder: Path) -> None:

@@ -25,3 +25,10 @@ def test_a_kernel_comes_after_those_it_calls_itself_or_through_inlined_ones():
 
 def test_the_decoders_of_all_usual_makes_are_compiled():
     assert {"spinning.decode", "ouster.decode", "livox.decode"} <= kernels().keys()
+
+
+def test_what_only_longer_walks_call_is_compiled():
+    """Places that are left behind, and loops that are searched and rejected."""
+    called = {"planes.empty_beyond", "planes.rehash", "scans.count_from_above"}
+
+    assert called | {"paths.mark_affected"} <= kernels().keys()
