@@ -70,17 +70,39 @@ def pack(
     return Packets(row, sensor_epoch_ns + last_ns + delay, payloads, sensor.port)
 
 
+def put_imu(
+    data: Packets, samples: ImuSamples, setup: SimulationSetup, *, degradation: Degradation
+) -> None:
+    """Put samples of the IMU in a LiDAR into its data packets, if that is where they belong."""
+    within = built_in_imu(setup.rig.sensors[data.row]).within
+    if within is not None and len(data.payloads) and len(samples):
+        within(data.payloads, _stamped(samples, data.row, setup, degradation=degradation))
+
+
 def pack_imu(
     samples: ImuSamples, row: int, setup: SimulationSetup, *, degradation: Degradation
-) -> Packets:
-    """Packets of the IMU in a LiDAR, which arrive a tenth of a millisecond after their sample."""
+) -> Packets | None:
+    """Packets of the IMU in a LiDAR, which arrive a tenth of a millisecond after their sample.
+
+    None = it has none of its own.
+    """
     sensor = setup.rig.sensors[row]
+    made = built_in_imu(sensor).packets
+    if made is None:
+        return None
     facts = lidar_model(sensor.model)
-    port = facts.sample_ports[0] if facts.sample_ports else sensor.port
-    stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
-    stamped = replace(samples, t_ns=setup.epoch_ns + stamps)
-    payloads = built_in_imu(sensor).packets(stamped)
+    # The last one is that of samples: the first one of an Airy is that of its device data.
+    port = facts.sample_ports[-1] if facts.sample_ports else sensor.port
+    payloads = made(_stamped(samples, row, setup, degradation=degradation))
     return Packets(row, samples.t_ns + DELIVERY.latency_ns, payloads, port)
+
+
+def _stamped(
+    samples: ImuSamples, row: int, setup: SimulationSetup, *, degradation: Degradation
+) -> ImuSamples:
+    """Samples on the clock of a LiDAR."""
+    stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
+    return replace(samples, t_ns=setup.epoch_ns + stamps)
 
 
 def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup) -> None:

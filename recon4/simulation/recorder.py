@@ -26,6 +26,7 @@ from recon4.simulation.packets import (
     Packets,
     pack,
     pack_imu,
+    put_imu,
     write_packets,
     write_position_packets,
 )
@@ -87,7 +88,7 @@ class WalkRecorder:
         ]
         if degradation.recorded(np.array([second_index * SECOND_NS]))[0]:
             write_position_packets(self._pcap, second_index, setup)
-        write_packets(self._pcap, [*packets, *self._imu_packets(second_index)], setup)
+        write_packets(self._pcap, [*packets, *self._imu_packets(second_index, packets)], setup)
         for row, firings in enumerate(firings_by_lidar):
             self._reflectivity.append(row, firings.reflectivity)
         if self._bag is not None:
@@ -99,13 +100,17 @@ class WalkRecorder:
             if self._gnss is not None:
                 self._bag.gnss(_during(self._gnss, start_ns))
 
-    def _imu_packets(self, second_index: int) -> list[Packets]:
-        """Those of one second of the LiDAR whose IMU is that of the rig."""
+    def _imu_packets(self, second_index: int, packets: list[Packets]) -> list[Packets]:
+        """Those of one second of the LiDAR whose IMU is that of the rig; or its data packets, one
+        element a LiDAR, are given the samples.
+        """
         setup = self._setup
         if self._imu is None or setup.imu_row is None:
             return []
+        put_imu(packets[setup.imu_row], self._imu, setup, degradation=self._degradation)
         samples = _during(self._imu, setup.epoch_ns + second_index * SECOND_NS)
-        return [pack_imu(samples, setup.imu_row, setup, degradation=self._degradation)]
+        own = pack_imu(samples, setup.imu_row, setup, degradation=self._degradation)
+        return [] if own is None else [own]
 
     def _write_truth(self) -> None:
         folder, setup = self._folder, self._setup

@@ -104,7 +104,7 @@ def prepare(
     used, errors = _addressed(rig or load_rig("4recon")), models or Models()
     row = imu_row(used)
     if row is not None:
-        used = replace(used, T_body_imu=imu_mount(used.sensors[row]))
+        used = replace(used, T_body_imu=imu_mount(used.sensors[row], used.T_body_imu))
         rate_hz = built_in_imu(used.sensors[row]).rate_hz
         errors = replace(errors, imu=replace(errors.imu, rate_hz=rate_hz))
     place = build_world(world) if isinstance(world, str) else world
@@ -149,7 +149,7 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
     for sensor in sensors:
         if family_of(sensor.model).imu(sensor.model) is not None:
             # Named: a reader would take the first LiDAR that has one, simulated or not.
-            place = imu_mount(sensor)
+            place = imu_mount(sensor, sensor.T_body_sensor @ built_in_imu(sensor).T_sensor_imu)
             return replace(rig, imu_sensor=sensor.name, T_body_imu=place, imu_time_offset_s=0.0)
     return rig
 
@@ -165,11 +165,18 @@ def imu_row(rig: Rig) -> int | None:
             if family_of(sensor.model).imu(sensor.model) is None:
                 raise ConfigError(f"the IMU of a {sensor.model} is not simulated ({sensor.name})")
             return row
-        if family_of(sensor.model).imu(sensor.model) is not None:
-            off = imu_mount(sensor).inverse() @ rig.T_body_imu
+        place = _place_of_imu(sensor)
+        if place is not None:
+            off = place.inverse() @ rig.T_body_imu
             if np.allclose(off.matrix(), np.eye(4), atol=1e-3):
                 return row
     return None
+
+
+def _place_of_imu(sensor: Sensor) -> SE3 | None:
+    """Where the IMU in a LiDAR is, if it is simulated and the data sheet tells."""
+    simulated = family_of(sensor.model).imu(sensor.model) is not None
+    return imu_mount(sensor) if simulated and lidar_model(sensor.model).has_imu else None
 
 
 def built_in_imu(sensor: Sensor) -> BuiltInImu:

@@ -6,12 +6,13 @@ The inverse of `recon4.recording.packets.family`: the pattern of a model, and pa
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.se3 import SE3
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
@@ -19,15 +20,27 @@ from recon4.simulation.lidar import Firings, Lidar
 from recon4.simulation.patterns import FiringPattern
 
 
-@dataclass(frozen=True, slots=True)
+class WithinData(Protocol):
+    """Puts samples into the data packets."""
+
+    def __call__(self, payloads: Payloads, samples: ImuSamples) -> None:
+        """Write the newest sample of each packet, (P, size); at least one sample."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BuiltInImu:
     """The IMU in a LiDAR, in the axes in which the family's reader gives its samples.
 
-    Where it is says `recon4.model.rig.imu_mount`.
+    Where it is says `recon4.model.rig.imu_mount`, or ``T_sensor_imu`` if its axes are its own.
     """
 
-    packets: Callable[[ImuSamples], Payloads]
-    """One packet for each sample, whose times are on the clock of the sensor."""
+    packets: Callable[[ImuSamples], Payloads] | None = None
+    """One packet for each sample, whose times are on the clock of the sensor; None = …"""
+    within: WithinData | None = None
+    """… they are in the data packets."""
+    T_sensor_imu: SE3 = field(default_factory=SE3.identity)
+    """Of an IMU with axes of its own: where a simulated rig has it."""
     rate_hz: int = 200
 
 

@@ -3,19 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
-from recon4.recording.packets.hesai.encode import HesaiBlocks, HesaiMode, encode_packets
+from recon4.recording.packets.hesai import stamps
+from recon4.recording.packets.hesai.encode import (
+    JT16_UNITS,
+    TAIL_UNITS,
+    HesaiBlocks,
+    HesaiMode,
+    InertialUnits,
+    encode_jt16_inertial,
+    encode_packets,
+    write_inertial,
+)
+from recon4.recording.packets.hesai.fields import Fields
 from recon4.recording.packets.hesai.firing import firing_mode, shot_times_us
 from recon4.recording.packets.hesai.models import MODELS, HesaiModel
 from recon4.simulation.families.family import BuiltInImu, encoder_cdeg
 from recon4.simulation.lidar import Firings, Lidar
 from recon4.simulation.patterns import FiringPattern, Spin, rings
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 
 def _shot_us(model: HesaiModel) -> Array:
@@ -43,6 +57,27 @@ def _pattern(name: str) -> FiringPattern:
     )
 
 
+def _jt16_packets(samples: ImuSamples) -> Payloads:
+    return encode_jt16_inertial((samples.t_ns + 500) // 1000, _numbers(samples, JT16_UNITS))
+
+
+def _write(model: HesaiModel, payloads: Payloads, samples: ImuSamples) -> None:
+    """Put the newest sample at its stamp into the tail of each packet."""
+    fields = Fields(payloads, model.layout)
+    stamp_ns = stamps.time_ns(fields.date, fields.micros)
+    newest = np.maximum(np.searchsorted(samples.t_ns, stamp_ns, side="right") - 1, 0)
+    clock = samples.t_ns[newest] // TAIL_UNITS.clock_ns % 2**32
+    values = _numbers(samples, TAIL_UNITS)[newest]
+    write_inertial(payloads, model.layout, clock=clock, values=values)
+
+
+def _numbers(samples: ImuSamples, units: InertialUnits) -> NDArray[np.int64]:
+    """Accelerations and angular rates in units of a packet, (N, 6)."""
+    accel = samples.accel_m_s2 / (STANDARD_GRAVITY_M_S2 * units.accel_g)
+    gyro = np.rad2deg(samples.gyro_rad_s) / units.gyro_deg_s
+    return np.clip(np.rint(np.hstack([accel, gyro])), -32768, 32767).astype(np.int64)
+
+
 class SimulatedHesais:
     """Single return mode, clock by PTP, the typical angles of the manual."""
 
@@ -56,8 +91,11 @@ class SimulatedHesais:
         return _pattern(model)
 
     def imu(self, model: str) -> BuiltInImu | None:
-        """None: those of JT16 and JT128 are not written."""
-        return None
+        """In the tails of data packets (JT128), or in packets of their own (JT16)."""
+        made = MODELS[model]
+        if model == "JT16":
+            return BuiltInImu(packets=_jt16_packets)
+        return BuiltInImu(within=partial(_write, made)) if made.layout.imu_at >= 0 else None
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Packets of blocks."""

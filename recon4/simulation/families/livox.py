@@ -78,7 +78,7 @@ class SimulatedLivox:
         """Of the models whose manual tells where it is."""
         if not any(lidar_model(model).p_sensor_imu_m):
             return None
-        return BuiltInImu(partial(_imu_packets, sdk=MODELS[model].sdk))
+        return BuiltInImu(packets=partial(_imu_packets, sdk=MODELS[model].sdk))
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Points; the frame is that of the sensor."""

@@ -133,7 +133,7 @@ class SimulatedOusters:
 
     def imu(self, model: str) -> BuiltInImu | None:
         """All have one."""
-        return BuiltInImu(_imu_packets, _SENSOR.imu_hz)
+        return BuiltInImu(packets=_imu_packets, rate_hz=_SENSOR.imu_hz)
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Packets of 16 columns, in one datagram whatever their size."""

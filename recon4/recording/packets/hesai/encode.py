@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,20 @@ class HesaiMode:
     """Firing sequences of its blocks: block 1 in the highest two of 16 bits."""
     sequence: int = 1
     """QT128: 1 = the packet starts with the first firing sequence."""
+
+
+class InertialUnits(NamedTuple):
+    """Of the numbers in inertial samples."""
+
+    accel_g: float
+    gyro_deg_s: float
+    clock_ns: int
+    """A tick of their clock."""
+
+
+TAIL_UNITS = InertialUnits(488e-6, 0.14, 25_000)
+"""That `write_inertial` states."""
+JT16_UNITS = InertialUnits(1 / 8192, 1 / 32.8, 1000)
 
 
 def encode_packets(
@@ -133,7 +148,8 @@ def write_inertial(
         values: Accelerations [0.488 mg] and angular rates [0.14°/s], (P, 6).
     """
     samples = np.zeros(len(packets), dtype=TAIL_SAMPLE)
-    samples["accel_unit"], samples["gyro_unit"] = 488, 14000
+    samples["accel_unit"] = round(1e6 * TAIL_UNITS.accel_g)
+    samples["gyro_unit"] = round(1e5 * TAIL_UNITS.gyro_deg_s)
     samples["clock"] = clock
     samples["accel"], samples["gyro"] = values[:, :3], values[:, 3:]
     at = layout.imu_at

@@ -7,13 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.robosense.imu_packets import IMU_ID
 from recon4.recording.packets.robosense.models import (
     AIRY_VARIANT,
     ANGLE,
     ANGLES_AT,
     DEVICE_ID,
+    IMU_FULL,
+    IMU_LARGEST_RANGE,
+    IMU_PACKET,
+    IMU_SIZE,
     MODE_AT,
     SIZE,
     TYPE_AT,
@@ -26,7 +32,7 @@ from recon4.recording.packets.robosense.solid import (
     SOLID_STAMP_AT,
     SolidModel,
 )
-from recon4.units import SECOND_NS
+from recon4.units import SECOND_NS, STANDARD_GRAVITY_M_S2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +45,25 @@ class SpinningBlocks:
     """Distance in units of the model, 0 = no return, (P, B, C)."""
     intensity: NDArray[np.integer]
     """0..255, (P, B, C)."""
+
+
+def encode_imu(samples: ImuSamples) -> Payloads:
+    """Packets of the inertial unit of an Airy, set to its largest ranges, (N, 51)."""
+    packets = np.zeros(len(samples.t_ns), IMU_PACKET)
+    packets["id"] = np.frombuffer(IMU_ID, np.uint8)
+    seconds, rest_ns = np.divmod(samples.t_ns + 500, SECOND_NS)
+    packets["stamp"][:, 2:6] = seconds.astype(">u4")[:, None].view(np.uint8)
+    packets["stamp"][:, 6:10] = (rest_ns // 1000).astype(">u4")[:, None].view(np.uint8)
+    packets["accel_range"] = packets["gyro_range"] = IMU_LARGEST_RANGE
+    accel_full = STANDARD_GRAVITY_M_S2 * 2.0 ** (IMU_LARGEST_RANGE + 1)
+    gyro_full = np.deg2rad(250.0 * 2.0**IMU_LARGEST_RANGE)
+    for name, values in (
+        ("accel", samples.accel_m_s2 / accel_full),
+        ("gyro", samples.gyro_rad_s / gyro_full),
+    ):
+        packets[name] = np.rint(IMU_FULL * np.clip(values, -1.0, 1.0))
+    packets["count"] = np.arange(len(packets))
+    return packets.view(np.uint8).reshape(len(packets), IMU_SIZE)
 
 
 def encode_spinning(t_ns: Times, blocks: SpinningBlocks, model: RoboSenseModel) -> Payloads:
