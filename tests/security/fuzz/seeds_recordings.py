@@ -38,7 +38,7 @@ class ReadResult:
     outcome: str
     """``complete``, ``lossy`` or ``nothing``, as in the import report."""
     counts: dict[str, int]
-    said: tuple[str, ...]
+    findings: tuple[str, ...]
     items: int
     """Shots, samples and poses."""
 
