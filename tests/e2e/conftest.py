@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
@@ -63,6 +63,9 @@ looks = pytest.mark.looks
 TWO_LOOKS = ("desktop light", "phone dark")
 """Each screen and each color scheme once: layout depends on the screen, colors on the scheme, and
 nothing on both. Only screenshots are made of all four."""
+one_look = looks(*(TWO_LOOKS if SCREENSHOTS else TWO_LOOKS[:1]))
+"""For a long workflow in which only the layout depends on the screen: the test itself looks at it
+on both, with `on_both_screens`."""
 
 
 LONG = (
@@ -119,6 +122,17 @@ def browser_context(browser: Browser, look: tuple[str, str]) -> Iterator[Browser
 def context(browser, look) -> Iterator[BrowserContext]:
     with browser_context(browser, look) as context:
         yield context
+
+
+def on_both_screens(page: Page, check: Callable[[Page], None]) -> None:
+    """Check a page as it is and on the other screen, and return to its own."""
+    own = page.viewport_size
+    for width, height in SCREENS.values():
+        page.set_viewport_size({"width": width, "height": height})
+        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
+        check(page)
+    assert own is not None
+    page.set_viewport_size(own)
 
 
 def leave_out_viewer(page: Page) -> None:

@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import expect
 
 from recon4.geometry.se3 import SE3
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import on_both_screens, one_look
 from tests.e2e.test_pages import fits
 from tests.project_builder import build_project, room_points
 from tests.served import served
@@ -24,14 +24,14 @@ CLICK = """(view, p) => {
 
 
 def projects(root):
-    build_project(root / "office", points=120_000, normals=True)
-    np.savetxt(root / "turned.xyz", TURNED @ room_points(np.random.default_rng(5), 60_000))
+    build_project(root / "office", points=40_000, normals=True)
+    np.savetxt(root / "turned.xyz", TURNED @ room_points(np.random.default_rng(5), 15_000))
 
 
 server = served(projects)
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_turned_reference_is_found_and_aligned_by_three_pairs(server, page, screenshot):
     page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5")
     expect(page.locator(".facing strong")).to_be_visible()
@@ -65,14 +65,14 @@ def test_a_turned_reference_is_found_and_aligned_by_three_pairs(server, page, sc
 
     result = dialog.get_by_text("3 pairs, largest residual")
     expect(result).to_contain_text("✓ The reference fits")
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "slices-align")
     dialog.get_by_role("button", name="Close").click()
     expect(page.locator(".reference-row")).to_contain_text("✓ The reference fits")
     page.get_by_role("button", name="Compare", exact=True).click()
     expect(page.locator(".verdict.good")).to_contain_text("The reference fits")
     expect(page.get_by_role("img", name="Histogram of the signed distances")).to_be_visible()
-    fits(page)
+    on_both_screens(page, fits)
     page.get_by_role("link", name="Download CSV").scroll_into_view_if_needed()
     screenshot(page, "slices-reference")
 
