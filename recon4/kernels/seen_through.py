@@ -73,20 +73,27 @@ def _sight(
     What stands beside the point or lies a little lower keeps it: all around has to lie behind, with
     returns on all four sides.
     """
+    # Most points are where they were: their own cell says so.
+    if abs(image[row, column] - range_m) < limits[1]:
+        return VERDICT.met
     rows, columns = image.shape
-    nearest_m, near = np.inf, False
+    nearest_m = np.inf
     below = above = left = right = False
     for i in range(max(row - 1, 0), min(row + 2, rows)):
-        for j in range(column - 1, column + 2):
-            seen_m = image[i, j % columns]
+        for step in range(-1, 2):
+            j = column + step
+            if j < 0:
+                j += columns
+            elif j >= columns:
+                j -= columns
+            seen_m = image[i, j]
             if seen_m == np.inf:
                 continue
+            if abs(seen_m - range_m) < limits[1]:
+                return VERDICT.met
             below, above = below or i < row, above or i > row
-            left, right = left or j < column, right or j > column
+            left, right = left or step < 0, right or step > 0
             nearest_m = min(nearest_m, seen_m)
-            near = near or abs(seen_m - range_m) < limits[1]
-    if near:
-        return VERDICT.met
     around = below and above and left and right
     return VERDICT.seen_through if around and nearest_m > range_m + limits[0] else VERDICT.unknown
 
