@@ -7,6 +7,7 @@ import logging
 import os
 import resource
 import sys
+import tempfile
 import traceback
 import warnings
 from collections.abc import Sequence
@@ -30,6 +31,7 @@ def main() -> None:
     """
     warnings.simplefilter("ignore")
     logging.disable()
+    _read_seeds()
     _say({"ready": True})
     for line in sys.stdin:
         fork = os.fork()
@@ -38,6 +40,16 @@ def main() -> None:
             os._exit(0)
         _, status = os.waitpid(fork, 0)
         _say({"end": os.waitstatus_to_exitcode(status)})
+
+
+def _read_seeds() -> None:
+    """Read a valid file of every kind, so that no fork imports or loads kernels by itself."""
+    with tempfile.TemporaryDirectory(prefix="seeds-") as place:
+        for kind in KINDS.values():
+            folder = Path(place) / kind.name
+            folder.mkdir()
+            kind.prepare(folder)
+            _count_of_seed(kind, folder / kind.file_name, kind.seeds()[0])
 
 
 def _read_batch(batch: dict[str, Any]) -> None:
