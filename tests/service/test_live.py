@@ -14,20 +14,8 @@ from websockets.exceptions import ConnectionClosed
 
 from recon4.live.replay import replay
 from recon4.progress import Silent
-from recon4.simulation.setup import prepare
-from recon4.simulation.simulate import simulate
 from tests.scan_captures import capture_server
 from tests.served import served
-
-SECONDS = 8.0
-
-
-@pytest.fixture(scope="module")
-def walk(tmp_path_factory):
-    out = tmp_path_factory.mktemp("walk")
-    simulate(prepare("office", seconds=SECONDS, seed=3), out, bag=False, progress=Silent())
-    return out
-
 
 server = served(run=capture_server, fresh=True, below="projects")
 
@@ -67,7 +55,7 @@ class Phone:
         self.voxels = np.concatenate([known, fresh])
 
 
-def start(server, walk, project="walk", place=""):
+def start(server, project="walk", place=""):
     new = {"project": project, "rig": "4recon", "preset": "indoor", "place": place}
     response = server.post("/api/live", json=new)
     assert response.status_code == 201, response.text
@@ -89,11 +77,11 @@ def sending(server, walk):
     thread.join()
 
 
-def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk):
-    start(server, walk, place="Town hall")
+def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, office_recording):
+    start(server, place="Town hall")
     phone = Phone()
 
-    with sending(server, walk):
+    with sending(server, office_recording):
         asyncio.run(phone.follow(server, lambda p, message: len(p.voxels) > 5000 and p.path > 10))
         (card,) = server.get("/api/projects").json()
         assert (card["id"], card["name"]) == ("walk", "Town hall")
