@@ -18,7 +18,7 @@ from recon4.store.frames import FrameStore, FrameWriter
 from tests import scanned_room
 
 SECONDS = 12.0
-COLUMNS = 300
+COLUMNS = 200
 """Half as dense as a VLP-16 at 10 Hz; nothing here needs more."""
 CALIBRATION = CalibrationTuning(
     audit_windows=3, audit_window_s=2.0, windows=3, window_s=2.0, points=300_000, mode="audit"

@@ -182,7 +182,7 @@ def test_entropy_finds_a_rotation_back(dance):
     parameters = Parameters.of(wrong, reference=0, lidars=(1,), imu=False)
     only_turns = parameters.fixing(np.array([False] * 3 + [True] * 4))
     found = calibrate_by_entropy(
-        [window_of(dance, wrong, range(10, 70))],
+        [window_of(dance, wrong, range(10, 100))],
         wrong,
         only_turns,
         settings=EntropyTuning(points=4000, evaluations=120),

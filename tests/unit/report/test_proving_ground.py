@@ -142,10 +142,25 @@ def proven(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def tunnel(proven):
+def begun(proven):
+    """The first run of a walk that was stopped after it, and when the recordings were written."""
     degradations = ("none", "no-imu", "lever-arm")
+    first = next(run_walk("tunnel/1", degradations, proven, seconds=5.0, keep=True, quick=True))
+    return first, written_ns(proven)
+
+
+@pytest.fixture(scope="module")
+def tunnel(begun, proven):
+    """That run, and the one that was missing."""
+    degradations = ("no-imu", "lever-arm")
     runs = run_walk("tunnel/1", degradations, proven, seconds=5.0, keep=True, quick=True)
-    return {run.degradation: run for run in runs}
+    return {run.degradation: run for run in (begun[0], *runs)}
+
+
+def written_ns(proven):
+    """When each file of the recordings of that walk was written."""
+    files = (proven / "recordings" / "tunnel-1_5s").glob("*/*")
+    return {path: path.stat().st_mtime_ns for path in files}
 
 
 def test_the_rig_is_audited_where_the_trajectory_is_wrong(tunnel, proven):
@@ -158,13 +173,11 @@ def test_the_rig_is_audited_where_the_trajectory_is_wrong(tunnel, proven):
         assert run.audited
 
 
-def test_recordings_that_are_kept_are_not_simulated_again(tunnel, proven):
-    recording = proven / "recordings" / "tunnel-1_5s" / "none"
-    before = recording.stat().st_mtime_ns
-    (again,) = run_walk("tunnel/1", ("none",), proven, seconds=5.0, keep=True, quick=True)
+def test_recordings_that_are_kept_are_not_simulated_again(begun, tunnel, proven):
+    written = begun[1]
 
-    assert recording.stat().st_mtime_ns == before
-    assert again.errors == tunnel["none"].errors
+    assert {path.parent.name for path in written} == {"none", "no-imu"}
+    assert written_ns(proven) == written
 
 
 def test_what_cannot_be_observed_is_not_silent(tunnel):
