@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import looks, on_both_screens, one_look
 from tests.e2e.test_pages import fits
 from tests.served import office, served
 
@@ -30,7 +30,7 @@ def add(server, page, text: str) -> None:
     page.get_by_role("button", name="Add reference").click()
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_reference_without_names_is_asked_for_its_columns(server, page, screenshot):
     add(server, page, wall("{k};{y};{x};{z}"))
 
@@ -45,7 +45,7 @@ def test_a_reference_without_names_is_asked_for_its_columns(server, page, screen
     expect(page.locator(".table-columns")).to_contain_text(
         "x (east) = column 3, y (north) = column 2"
     )
-    fits(page)
+    on_both_screens(page, fits)
     page.get_by_role("button", name="Use these columns").scroll_into_view_if_needed()
     screenshot(page, "slices-columns")
     page.get_by_role("button", name="Use these columns").click()

@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 
 from recon4.pipeline import process
 from recon4.recording.sources import Sources
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import looks, on_both_screens, one_look
 from tests.e2e.test_pages import fits
 from tests.planar_walks import furnished_room, scanned, write_carmen
 from tests.project_builder import build_project
@@ -187,7 +187,7 @@ def test_findings_are_those_of_the_map_that_is_shown(server, page):
     assert asked.value.post_data_json["source"] == "project:earlier"
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_reference_is_compared_and_shown(server, page):
     path = server.root / "walls.xyz"
     rows = [
@@ -209,7 +209,7 @@ def test_a_reference_is_compared_and_shown(server, page):
 
     expect(page.get_by_role("row", name=re.compile("Mean of all points"))).to_be_visible()
     expect(page.get_by_role("link", name="Download CSV")).to_be_visible()
-    fits(page)
+    on_both_screens(page, fits)
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
