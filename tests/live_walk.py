@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy, deepcopy
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from recon4.geometry.se3 import so3_exp
 from recon4.live.mapper.live_map import LiveMap
+from recon4.live.mapper.spill_file import SpillFile
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
@@ -67,6 +69,15 @@ class Follower:
         self.walk, self.axes = walk, np.array([gyro_axes or imu_axes, imu_axes])
         self.map = LiveMap(walk.store.rig, preset("indoor"))
         self.start, self.rate, self.with_imu = None, np.zeros(3), with_imu
+
+    def copy(self):
+        """Another follower that has been pushed the same; both go on by themselves."""
+        spill, other = self.map._places._spill, copy(self)
+        spilled = SpillFile()  # an open file is not copied
+        spilled.put(spill.get(slice(0, spill._end)))
+        other.map = deepcopy(self.map, {id(spill): spilled})
+        other.axes = self.axes.copy()
+        return other
 
     def push(self, row, shift_ns=0, *, noise=False):
         """The pose and its horizontal error [m]."""

@@ -12,10 +12,24 @@ from recon4.live.protocol import RecentFrames
 from recon4.settings import preset
 from tests.live_walk import Follower, simulated_walk
 
+FOLLOWED = (20, 40, 60, 76, 100, 130)
+"""How many multiframes tests follow before what they are about."""
+
 
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     return simulated_walk(tmp_path_factory.mktemp("office"))
+
+
+@pytest.fixture(scope="module")
+def followed(walk):
+    """``followed(60)`` has been pushed the first 60 multiframes, which is done once for all."""
+    follower, copies, start = Follower(walk), {}, 0
+    for rows in FOLLOWED:
+        for row in range(start, rows):
+            follower.push(row)
+        copies[rows], start = follower.copy(), rows
+    return lambda rows: copies[rows].copy()
 
 
 def test_who_is_lost_is_found_again_at_an_earlier_place(walk):
@@ -93,10 +107,8 @@ def test_accelerations_of_zero_are_said_and_mapping_goes_on_with_the_gyroscope(w
     assert max(error for _, error in message) < 0.15
 
 
-def test_accelerations_that_fail_on_the_way_do_not_end_the_map(walk):
-    follower = Follower(walk)
-    for row in range(20):
-        follower.push(row)
+def test_accelerations_that_fail_on_the_way_do_not_end_the_map(followed):
+    follower = followed(20)
     follower.axes[1] = 0.0
 
     message = [follower.push(row) for row in range(20, 60)]
@@ -107,7 +119,7 @@ def test_accelerations_that_fail_on_the_way_do_not_end_the_map(walk):
 
 @pytest.mark.parametrize(
     ("rate", "said"),
-    [(0.0, "all its values are 0"), (0.03, "its values along x, y and z never change")],
+    [(0.0, "all its values are 0"), (0.03, "its values along x, y, z never change")],
 )
 def test_a_gyroscope_whose_values_never_change_is_found_out_and_said(walk, rate, said):
     follower = Follower(walk, gyro_axes=[0.0, 0.0, 0.0])
@@ -150,10 +162,8 @@ def test_what_is_left_out_is_counted_for_ten_seconds(walk):
     assert (later.thinned, later.lately.thinned) == (5, 0)
 
 
-def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
-    follower = Follower(walk)
-    for row in range(100):
-        follower.push(row)
+def test_after_a_pause_the_walk_goes_on_where_it_stopped(followed):
+    follower = followed(100)
     later = [follower.push(row, 60_000_000_000) for row in range(100, 130)]
 
     assert later[0][0].lost
@@ -161,21 +171,17 @@ def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
     assert max(error for pose, error in later if not pose.lost) < 0.1
 
 
-def test_a_pause_during_a_turn_is_not_mistaken_for_a_place_that_looks_alike(walk):
+def test_a_pause_during_a_turn_is_not_mistaken_for_a_place_that_looks_alike(followed):
     """The corridor looks the same from its other end; the next view is through another door."""
-    follower = Follower(walk)
-    for row in range(76):
-        follower.push(row)
+    follower = followed(76)
     later = [follower.push(row, 60_000_000_000) for row in range(76, 110)]
 
     assert later[0][0].lost and not later[-1][0].lost
     assert max(error for pose, error in later if not pose.lost) < 0.1
 
 
-def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(walk):
-    follower = Follower(walk)
-    for row in range(130):
-        follower.push(row)
+def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(walk, followed):
+    follower = followed(130)
     back = walk.store[130].t_ns - walk.store[60].t_ns + 60_000_000_000
     later = [follower.push(row, back) for row in range(60, 142)]
 
@@ -184,10 +190,8 @@ def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(
     assert max(found) < 0.1
 
 
-def test_lidars_that_are_silent_for_three_seconds_lose_nobody_who_has_an_imu(walk):
-    follower = Follower(walk)
-    for row in range(60):
-        follower.push(row)
+def test_lidars_that_are_silent_for_three_seconds_lose_nobody_who_has_an_imu(walk, followed):
+    follower = followed(60)
     for row in range(60, 90):
         follower.map.extend_imu(walk.imu(row))
     later = [follower.push(row) for row in range(90, 100)]
@@ -197,10 +201,8 @@ def test_lidars_that_are_silent_for_three_seconds_lose_nobody_who_has_an_imu(wal
     assert later[-1][1] < 0.1
 
 
-def test_a_few_bad_multiframes_are_no_reason_to_search(walk):
-    follower = Follower(walk)
-    for row in range(40):
-        follower.push(row)
+def test_a_few_bad_multiframes_are_no_reason_to_search(followed):
+    follower = followed(40)
     lost = [follower.push(row, noise=True)[0].lost for row in range(40, 43)]
     pose, error_m = [follower.push(row) for row in range(43, 60)][-1]
 
