@@ -156,9 +156,7 @@ function facing({ name, points, surface }, { strays, frame, approval }) {
     ><span>${Number((t * 100).toFixed(1))} cm thick</span
     ><span>${count(points)} points ${SURFACES[surface]}</span>
     ${
-      strays && surface !== "strays"
-        ? html`<span>${count(strays)} points left out</span>`
-        : nothing
+      strays && surface !== "strays" ? html`<span>${count(strays)} points left out</span>` : nothing
     }
     <span class="frame">${frame}</span>${approvalFact(approval)}`;
 }

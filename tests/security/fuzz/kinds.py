@@ -302,12 +302,12 @@ _ALL = (
 
 def _recording(path: Path) -> Reading:
     found = recordings.read_recording(path)
-    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.said))
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.findings))
 
 
 def _metadata(path: Path) -> Reading:
     found = recordings.read_metadata(path)
-    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.said))
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.findings))
 
 
 def _recordings() -> Iterator[Kind]:

@@ -79,7 +79,7 @@ def _file_seeds(version: tuple[int, int]) -> tuple[bytes, ...]:
 
 def _read_file(path: Path) -> Reading:
     found = read_recording(path)
-    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.said))
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.findings))
 
 
 @cache

@@ -38,7 +38,7 @@ def _beside(name: str, folder: Path) -> None:
 
 def _read(path: Path) -> Reading:
     found = read_recording(path.parent)
-    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.said))
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.findings))
 
 
 def _read_samples(path: Path) -> Reading:
