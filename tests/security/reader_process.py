@@ -132,7 +132,7 @@ def _attempt(path: Path, read) -> dict:
     except BaseException:
         return {"kind": "traceback", "text": traceback.format_exc()[-3000:], "items": 0}
     kind = "ok" if result.outcome == "complete" else "salvaged"
-    text = f"{result.counts} {result.said}"
+    text = f"{result.counts} {result.findings}"
     return {"kind": kind, "text": text[:3000], "items": result.items}
 
 
