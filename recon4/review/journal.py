@@ -22,6 +22,7 @@ from recon4.store.seal import changing
 from recon4.store.sqlite_files import (
     connect,
     connect_to_read,
+    create_whole,
     has_room_beside,
     make_durable,
     merge_log,
@@ -232,6 +233,8 @@ def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection
             db = connect_to_read(path)
             yield db
             return
+        if write:
+            create_whole(path, _SCHEMA)
         db = connect(path)
         if write:
             make_durable(db)

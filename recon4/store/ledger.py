@@ -15,6 +15,7 @@ from recon4.store.sqlite_files import (
     connect,
     connect_read_only,
     connect_to_read,
+    create_whole,
     make_durable,
     merge_log,
 )
@@ -36,6 +37,7 @@ CREATE TABLE hashes (
     path TEXT PRIMARY KEY, size INTEGER NOT NULL, mtime_ns INTEGER NOT NULL, sha256 TEXT NOT NULL
 );
 """
+_CREATE = f"BEGIN; {_SCHEMA} PRAGMA user_version = {FORMATS.ledger}; COMMIT;"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,8 @@ class Ledger:
                 f"{path} is cut: expected a page or more, got {path.stat().st_size} bytes"
             )
         with self._errors():
+            if not read_only:
+                create_whole(path, _CREATE)
             self._db = _read_only(path) if read_only else connect(path)
         try:
             self._prepare(read_only=read_only and path.exists())
@@ -95,9 +99,7 @@ class Ledger:
                 raise sqlite3.DatabaseError(found)
             (version,) = self._db.execute("PRAGMA user_version").fetchone()
             if version == 0 and not read_only:
-                self._db.executescript(
-                    f"BEGIN; {_SCHEMA} PRAGMA user_version = {FORMATS.ledger}; COMMIT;"
-                )
+                self._db.executescript(_CREATE)
         if version not in {0, FORMATS.ledger}:
             raise StoreError(
                 f"{self.path} has version {version}, this recon4 reads version {FORMATS.ledger}"

@@ -10,6 +10,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+from recon4.store.atomic import temporary_beside
 from recon4.store.tuning import SQLITE
 
 
@@ -20,6 +21,31 @@ def connect(path: Path | str, *, busy_s: float = SQLITE.busy_s) -> sqlite3.Conne
         sqlite3.Error: If it cannot be opened.
     """
     return sqlite3.connect(path, isolation_level=None, timeout=busy_s)
+
+
+def create_whole(path: Path, schema: str) -> None:
+    """Create a file with its tables, unless it exists: nobody ever sees it without them.
+
+    A reader that comes while another process creates a file would find no table in it, as in a
+    damaged one.
+
+    Raises:
+        sqlite3.Error: If it cannot be created.
+    """
+    if path.exists():
+        return
+    made = temporary_beside(path)
+    try:
+        with closing(connect(made)) as db:
+            db.executescript(schema)
+        os.link(made, path)  # fails if another process was faster; its file stays
+    except FileExistsError:
+        pass
+    except OSError:  # a disk without hard links
+        with closing(connect(path)) as db:
+            db.executescript(schema)
+    finally:
+        made.unlink(missing_ok=True)
 
 
 def connect_read_only(path: Path, *, immutable: bool = False) -> sqlite3.Connection:
