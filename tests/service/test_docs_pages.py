@@ -1,6 +1,7 @@
 """The documentation site on the server: every page, link and image, without internet."""
 
 import re
+from functools import cache
 from html.parser import HTMLParser
 from posixpath import join, normpath
 
@@ -36,6 +37,7 @@ class Elements(HTMLParser):
         self._inside &= tag != "article"
 
 
+@cache
 def elements(address):
     return Elements((folder() / address).read_text("utf-8"))
 
@@ -65,6 +67,7 @@ def test_a_page_is_served_and_all_it_refers_to_exists(server, address):
     assert missing == []
 
 
+@cache
 def anchors(address):
     return {"__skip", *(attributes.get("id") for _, attributes in elements(address).all)}
 
