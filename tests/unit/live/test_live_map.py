@@ -32,6 +32,7 @@ def followed(walk):
     return lambda rows: copies[rows].copy()
 
 
+@pytest.mark.study
 def test_who_is_lost_is_found_again_at_an_earlier_place(walk):
     """Without an IMU, so that nothing contradicts the jump back.
 
