@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.classes.tuning import VOLUME
 from recon4.geometry.se3 import Array
-from recon4.kernels.seen_through import VERDICT
+from recon4.kernels.free_space import VERDICT
 
 
 def is_near(p_body: Array) -> NDArray[np.bool_]:

@@ -19,7 +19,8 @@ from recon4.classes.carrier import CarrierCubes, CarrierVolume, is_near
 from recon4.classes.tuning import SIGHT, SPREAD, VOLUME
 from recon4.classes.views import RegularViews, in_body
 from recon4.geometry.se3 import Array
-from recon4.kernels.seen_through import VERDICT, RangeViews, find_seen_through, spread_to_neighbors
+from recon4.kernels.free_space import VERDICT
+from recon4.kernels.seen_through import RangeViews, find_seen_through, spread_to_neighbors
 from recon4.mapping.build import in_order
 from recon4.mapping.mirrors import Mirror, Sight
 from recon4.mapping.tuning import MAP_BUILD

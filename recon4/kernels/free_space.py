@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -10,6 +11,19 @@ from numpy.typing import NDArray
 
 NO_SURFACE = np.float32(np.inf)
 """Value of a cell without a return."""
+
+
+class Verdicts(NamedTuple):
+    """What other scans say of a point."""
+
+    met: int = -1
+    """A surface is there."""
+    unknown: int = 0
+    seen_through: int = 1
+    """Nothing stands there."""
+
+
+VERDICT = Verdicts()
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -51,30 +65,37 @@ def nearest_ranges(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _seen(
-    image: NDArray[np.float32], row: int, column: int, range_m: float, margin_m: float
+def sight(
+    image: NDArray[np.float32], row: int, column: int, range_m: float, limits: tuple[float, float]
 ) -> int:
-    """1 = a scan sees through a point, -1 = it meets a surface there, 0 = neither.
+    """One of `VERDICT`, by how far everything lies behind and how near a surface is [m].
 
-    It sees through if everything in its direction, and in all directions around, lies behind: what
-    stands beside the point, or lies a little lower, keeps it. There must be returns on all four
-    sides: the lowest beam passes above the ground before the feet, and hits it farther away.
+    What stands beside the point or lies a little lower keeps it: all around has to lie behind, with
+    returns on all four sides: the lowest beam passes above the ground before the feet.
     """
+    # Most points are where they were: their own cell says so.
+    if abs(image[row, column] - range_m) < limits[1]:
+        return VERDICT.met
     rows, columns = image.shape
-    nearest_m, near = np.inf, False
+    nearest_m = np.inf
     below = above = left = right = False
     for i in range(max(row - 1, 0), min(row + 2, rows)):
-        for j in range(column - 1, column + 2):
-            seen_m = image[i, j % columns]
+        for step in range(-1, 2):
+            j = column + step
+            if j < 0:
+                j += columns
+            elif j >= columns:
+                j -= columns
+            seen_m = image[i, j]
             if seen_m == np.inf:
                 continue
+            if abs(seen_m - range_m) < limits[1]:
+                return VERDICT.met
             below, above = below or i < row, above or i > row
-            left, right = left or j < column, right or j > column
+            left, right = left or step < 0, right or step > 0
             nearest_m = min(nearest_m, seen_m)
-            near = near or abs(seen_m - range_m) < margin_m
-    if below and above and left and right and nearest_m > range_m + margin_m:
-        return 1
-    return -1 if near else 0
+    around = below and above and left and right
+    return VERDICT.seen_through if around and nearest_m > range_m + limits[0] else VERDICT.unknown
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -111,7 +132,7 @@ def find_moving_points(
                 if range_m < rules[2] or range_m > rules[3]:
                     continue
                 margin_m = rules[0] + rules[1] * range_m
-                seen = _seen(images[v, s], row, column, range_m, margin_m)
+                seen = sight(images[v, s], row, column, range_m, (margin_m, margin_m))
                 if seen < 0:
                     vote = -1
                     break

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from recon4.kernels.returns import (
     ColumnShots,
-    Decoded,
     decoded,
     in_order,
     new_points,
@@ -19,6 +18,7 @@ from recon4.kernels.returns import (
     ring_marks,
     sift,
 )
+from recon4.kernels.spinning import Decoded
 
 _POLYNOMIAL = 0xC96C5795D7870F42
 """ECMA-182, lowest bit first."""

@@ -14,16 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-Decoded = tuple[
-    NDArray[np.int64],
-    NDArray[np.float32],
-    NDArray[np.uint16],
-    NDArray[np.uint8],
-    NDArray[np.uint8],
-    NDArray[np.int64],
-]
-"""``t_ns, xyz, intensity, ring, echo`` of N points, and counts of shots without return, returns too
-near and too far, (3,)."""
+from recon4.kernels.spinning import Decoded
 
 
 class ColumnShots(NamedTuple):

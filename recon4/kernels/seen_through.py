@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.free_space import cell_of
+from recon4.kernels.free_space import VERDICT, cell_of, sight
 
 
 class RangeViews(NamedTuple):
@@ -51,53 +51,6 @@ class SightRules(NamedTuple):
     """Of the points of a ring, one of this many is compared first."""
 
 
-class Verdicts(NamedTuple):
-    """What other scans say of a point."""
-
-    met: int = -1
-    """A surface is there."""
-    unknown: int = 0
-    seen_through: int = 1
-    """Nothing stands there."""
-
-
-VERDICT = Verdicts()
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _sight(
-    image: NDArray[np.float32], row: int, column: int, range_m: float, limits: tuple[float, float]
-) -> int:
-    """One of `VERDICT`.
-
-    What stands beside the point or lies a little lower keeps it: all around has to lie behind, with
-    returns on all four sides.
-    """
-    # Most points are where they were: their own cell says so.
-    if abs(image[row, column] - range_m) < limits[1]:
-        return VERDICT.met
-    rows, columns = image.shape
-    nearest_m = np.inf
-    below = above = left = right = False
-    for i in range(max(row - 1, 0), min(row + 2, rows)):
-        for step in range(-1, 2):
-            j = column + step
-            if j < 0:
-                j += columns
-            elif j >= columns:
-                j -= columns
-            seen_m = image[i, j]
-            if seen_m == np.inf:
-                continue
-            if abs(seen_m - range_m) < limits[1]:
-                return VERDICT.met
-            below, above = below or i < row, above or i > row
-            left, right = left or step < 0, right or step > 0
-            nearest_m = min(nearest_m, seen_m)
-    around = below and above and left and right
-    return VERDICT.seen_through if around and nearest_m > range_m + limits[0] else VERDICT.unknown
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
 def _verdict(p: NDArray[np.float64], own: int, views: RangeViews, rules: SightRules) -> int:
     """Whether more scans see through a point than meet a surface there.
@@ -117,11 +70,11 @@ def _verdict(p: NDArray[np.float64], own: int, views: RangeViews, rules: SightRu
                 rules.behind_m + rules.behind_per_m * range_m,
                 rules.same_m + rules.same_per_m * range_m,
             )
-            sight = _sight(views.images[v, s], row, column, range_m, limits)
-            if sight == VERDICT.met:
+            seen = sight(views.images[v, s], row, column, range_m, limits)
+            if seen == VERDICT.met:
                 vote = VERDICT.met
                 break
-            vote = max(vote, sight)
+            vote = max(vote, seen)
         passes += vote == VERDICT.seen_through
         meets += vote == VERDICT.met
         if passes - meets >= rules.enough or meets - passes >= rules.surely_met:
