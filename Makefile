@@ -39,6 +39,10 @@ export OPENBLAS_NUM_THREADS := 1
 
 .PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs signatures examples constraints lock audit sbom wheel clean
 .DELETE_ON_ERROR:
+# Their parts run side by side all the same. Other goals wait: no two makes install at a time.
+ifneq ($(filter test quick,$(MAKECMDGOALS)),)
+.NOTPARALLEL:
+endif
 
 demo: $(VENV)/installed-run site
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
@@ -142,10 +146,16 @@ $(VENV)/bin/python:
 	.ci/apt run
 	$(PYTHON) -m venv $(VENV)
 
+# One environment takes one installation at a time. That of developers holds all of the other one.
+ifeq ($(filter-out demo site sbom audit lock clean web,$(MAKECMDGOALS)),)
 $(VENV)/installed-run: $(VENV)/bin/python pyproject.toml requirements/run.lock
 	$(BIN)/python $(LOCKED) requirements/run.lock
 	$(BIN)/python $(OURSELVES)
 	@touch $@
+else
+$(VENV)/installed-run: $(VENV)/installed-dev
+	@touch $@
+endif
 
 $(VENV)/installed-dev: $(VENV)/bin/python pyproject.toml requirements/dev.lock
 	.ci/apt run test

@@ -126,18 +126,31 @@ def test_this_environment_has_no_old_packages_either():
     assert below == {}
 
 
-def test_make_installs_only_what_the_lock_names(tmp_path):
-    """The commands of `make`, as it would run them in an empty environment."""
+def planned_installs(tmp_path, *targets):
+    """Installations that `make` would run in an empty environment."""
     options = [f"VENV={tmp_path}/venv", f"TOOLS={tmp_path}/tools", f"PYTHON={sys.executable}"]
-    targets = ["demo", "unit", "lock", "audit", "sbom"]
     environment = {k: v for k, v in os.environ.items() if not k.startswith("MAKE")}
     planned = subprocess.run(
         ["make", "-n", *options, *targets],
         cwd=ROOT, env=environment, capture_output=True, text=True, check=True,
     ).stdout  # fmt: skip
+    return [line for line in planned.splitlines() if "pip install" in line]
 
-    installs = [line for line in planned.splitlines() if "pip install" in line]
 
-    assert len(installs) >= 4
+@pytest.mark.parametrize("targets", [("demo", "sbom"), ("unit", "e2e"), ("demo", "types", "site")])
+def test_make_never_installs_into_one_environment_twice(targets, tmp_path):
+    """``-j`` would run them at the same time, and the second takes away what the first wrote."""
+    installs = [line for line in planned_installs(tmp_path, *targets) if "/venv/" in line]
+
+    assert len([line for line in installs if "requirements/" in line]) == 1
+    assert len([line for line in installs if line.endswith("-e .")]) == 1
+
+
+def test_make_installs_only_what_the_lock_names(tmp_path):
+    """The commands of `make`, for people and for developers."""
+    installs = planned_installs(tmp_path, "demo", "lock", "audit", "sbom")
+    installs += planned_installs(tmp_path, "unit")
+
+    assert len(installs) >= 5
     safe = ("--require-hashes -r requirements/", "--no-deps --no-build-isolation -e .")
     assert [line for line in installs if not any(words in line for words in safe)] == []
