@@ -20,6 +20,7 @@ import recon4
 from recon4.cli.backup import backups
 from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
+from recon4.cli.delivery import delivery
 from recon4.cli.evaluation import evaluation
 from recon4.cli.exports import exports
 from recon4.cli.findings import findings
@@ -50,7 +51,7 @@ app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
 for _part in (server, live, simulation, slices, backups, space):
     app.add_typer(_part)
-for _part in (calibration, evaluation, exports, findings):
+for _part in (calibration, evaluation, exports, delivery, findings):
     app.add_typer(_part)
 
 _INTERRUPTED = 130

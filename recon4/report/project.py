@@ -8,6 +8,7 @@ import msgspec
 
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import Evaluation
+from recon4.model.rig_origin import RigOrigin
 from recon4.report.facts import ReportFacts, StageTiming
 from recon4.report.tuning import PROJECT_FACTS
 from recon4.store.json_files import read_object
@@ -35,14 +36,15 @@ class _Summary(msgspec.Struct):
     crs: str
     versions: dict[str, str]
     stages: tuple[_Stage, ...]
+    rig_origin: RigOrigin | None = None
 
 
-def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
+def project_facts(root: Path, evaluation: Evaluation | None = None) -> ReportFacts:
     """Facts of the latest run of a project, with its evaluation against ground truth.
 
     Args:
         root: The project folder, with ``summary.json`` and ``project.json``.
-        evaluation: Shown in the section on accuracy.
+        evaluation: Shown in the section on accuracy; None = there is none.
 
     Raises:
         StoreError: If there is no finished run, or a file is damaged.
@@ -64,6 +66,7 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
             inputs=described.inputs,
             versions=summary.versions,
             rig=summary.rig,
+            rig_origin=summary.rig_origin,
             crs=summary.crs,
             evaluation=evaluation,
         )

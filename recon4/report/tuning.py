@@ -136,3 +136,26 @@ class StretchChartTuning:
 
 
 STRETCH_CHART = StretchChartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClientReportTuning:
+    """The report for the client: short enough to be read."""
+
+    cut_m: tuple[float, float] = (0.2, 0.6)
+    """Depths of the plan below the scanner [m]: above tables, below lintels."""
+    around_m: float = 4.0
+    """Half the width of the drawing of a place, at least [m]."""
+    most_findings: int = 24
+    """Findings that are listed."""
+    most_drawings: int = 10
+    """Findings with a drawing."""
+    most_loops: int = 10
+    """Weakest loop closures that are named."""
+    most_settings: int = 40
+    most_files: int = 200
+    most_characters: int = 600
+    """Of a text that people gave."""
+
+
+CLIENT_REPORT = ClientReportTuning()

@@ -155,3 +155,14 @@ class TrustedKeyLimits:
 
 
 KEY_LIMITS = TrustedKeyLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CertificateTuning:
+    """Certificates of signing keys."""
+
+    days: int = 10_950
+    """Validity [d]: a report is kept as long as a building stands."""
+
+
+CERTIFICATES = CertificateTuning()

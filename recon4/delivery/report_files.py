@@ -1,0 +1,178 @@
+"""The report of a finished run for the client: as PDF, signed if the map is approved, or HTML."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from recon4.delivery.pdf_signature import Organization, sign_pdf
+from recon4.errors import StoreError
+from recon4.model.finding import Finding
+from recon4.report.assessment import Assessment, assess
+from recon4.report.client import ClientReport, Row, Signature
+from recon4.report.client_report import ReportExtras, client_report
+from recon4.report.client_words import Words, words
+from recon4.report.pdf import pdf_of, require_pdf
+from recon4.report.project import project_facts
+from recon4.review.acknowledgments import (
+    Acknowledgment,
+    acknowledgments,
+    report_with_notes,
+)
+from recon4.review.approval_state import ApprovalState, latest_state
+from recon4.review.approved import Approval, approval_of
+from recon4.review.journal import read_rows
+from recon4.review.state import read_summary
+from recon4.review.trusted_keys import SIGNING_KEY, trusted_for
+from recon4.store.atomic import atomic_file
+from recon4.store.project import read_artifacts
+from recon4.store.seal import check_sealed
+
+SUMMARY, HTML = "summary.json", "report.html"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReportWish:
+    """How the report is written."""
+
+    language: str = "en"
+    draft: bool = False
+    """Without an approval, whether or not there is one; never signed."""
+    key: Path | Organization | None = None
+    """What signs the PDF of an approved map; None = nothing."""
+    files: Sequence[Row] = ()
+    """Delivered files with their SHA-256, for the list at its end."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenReport:
+    """What was written."""
+
+    approval: ApprovalState
+    signed: bool
+
+
+def server_key(project: Path) -> Path | None:
+    """The key of the server in whose folder a project lies; None if there is none to be read."""
+    trusted = trusted_for(project)
+    path = trusted.folder / SIGNING_KEY
+    return path if trusted.server and os.access(path, os.R_OK) else None
+
+
+def write_pdf(root: Path, path: Path, wish: ReportWish) -> WrittenReport:
+    """Write the report of the latest run of a project as PDF.
+
+    Args:
+        root: The project folder.
+        path: File to write, replaced only when the new one is complete.
+        wish: Language, key, delivered files.
+
+    Raises:
+        Altered: If the map was approved and is not what was approved.
+        ConfigError: If the extra ``pdf`` is not installed, or the language is not known.
+        StoreError: If there is no finished run, or a file is damaged.
+    """
+    require_pdf()
+    state, approval = checked_approval(root, draft=wish.draft)
+    made = pdf_of(report_of(root, approval, state, wish=wish))
+    signed = approval is not None and wish.key is not None
+    if approval is not None and wish.key is not None:
+        made = sign_pdf(made, wish.key, reason=state.text)
+    with atomic_file(path) as temporary:
+        temporary.write_bytes(made)
+    return WrittenReport(state, signed)
+
+
+def write_html(root: Path, path: Path, *, draft: bool = False) -> WrittenReport:
+    """Write the report with all figures, as the run made it, with its approval and notes.
+
+    Raises:
+        Altered: If the map was approved and is not what was approved.
+        StoreError: If there is no report, or a file is damaged.
+    """
+    state, _ = checked_approval(root, draft=draft)
+    source = root / HTML
+    if not source.is_file():
+        raise StoreError(f"expected a project with a finished run, got {root}")
+    with atomic_file(path) as temporary, temporary.open("wb") as file:
+        file.writelines(report_with_notes(root, source))
+    return WrittenReport(state, signed=False)
+
+
+def checked_approval(root: Path, *, draft: bool) -> tuple[ApprovalState, Approval | None]:
+    """The approval of the latest results, whose bytes are compared with it.
+
+    Raises:
+        Altered: If it is not what was approved, or the approval is not to be trusted.
+        StoreError: If a file cannot be read.
+    """
+    artifacts = read_artifacts(root)
+    keys = {stage: folder.name for stage, folder in artifacts.items()}
+    approval = None if draft else approval_of(root, keys)
+    if approval is None:
+        check_sealed(root, SUMMARY)
+        return latest_state(root, draft=draft), None
+    approval.check_issued()
+    for name in (SUMMARY, HTML):
+        if name in approval.issued:
+            approval.check_issued_file(root / name)
+    for stage, folder in artifacts.items():
+        approval.evidence.artifact(stage, folder).check_all()
+    return latest_state(root), approval
+
+
+def report_of(
+    root: Path, approval: Approval | None, state: ApprovalState, *, wish: ReportWish
+) -> ClientReport:
+    """The record that the PDF lays out."""
+    assessed = assess(project_facts(root))
+    extras = ReportExtras(
+        signature=_signature(approval, state, words(wish.language), wish=wish),
+        notes=_notes(root, approval, assessed),
+        files=wish.files,
+    )
+    return client_report(assessed, extras, language=wish.language)
+
+
+def _signature(
+    approval: Approval | None, state: ApprovalState, texts: Words, *, wish: ReportWish
+) -> Signature:
+    if approval is None:
+        row = Row(texts("signature.state"), state.text)
+        return Signature(approved=False, text=state.text, rows=(row,))
+    stamp = approval.stamp
+    signed = "pdf_signed" if wish.key is not None else "pdf_unsigned"
+    who = texts("signature.who_value", who=state.who, role=stamp.role)
+    pairs = {
+        "who": who,
+        "time": f"{stamp.time[:16].replace('T', ' ')} UTC",
+        "version": str(stamp.version),
+        "verdict": stamp.verdict,
+        "why": state.why,
+        "hash": f"{stamp.hash[:32]} {stamp.hash[32:]}",
+        "pdf": texts(f"signature.{signed}"),
+    }
+    rows = tuple(Row(texts(f"signature.{key}"), text) for key, text in pairs.items() if text)
+    return Signature(approved=True, text=state.text, rows=rows)
+
+
+def _notes(
+    root: Path, approval: Approval | None, assessed: Assessment
+) -> Mapping[int, Sequence[str]]:
+    """Notes of reviewers by finding; of an approved map those up to its approval."""
+    found = acknowledgments(read_rows(root), read_summary(root) or {})
+    out: dict[int, list[str]] = {}
+    for place, finding in enumerate(assessed.findings):
+        for one in found:
+            if not _is_about(one, finding):
+                continue
+            if approval is None or one.time <= approval.stamp.time:
+                out.setdefault(place, []).append(f"{one.who}, {one.time[:10]}: {one.why}")
+    return out
+
+
+def _is_about(note: Acknowledgment, finding: Finding) -> bool:
+    current = note.finding is not None
+    return current and (note.kind, note.span_s) == (str(finding.kind), finding.span_s)

@@ -1,0 +1,113 @@
+"""The report for the client as PDF/A: `client.typ` lays out the record, offline.
+
+The record is given as JSON. Its texts are strings in the template, never markup: what people or
+files call things cannot become a command.
+"""
+
+from __future__ import annotations
+
+import json
+import unicodedata
+from dataclasses import asdict
+from datetime import UTC, datetime
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from recon4.errors import ConfigError, StoreError
+from recon4.report.client import ClientReport
+
+STANDARDS = ["a-2a", "ua-1"]
+"""PDF/A-2a (archives) and PDF/UA-1 (read aloud)."""
+INSTALL = "pip install 'recon4[pdf]'"
+_UNPRINTABLE = {"Cc", "Cf", "Cs", "Co", "Cn"}
+
+
+def pdf_of(report: ClientReport) -> bytes:
+    """The report as PDF/A-2a; the same record gives the same bytes.
+
+    Raises:
+        ConfigError: If the extra ``pdf`` is not installed.
+        StoreError: If it cannot be laid out.
+    """
+    return _compiled(report, format="pdf", pdf_standards=STANDARDS)[0]
+
+
+def pages_of(report: ClientReport, *, ppi: float = 80.0) -> list[bytes]:
+    """The pages as PNG images.
+
+    Raises:
+        ConfigError: If the extra ``pdf`` is not installed.
+        StoreError: If it cannot be laid out.
+    """
+    return _compiled(report, format="png", ppi=ppi)
+
+
+def require_pdf() -> None:
+    """Refuse early.
+
+    Raises:
+        ConfigError: If the extra ``pdf`` is not installed; it says how to install it.
+    """
+    try:
+        import pyhanko  # noqa: F401
+        import typst  # noqa: F401
+    except ImportError as error:
+        raise ConfigError(
+            f"a PDF needs the extra packages typst and pyhanko: {INSTALL} ({error})"
+        ) from error
+
+
+def _compiled(report: ClientReport, **wanted: Any) -> list[bytes]:
+    require_pdf()
+    import typst
+
+    template = resources.files("recon4.report").joinpath("client.typ").read_bytes()
+    given = json.dumps(_printable(asdict(report)), ensure_ascii=False)
+    try:
+        made = typst.compile(
+            template,
+            sys_inputs={"report": given},
+            font_paths=[_fonts()],
+            ignore_system_fonts=True,
+            timestamp=_time(report.created),
+            **wanted,
+        )
+    except typst.TypstError as error:
+        raise StoreError(f"the report cannot be laid out: {error.message[:400]}") from error
+    assert made is not None
+    return made if isinstance(made, list) else [made]
+
+
+def _fonts() -> Path:
+    """Folder of DejaVu Sans, which matplotlib brings along; the others are within typst."""
+    import matplotlib
+
+    return Path(matplotlib.get_data_path()) / "fonts" / "ttf"
+
+
+def _time(created: str) -> datetime:
+    try:
+        return datetime.fromisoformat(created).astimezone(UTC)
+    except ValueError:
+        return datetime(2000, 1, 1, tzinfo=UTC)  # of an earlier version
+
+
+def _printable(value: Any) -> Any:
+    """A record without characters that no font may show: PDF/A refuses them.
+
+    Drawings are XML of recon4, whose line ends stay.
+    """
+    if isinstance(value, dict):
+        return {k: one if k == "svg" else _printable(one) for k, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_printable(one) for one in value]
+    if isinstance(value, str) and not value.isascii():
+        return "".join(_shown(one) for one in value)
+    return value
+
+
+def _shown(character: str) -> str:
+    if unicodedata.category(character) in _UNPRINTABLE:
+        return f"<U+{ord(character):04X}>"
+    return character
