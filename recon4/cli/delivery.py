@@ -61,6 +61,79 @@ def report(
         write(f"{pdf}, {'signed' if made.signed else 'not signed'}\n{made.approval.text}")
 
 
+@delivery.command()
+def deliver(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    out: Annotated[Path, typer.Argument(help="ZIP file to write.")],
+    *,
+    files: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="What is in it, with commas: copc.laz, laz, ply, pcd, xyz, e57, poses.txt, "
+            "findings.csv, geojson; default: copc.laz, findings.csv. Reports are always in it."
+        ),
+    ] = None,
+    crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
+    license_: Annotated[
+        Path | None, typer.Option("--license", help="Text file: how the data may be used.")
+    ] = None,
+) -> None:
+    """Pack a map, its report, hashes and signature into one file for the client.
+
+    `recon4 verify FILE.zip` checks it on any computer. A map that is not approved is packed as a
+    draft, and not signed.
+    """
+    signer = organization(Path(name) if (name := os.environ.get(CERTIFICATE)) else None)
+    confine_command(write=[out.parent])
+    from recon4.cli.terminal import watcher
+    from recon4.delivery.package import DeliveryWish, chosen_files
+    from recon4.delivery.package import deliver as pack
+    from recon4.delivery.report_files import server_key
+
+    wish = DeliveryWish(
+        files=chosen_files(files or []),
+        crs=crs,
+        license=license_,
+        key=server_key(project),
+        certificate=signer,
+    )
+    with watcher() as progress:
+        made = pack(project, out, wish, progress=progress)
+    write(f"{len(made.files)} files, {made.bytes / 1e6:.1f} MB in {out}")
+    write(f"{'signed' if made.signed else 'not signed'}\n{made.approval.text}")
+
+
+def is_delivery(path: Path) -> bool:
+    """Whether a path is a file, or an unpacked delivery."""
+    return path.is_file() or (path / "manifest.json").is_file()
+
+
+def show_checked(path: Path, *, as_json: bool) -> None:
+    """Verify a delivery or a signed report, and say what is intact and whose signature it is.
+
+    Raises:
+        typer.Exit: If not all is as it was sent, or the signature does not count.
+    """
+    import json
+    from dataclasses import asdict
+
+    confine_command()
+    from recon4.delivery.check import check_file
+
+    found = check_file(path)
+    if as_json:
+        write(json.dumps(asdict(found), indent=1, ensure_ascii=False))
+    else:
+        parts = (("intact", found.intact), ("ALTERED", found.altered))
+        for word, names in (*parts, ("MISSING", found.missing), ("ADDED", found.added)):
+            write("".join(f"{word}: {name}\n" for name in names), end="")
+        write("".join(f"{text}\n" for text in (found.says, found.doubt) if text), end="")
+        if found.signer and not found.altered:
+            write(f"signed by {found.signer}")
+    if not found.whole:
+        raise typer.Exit(1)
+
+
 def organization(certificate: Path | None) -> Organization | None:
     """The certificate that signs, with its passphrase from the environment."""
     if certificate is None:

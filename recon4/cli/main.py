@@ -20,7 +20,7 @@ import recon4
 from recon4.cli.backup import backups
 from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
-from recon4.cli.delivery import delivery
+from recon4.cli.delivery import delivery, is_delivery, show_checked
 from recon4.cli.evaluation import evaluation
 from recon4.cli.exports import exports
 from recon4.cli.findings import findings
@@ -205,7 +205,7 @@ def settings(
 
 @app.command()
 def verify(
-    folder: Annotated[Path, typer.Argument(help="A project, or the folder of a server.")],
+    folder: Annotated[Path, typer.Argument(help="A project, server's folder, delivery or PDF.")],
     *,
     accept: Annotated[
         bool, typer.Option("--accept", help="Seal the files as they are now; approvals stay.")
@@ -219,6 +219,8 @@ def verify(
     from recon4.archive.verify import verify as read_again
     from recon4.cli.terminal import watcher
 
+    if is_delivery(folder):
+        return show_checked(folder, as_json=as_json)
     if accept and (state := seal_again(folder)):
         _note_accepted(state, folder)
     confine_command(write=[folder])  # SQLite makes files beside what it reads

@@ -14,6 +14,12 @@ class DeliveryLimits:
     max_manifest_bytes: int = 16 << 20
     max_files: int = 10_000
     """In a delivery."""
+    local_header_bytes: int = 30
+    """Before the name of an entry of a ZIP file (APPNOTE 4.3.7)."""
+    compared_points: int = 100_000
+    """At a time, of an export and its map."""
+    same_point_m: float = 1e-4
+    """Rounding of text and of single precision near the middle of a map [m]."""
     block_bytes: int = 1 << 20
     """Read at a time."""
 

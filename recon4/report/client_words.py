@@ -19,7 +19,7 @@ class Words:
         self.language = language
         self._texts = texts
 
-    def __call__(self, key: str, **values: str) -> str:
+    def __call__(self, key: str, /, **values: str) -> str:
         """A text with the values that it quotes filled in; the values are taken as they are."""
         return self._texts[key].format(**values)
 

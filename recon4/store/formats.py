@@ -33,6 +33,8 @@ class FileFormats:
     """The key of a person whose approvals are trusted."""
     backup: int = 1
     """The list of a backup."""
+    delivery: int = 1
+    """``manifest.json`` of a delivery."""
 
 
 FORMATS = FileFormats()

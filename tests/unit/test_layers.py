@@ -124,7 +124,8 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"}
     | {"recon4.findings"},
     "recon4/delivery": STAGE
-    | {"recon4.delivery", "recon4.export", "recon4.report", "recon4.review"},
+    | {"recon4.delivery", "recon4.export", "recon4.report", "recon4.review"}
+    | {"recon4.mapping.tiles", "recon4.recording.formats.cloud_files"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4/workflows": {"recon4"},
     "recon4": {"recon4"},

@@ -1,0 +1,257 @@
+"""Packs a delivery: chosen files of a map, its report, license, hashes and signature in one ZIP."""
+
+from __future__ import annotations
+
+import shutil
+import stat
+import tempfile
+import zipfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import recon4
+from recon4.delivery.check import CheckedFile, check_file
+from recon4.delivery.hostile_zip import unsafe_name
+from recon4.delivery.manifest import MANIFEST, DeliveredFile, DeliveryManifest, manifest_text
+from recon4.delivery.pdf_signature import Organization
+from recon4.delivery.report_files import (
+    ReportWish,
+    checked_approval,
+    write_html,
+    write_pdf,
+)
+from recon4.delivery.reread import compare_export
+from recon4.delivery.tuning import DELIVERIES
+from recon4.errors import ConfigError, StoreError
+from recon4.export.clouds import CLOUD_FORMATS
+from recon4.export.findings import ENDINGS, export_findings
+from recon4.export.map_files import SCANS, MapExport, MapToExport, export_poses, map_to_export
+from recon4.export.map_files import write_map as write_export
+from recon4.progress import Progress
+from recon4.report.client import Row
+from recon4.report.client_words import Words, words
+from recon4.report.pdf import require_pdf
+from recon4.review.approval_state import ApprovalState
+from recon4.review.approved import Approval
+from recon4.review.signature import public_key_of
+from recon4.review.state import read_summary
+from recon4.store.atomic import atomic_file
+from recon4.store.formats import FORMATS
+from recon4.store.hashing import FileDigest
+from recon4.store.project import read_artifacts
+from recon4.untrusted.names import visible
+
+MAP_ENDINGS = (*CLOUD_FORMATS, SCANS)
+CHOICES = tuple(
+    [f"map{ending}" for ending in MAP_ENDINGS]
+    + ["poses.txt"]
+    + [f"findings{ending}" for ending in ENDINGS]
+)
+"""Files that a delivery may hold, by name."""
+USUAL = ("map.copc.laz", "findings.csv")
+REPORT_PDF, REPORT_HTML = "report.pdf", "report.html"
+README, LICENSE = "README.txt", "LICENSE.txt"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeliveryWish:
+    """What is packed, and how."""
+
+    files: Sequence[str] = USUAL
+    """Names, of `CHOICES`."""
+    crs: str = ""
+    """Code of the CRS of maps; empty = that of the map."""
+    license: Path | None = None
+    """Text of the license of the data; None = all rights reserved, which the README says."""
+    key: Path | None = None
+    """Ed25519 key that signs manifest and report of an approved map; None = not signed."""
+    certificate: Organization | None = None
+    """Signs the report in place of the key."""
+    language: str = "en"
+
+
+@dataclass(frozen=True, slots=True)
+class Delivered:
+    """What was packed."""
+
+    files: tuple[str, ...]
+    bytes: int
+    """Of the ZIP file."""
+    signed: bool
+    approval: ApprovalState
+
+
+@dataclass(frozen=True, slots=True)
+class _Map:
+    """The map that is delivered, whose approval was compared."""
+
+    project: Path
+    state: ApprovalState
+    approval: Approval | None
+    export: MapToExport
+
+
+def deliver(project: Path, out: Path, wish: DeliveryWish, *, progress: Progress) -> Delivered:
+    """Pack a delivery; the file gets its name when all of it was read again and compared.
+
+    A map that is not approved is delivered as a draft: it says so, and nothing is signed.
+
+    Args:
+        project: The project folder.
+        out: ZIP file to write.
+        wish: Files, CRS, license, keys.
+        progress: Counts points of exports.
+
+    Raises:
+        Altered: If the map was approved and is not what was approved; nothing is written.
+        ConfigError: If a file cannot be chosen, or the extra ``pdf`` is not installed.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
+        StoreError: If there is no map yet, or a file cannot be written or reads back wrong.
+    """
+    _refuse(out, wish)
+    map_ = _open(project, wish)
+    signed = map_.approval is not None and wish.key is not None
+    with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as name:
+        folder = Path(name)
+        _write_files(folder, map_, wish, progress=progress)
+        texts = words(wish.language)
+        _write_readme(folder, map_, wish, texts=texts, name=out.name)
+        names = sorted(path.name for path in folder.iterdir())
+        listed = {one: _digest(folder / one) for one in names}
+        key = wish.key if signed else None
+        text = manifest_text(_manifest(map_, listed), key)
+        (folder / MANIFEST).write_text(text, "utf-8")
+        with atomic_file(out) as temporary:
+            _pack(folder, [README, MANIFEST, *(n for n in names if n != README)], temporary)
+            _compare(check_file(temporary), listed)
+    return Delivered(tuple(names), out.stat().st_size, signed, map_.state)
+
+
+def chosen_files(given: Sequence[str]) -> tuple[str, ...]:
+    """Names of files as people give them: ``map.e57``, or its ending ``e57``; with commas.
+
+    Raises:
+        ConfigError: If one is not known.
+    """
+    out = []
+    for word in (part.strip() for text in given for part in text.split(",")):
+        fitting = [name for name in CHOICES if word in (name, name.partition(".")[2])]
+        if not fitting:
+            known = ", ".join(CHOICES)
+            raise ConfigError(f"--files {visible(word)!r}: expected some of {known}")
+        out.append(fitting[0])
+    return tuple(dict.fromkeys(out)) or USUAL
+
+
+def _refuse(out: Path, wish: DeliveryWish) -> None:
+    """Refuse what cannot work before the long work begins."""
+    require_pdf()
+    if out.suffix.lower() != ".zip" or unsafe_name(out.name):
+        raise ConfigError(f"a delivery must be named .zip, got {visible(out.name)}")
+    if wish.license is not None and not wish.license.is_file():
+        raise ConfigError(f"the license {wish.license.name} is no file")
+
+
+def _open(project: Path, wish: DeliveryWish) -> _Map:
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project} has no map yet: run recon4 process")
+    state, approval = checked_approval(project, draft=False)
+    evidence = approval.evidence if approval else None
+    wanted = MapExport(crs=wish.crs)
+    return _Map(project, state, approval, map_to_export(artifacts, evidence, wanted))
+
+
+def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Progress) -> None:
+    """The exports, each compared with the map, and the reports that list them."""
+    draft = map_.approval is None
+    for name in wish.files:
+        _writer(name, map_, progress)(folder / name)
+    rows = [Row(name, FileDigest.of(folder / name).sha256) for name in wish.files]
+    if wish.license is not None:
+        shutil.copyfile(wish.license, folder / LICENSE)
+    key = wish.certificate or wish.key
+    report = ReportWish(language=wish.language, draft=draft, key=key, files=rows)
+    write_pdf(map_.project, folder / REPORT_PDF, report)
+    write_html(map_.project, folder / REPORT_HTML, draft=draft)
+
+
+def _writer(name: str, map_: _Map, progress: Progress) -> Callable[[Path], object]:
+    """Who writes a file of the delivery."""
+    draft = map_.approval is None
+    if name.startswith("poses"):
+        return lambda path: export_poses(map_.project, path, draft=draft)
+    if name.startswith("findings"):
+        return lambda path: export_findings(map_.project, path)
+
+    def write_compared(path: Path) -> None:
+        write_export(map_.export, path, all_points=False, progress=progress)
+        compare_export(path, map_.export.tiles, map_.export.output)
+
+    return write_compared
+
+
+def _manifest(map_: _Map, listed: dict[str, DeliveredFile]) -> DeliveryManifest:
+    summary = read_summary(map_.project) or {}
+    return DeliveryManifest(
+        format=FORMATS.delivery,
+        kind="recon4 delivery",
+        project=visible(str(summary.get("name", map_.project.name))),
+        made=datetime.now(UTC).isoformat(timespec="seconds"),
+        recon4=recon4.__version__,
+        approval=map_.state.text,
+        crs=map_.export.output.crs or "",
+        files=listed,
+        signature=None,
+    )
+
+
+def _digest(path: Path) -> DeliveredFile:
+    found = FileDigest.of(path)
+    return DeliveredFile(found.size, found.sha256)
+
+
+def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words, name: str) -> None:
+    """What is in the delivery and how it is checked, in plain words."""
+    summary = read_summary(map_.project) or {}
+    kinds = {REPORT_PDF: "report_pdf", REPORT_HTML: "report_html", LICENSE: "license"}
+    points = f"{len(map_.export.tiles):,}".replace(",", " ")
+    lines = [texts("readme.title", title=visible(str(summary.get("name", "")))), ""]
+    lines.append(texts("readme.state", state=map_.state.text))
+    lines.append(texts("readme.crs", crs=visible(str(summary.get("crs") or "–"))))
+    lines += ["", texts("readme.what"), ""]
+    for one in sorted(path.name for path in folder.iterdir()):
+        kind = kinds.get(one, {"map": "cloud"}.get(one.partition(".")[0], one.partition(".")[0]))
+        lines.append(f"  {one:<16} {texts(f'readme.{kind}', points=points)}")
+    lines.append(f"  {MANIFEST:<16} {texts('readme.manifest')}")
+    lines += ["", texts("readme.check", name=name), "", texts("readme.check_by_hand"), ""]
+    if map_.approval is not None and wish.key is not None:
+        lines.append(texts("readme.signed", key=public_key_of(wish.key)))
+    else:
+        lines.append(texts("readme.unsigned"))
+    if wish.license is None:
+        lines += ["", texts("readme.no_license")]
+    (folder / README).write_text("\n".join(lines) + "\n", "utf-8")
+
+
+def _pack(folder: Path, names: Sequence[str], out: Path) -> None:
+    """Write the ZIP, streaming; compressed formats are stored as they are."""
+    with zipfile.ZipFile(out, "w", allowZip64=True) as archive:
+        for name in names:
+            path = folder / name
+            entry = zipfile.ZipInfo(name, datetime.now(UTC).timetuple()[:6])
+            entry.external_attr = (stat.S_IFREG | 0o644) << 16
+            packed = name.endswith((".laz", ".pdf", ".e57"))
+            entry.compress_type = zipfile.ZIP_STORED if packed else zipfile.ZIP_DEFLATED
+            entry.file_size = path.stat().st_size
+            with path.open("rb") as source, archive.open(entry, "w") as target:
+                shutil.copyfileobj(source, target, DELIVERIES.block_bytes)
+
+
+def _compare(found: CheckedFile, listed: dict[str, DeliveredFile]) -> None:
+    """Refuse a delivery that does not read back as it was packed."""
+    wrong = (*found.altered, *found.missing, *found.added)
+    if wrong or set(found.intact) != set(listed):
+        raise StoreError(f"the delivery reads back wrong: {', '.join(wrong) or 'files missing'}")

@@ -1,0 +1,267 @@
+"""Deliveries: packed, verified without their project, altered, hostile."""
+
+import io
+import json
+import shutil
+import stat
+import zipfile
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.delivery import package, reread
+from recon4.delivery.check import check_file
+from recon4.delivery.package import DeliveryWish, chosen_files, deliver
+from recon4.delivery.report_files import server_key
+from recon4.errors import ConfigError, CorruptFile, Recon4Error, StoreError
+from recon4.progress import Silent
+from recon4.review.trusted_keys import ensure_own_key, read_keys
+from recon4.store.hashing import hash_file
+from tests.made_once import made_once
+from tests.project_builder import approve_project, build_project
+
+FILES = ("map.laz", "map.ply", "map.xyz", "map.pcd")
+
+
+@pytest.fixture(scope="module")
+def sent(tmp_path_factory):
+    """The folder of a server with an approved project, and its delivery ``sent.zip``."""
+    return made_once(tmp_path_factory, "delivery-server", _make_sent)
+
+
+def _make_sent(folder):
+    folder.mkdir()
+    (folder / ".recon4").mkdir()
+    ensure_own_key(folder / ".recon4")
+    build_project(folder / "room", points=5_000)
+    approve_project(folder / "room", folder / ".recon4" / "signing.key")
+    (folder / "license.txt").write_text("CC BY 4.0\n")
+    wish = DeliveryWish(
+        files=FILES, key=server_key(folder / "room"), license=folder / "license.txt"
+    )
+    deliver(folder / "room", folder / "sent.zip", wish, progress=Silent())
+
+
+@pytest.fixture
+def stranger(tmp_path, monkeypatch):
+    """A computer that knows nobody's key."""
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "config"))
+    (tmp_path / "elsewhere").mkdir()
+    return tmp_path / "elsewhere"
+
+
+def _repacked(source, target, change):
+    """A delivery whose files went through ``change(name, data)``; None leaves one out."""
+    with zipfile.ZipFile(source) as old, zipfile.ZipFile(target, "w") as new:
+        for name in old.namelist():
+            data = change(name, old.read(name))
+            if data is not None:
+                new.writestr(name, data)
+    return target
+
+
+def test_an_intact_delivery_names_its_signer(sent):
+    found = check_file(sent / "sent.zip")
+
+    assert found.whole
+    assert set(found.intact) == {*FILES, "README.txt", "LICENSE.txt", "report.pdf", "report.html"}
+    assert found.signer.startswith("this server, key ")
+    assert "Approved v1" in found.says
+
+
+def test_on_a_computer_that_does_not_know_the_key_the_signer_is_unknown(sent, stranger):
+    shutil.copy(sent / "sent.zip", stranger)
+
+    found = check_file(stranger / "sent.zip")
+
+    assert not found.whole and not found.altered and found.signer == ""
+    assert "signer is unknown on this computer" in found.doubt
+
+
+def test_altered_missing_and_added_files_are_named(sent, stranger):
+    changed = {"map.ply": lambda data: data[:-1] + b"x", "map.xyz": lambda data: None}
+    path = _repacked(
+        sent / "sent.zip", stranger / "a.zip", lambda n, d: changed.get(n, lambda same: same)(d)
+    )
+    with zipfile.ZipFile(path, "a") as more:
+        more.writestr("extra.txt", "x")
+
+    found = check_file(path)
+
+    assert (found.altered, found.missing, found.added) == (
+        ("map.ply",),
+        ("map.xyz",),
+        ("extra.txt",),
+    )
+    assert "map.laz" in found.intact and not found.whole
+
+
+def test_a_manifest_that_was_changed_is_refused(sent, stranger):
+    def changed(name, data):
+        return data.replace(b'"Approved v1', b'"Approved v2') if name == "manifest.json" else data
+
+    path = _repacked(sent / "sent.zip", stranger / "a.zip", changed)
+
+    with pytest.raises(StoreError, match="changed after it was signed"):
+        check_file(path)
+
+
+def test_a_manifest_without_its_signature_does_not_count(sent, stranger):
+    def changed(name, data):
+        if name != "manifest.json":
+            return data
+        return json.dumps(json.loads(data) | {"signature": None}).encode()
+
+    found = check_file(_repacked(sent / "sent.zip", stranger / "a.zip", changed))
+
+    assert not found.whole and found.doubt == "it is not signed"
+
+
+def test_an_unpacked_delivery_is_verified_as_a_folder(sent, stranger):
+    with zipfile.ZipFile(sent / "sent.zip") as packed:
+        packed.extractall(sent / "unpacked")
+    try:
+        assert check_file(sent / "unpacked").whole
+        (sent / "unpacked" / "map.laz").unlink()
+        (sent / "unpacked" / "map.laz").symlink_to(sent / "room" / "report.html")
+        assert check_file(sent / "unpacked").altered == ("map.laz",)
+    finally:
+        shutil.rmtree(sent / "unpacked")
+
+
+def test_a_flipped_bit_anywhere_is_found(sent, stranger):
+    whole = (sent / "sent.zip").read_bytes()
+    path = stranger / "a.zip"
+    rng = np.random.default_rng(1)
+    unseen = 0
+    for at in rng.integers(0, len(whole), 60).tolist():
+        data = bytearray(whole)
+        data[at] ^= 1 << int(rng.integers(0, 8))
+        path.write_bytes(data)
+        try:
+            found = check_file(path)
+        except Recon4Error:
+            continue
+        unseen += not (found.altered or found.missing or found.added)
+    assert unseen <= 2  # dates and attributes of entries, which are no content
+
+
+def test_hashes_in_the_report_are_those_of_the_files(sent, tmp_path):
+    with zipfile.ZipFile(sent / "sent.zip") as packed:
+        listed = json.loads(packed.read("manifest.json"))["files"]
+        packed.extractall(tmp_path)
+
+    assert {name: hash_file(tmp_path / name) for name in listed} == {
+        name: one["sha256"] for name, one in listed.items()
+    }
+
+
+def test_a_draft_is_delivered_as_one_and_not_signed(tmp_path):
+    (tmp_path / ".recon4").mkdir()
+    ensure_own_key(tmp_path / ".recon4")
+    build_project(tmp_path / "room", points=2_000)
+    wish = DeliveryWish(files=("poses.txt",), key=server_key(tmp_path / "room"))
+    if "frames" not in {path.name for path in (tmp_path / "room").iterdir()}:
+        wish = replace(wish, files=("map.ply",))
+
+    made = deliver(tmp_path / "room", tmp_path / "d.zip", wish, progress=Silent())
+
+    found = check_file(tmp_path / "d.zip")
+    assert not made.signed and found.doubt == "it is not signed" and "Draft" in found.says
+    with zipfile.ZipFile(tmp_path / "d.zip") as packed:
+        assert "not signed" in packed.read("README.txt").decode()
+
+
+def test_nothing_is_left_if_an_export_reads_back_wrong(sent, tmp_path, monkeypatch):
+    def damage(path, *rest):
+        data = bytearray(path.read_bytes())
+        data[-4000] ^= 0xFF
+        path.write_bytes(data)
+        reread.compare_export(path, *rest)
+
+    monkeypatch.setattr(package, "compare_export", damage)
+    wish = DeliveryWish(files=("map.xyz",))
+
+    with pytest.raises(Recon4Error, match="reads back wrong"):
+        deliver(sent / "room", tmp_path / "d.zip", wish, progress=Silent())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_files_are_chosen_by_name_or_ending():
+    assert chosen_files(["e57, laz", "map.ply"]) == ("map.e57", "map.laz", "map.ply")
+    with pytest.raises(ConfigError, match="expected some of"):
+        chosen_files(["dwg"])
+
+
+def test_a_delivery_needs_its_ending(sent, tmp_path):
+    with pytest.raises(ConfigError, match=r"must be named \.zip"):
+        deliver(sent / "room", tmp_path / "d.tar", DeliveryWish(), progress=Silent())
+
+
+def _zip(*entries, comment=b""):
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as made:
+        for entry, data in entries:
+            made.writestr(entry, data)
+        made.comment = comment
+    return out.getvalue()
+
+
+def _special(name, mode):
+    entry = zipfile.ZipInfo(name)
+    entry.external_attr = mode << 16
+    return entry
+
+
+def _bomb():
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w", zipfile.ZIP_DEFLATED) as made:
+        made.writestr("manifest.json", bytes(200 << 20))
+    return out.getvalue()
+
+
+def _overlapping():
+    """Two names in the list at the end for the bytes of one entry."""
+    whole = _zip(("manifest.json", b"{}"), ("b.txt", b"x"))
+    at = whole.rindex(b"PK\x01\x02")  # the second row of the list: its offset becomes the first's
+    return whole[: at + 42] + bytes(4) + whole[at + 46 :]
+
+
+HARMFUL = {
+    "outside": _zip(("../a", b"x")),
+    "absolute": _zip(("/etc/a", b"x")),
+    "windows": _zip(("a\\..\\b:c", b"x")),
+    "hidden": _zip(("a\u202eb", b"x")),
+    "link": _zip((_special("a", stat.S_IFLNK | 0o777), b"/etc/passwd")),
+    "pipe": _zip((_special("a", stat.S_IFIFO | 0o600), b"")),
+    "folder": _zip(("a/", b"")),
+    "comment": _zip(("manifest.json", b"{}"), comment=b"x"),
+    "case": _zip(("a.txt", b"x"), ("A.TXT", b"y")),
+    "bomb": _bomb(),
+    "overlap": _overlapping(),
+    "not a delivery": _zip(("a.txt", b"x")),
+    "cut": _zip(("a.txt", b"x" * 1000))[:500],
+    "before": b"PK\x03\x04" + bytes(100) + _zip(("manifest.json", b"{}")),
+    "many": _zip(*[(f"{k}", b"") for k in range(10_001)]),
+    "deep": _zip(("manifest.json", b"[" * 100_000)),
+    "no files": _zip(("manifest.json", b'{"kind": "recon4 delivery", "format": 1}')),
+}
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+@pytest.mark.parametrize("name", [*HARMFUL, "twice"])
+def test_hostile_archives_are_refused(name, stranger):
+    data = HARMFUL[name] if name != "twice" else _zip(("a", b"x"), ("a", b"y"))
+    (stranger / "a.zip").write_bytes(data)
+    expected = StoreError if name in ("deep", "no files") else CorruptFile
+
+    with pytest.raises(expected):
+        check_file(stranger / "a.zip")
+    assert [path.name for path in stranger.iterdir()] == ["a.zip"]
+
+
+def test_the_key_of_the_server_is_the_one_that_is_trusted(sent):
+    (key,) = read_keys(sent / ".recon4", server=True).keys.values()
+
+    assert key.fingerprint in check_file(sent / "sent.zip").signer
