@@ -15,11 +15,12 @@ ROOT = Path(__file__).parents[1]
 SUFFIXES = {".py", ".js", ".html", ".css", ".md", ".jinja", ".toml"}
 ALLOWED = {
     "tools/language.py",
+    "web/shared/vendor/three/three.module.min.js",
     "docs/reference/glossary.md",
     "recon4/settings/renamed.py",
     "recon4/store/earlier_names.py",
 }
-"""Files that have to name what was retired."""
+"""Files that have to name what was retired, or are of others."""
 
 RETIRED = {
     r"\btold\b|_told\b": "given, reported, message, record",
