@@ -44,6 +44,7 @@ from recon4_app.live import routes as live_routes
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.logs import Logs
 from recon4_app.maintenance import maintain, rotate_logs
+from recon4_app.map_view import routes as map_view_routes
 from recon4_app.metrics import Metrics, MetricsMiddleware
 from recon4_app.network.behind import ProxyMiddleware, prefix_of
 from recon4_app.network.connections import (
@@ -161,7 +162,7 @@ def _routes() -> list[BaseRoute]:
     router.include_router(acknowledgment_routes.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
-    for part in (review_routes, slice_routes, rig_routes, storage_routes):
+    for part in (review_routes, slice_routes, map_view_routes, rig_routes, storage_routes):
         router.include_router(part.router)
         router.include_router(part.page)
     for one in (live_routes.router, live_routes.page):

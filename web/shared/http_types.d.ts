@@ -391,6 +391,20 @@ export interface GroupView {
   settings: Array<SettingView>;
 }
 
+export interface HitPoint {
+  p_map: [number, number, number];
+  p_crs: [number, number, number] | null;
+  normal: [number, number, number] | null;
+  t_s: number;
+  sensor: string;
+  classification: string;
+  intensity: number;
+  normalized: number | null;
+  range_m: number | null;
+  position_sd_m: number | null;
+  surface_sd_m: number | null;
+}
+
 export interface ImuContent {
   sensor?: string;
   xyz_m?: [number, number, number];
@@ -520,6 +534,15 @@ export interface LogPiece {
   next: number;
 }
 
+export interface MapColumn {
+  name: "intensity" | "normalized" | "time" | "uncertainty" | "thickness";
+  unit: string;
+  offset: number;
+  scale: number;
+  low: number;
+  high: number;
+}
+
 export interface MapFacts {
   verdict: MapVerdict | null;
   reason_needed: string;
@@ -529,10 +552,39 @@ export interface MapFacts {
   figures: Record<string, any>;
 }
 
+export interface MapIndex {
+  key: string;
+  points: number;
+  low_m: [number, number, number];
+  high_m: [number, number, number];
+  tiles: Array<MapTile>;
+  columns: Array<MapColumn>;
+  classes: Record<string, string>;
+  storeys: Array<Storey>;
+  crs: string;
+  frame: string;
+  surface: string;
+  seconds: number;
+}
+
+export interface MapTile {
+  low_m: [number, number, number];
+  high_m: [number, number, number];
+  points: number;
+  sample: number;
+  spacing_m: number;
+}
+
 export interface MapVerdict {
   usability: Usability;
   reasons: Array<string>;
   unobserved: Array<Unobserved>;
+}
+
+export interface MapWalk {
+  t_s: Array<number>;
+  positions_m: Array<[number, number, number]>;
+  nodes_m: Array<[number, number, number]>;
 }
 
 export interface Me {
@@ -765,6 +817,19 @@ export interface ProjectView {
   summary: Record<string, any>;
   approval: ApprovalState;
   problem: string;
+}
+
+export interface RayHit {
+  point: HitPoint | null;
+}
+
+export interface RayRequest {
+  key: string;
+  origin_m: [number, number, number];
+  direction: [number, number, number];
+  pixel_rad: number;
+  point_m: number;
+  planes?: Array<[number, number, number, number]>;
 }
 
 export type Reason = "" | "overlap < t_o" | "error > limit" | "not converged" | "too few segments match" | "degenerate" | "free space contradicts it" | "neighboring places do not confirm it" | "ambiguous: places look alike" | "verification median > limit" | "outlier in the robust solution" | "operator";
@@ -1155,6 +1220,12 @@ export interface StoredItem {
   expires: string;
 }
 
+export interface Storey {
+  floor_m: number;
+  walk_m: number;
+  ceiling: boolean;
+}
+
 export interface SupersededEffect {
   superseded: true;
 }
@@ -1345,9 +1416,27 @@ export interface Operations {
     path: { project_id: string };
     response: Array<JobView>;
   };
+  "GET /api/projects/{project_id}/map": {
+    path: { project_id: string };
+    response: MapIndex;
+  };
   "GET /api/projects/{project_id}/map.{ending}": {
     path: { project_id: string; ending: string };
     query?: { crs?: string; raw?: boolean; all_points?: boolean; draft?: boolean };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/map/walk": {
+    path: { project_id: string };
+    response: MapWalk;
+  };
+  "GET /api/projects/{project_id}/map/{key}/points": {
+    path: { project_id: string; key: string };
+    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; tile: number; start: number; stop: number };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/map/{key}/sample": {
+    path: { project_id: string; key: string };
+    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness" };
     response: string;
   };
   "GET /api/projects/{project_id}/report": {
@@ -1599,6 +1688,11 @@ export interface Operations {
     path: { project_id: string };
     body: CalibratedVersion;
     response: SavedRig;
+  };
+  "POST /api/projects/{project_id}/map/pick": {
+    path: { project_id: string };
+    body: RayRequest;
+    response: RayHit;
   };
   "POST /api/projects/{project_id}/remake": {
     path: { project_id: string };

@@ -5,7 +5,7 @@ Points are looked for among all of them, not among those on screen, and come bac
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,8 @@ class Ray:
     """Angle of one pixel."""
     point_m: float = 0.02
     """Size points are drawn with: a surface of such discs hides what is behind it [m]."""
+    planes: Array = field(default_factory=lambda: np.empty((0, 4)))
+    """Clip planes (n, d): points with n · p + d < 0 are not shown, (P, 4)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,10 +102,16 @@ def _angles(start: Array, end: Array, ray: Ray) -> Array:
 
 def pick_point(cloud: Cloud, ray: Ray) -> PickedPoint | None:
     """The point nearest to a ray on the first surface it meets, None if it meets none."""
+    found = hit_point(cloud, ray)
+    return None if found is None else _picked(cloud, *found)
+
+
+def hit_point(cloud: Cloud, ray: Ray) -> tuple[Tile, int] | None:
+    """The same point as its tile and its row in it."""
     for pixels in POINT_PICKS.point_px:
         found = _first_hit(cloud, ray, float(np.tan(pixels * ray.pixel_rad)))
         if found is not None:
-            return _picked(cloud, *found)
+            return found
     return None
 
 
@@ -152,7 +160,8 @@ def _hit_in_tile(
     p = xyz[rows].astype(np.float64) + (tile.origin_m - ray.origin_m)
     exact = p @ ray.direction
     off_m = np.linalg.norm(p - exact[:, None] * ray.direction, axis=1)
-    hits = np.flatnonzero(off_m <= widening * exact + ray.point_m)
+    shown = (ray.planes[:, :3] @ (p + ray.origin_m).T + ray.planes[:, 3:] >= 0.0).all(axis=0)
+    hits = np.flatnonzero((off_m <= widening * exact + ray.point_m) & shown)
     if len(hits) == 0:
         return None
     front = exact[hits].min()

@@ -1,0 +1,137 @@
+"""The index of a map for its page: tiles, columns, robust extent and storeys."""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.mapping.tiles import TileSet
+from recon4.model.classes import CLASSES, PointClass
+from recon4.slices.map_crs import MapFrame
+from recon4_app.map_view.model import ColumnName, MapColumn, MapIndex, MapTile, Storey
+from recon4_app.map_view.points import FIELD_OF, read_shown, sample_sizes, steps_of, values_of
+from recon4_app.map_view.tuning import FIRST_VIEW
+from recon4_app.viewer.cloud.parts import Cloud
+
+Columns = dict[str, NDArray[Any]]
+
+
+def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> MapIndex:
+    """Make the index.
+
+    Args:
+        key: Of the map's artifact.
+        tiles: The map.
+        frame: Its frame.
+        walk_m: Positions of the sensors [m], (W, 3).
+    """
+    names = [name for name in get_args(ColumnName) if FIELD_OF[name] in tiles.fields]
+    sizes = sample_sizes(tiles)
+    found = _sample(tiles, sizes, names)
+    low, high = _extent(found["xyz"])
+    codes = np.unique(found["classification"]) if "classification" in found else ()
+    return MapIndex(
+        key=key,
+        points=len(tiles),
+        low_m=_xyz(low),
+        high_m=_xyz(high),
+        tiles=_tiles(tiles, sizes),
+        columns=[_column(name, found[FIELD_OF[name]], tiles) for name in names],
+        classes={int(code): class_name(int(code)) for code in codes},
+        storeys=storeys(found["xyz"], found.get("normal"), walk_m),
+        crs=frame.crs,
+        frame=frame.text,
+        surface=tiles.surface,
+        seconds=(tiles.last_ns - tiles.first_ns) / 1e9,
+    )
+
+
+def class_name(code: int) -> str:
+    """The name of a class, by its code."""
+    known = code in set(PointClass)
+    return CLASSES[PointClass(code)].title if known else f"class {code}"
+
+
+def storeys(p_map: Array, normal: NDArray[Any] | None, walk_m: Array) -> list[Storey]:
+    """The storeys of a walk, from below: where it stayed at one height, with its floor.
+
+    Args:
+        p_map: A sample of the map [m], (N, 3).
+        normal: Its normals, towards the sensors, (N, 3); None = the map has none.
+        walk_m: Positions of the sensors [m], (W, 3).
+    """
+    heights = np.sort(walk_m[:, 2]) if len(walk_m) else np.empty(0)
+    cuts = np.flatnonzero(np.diff(heights) > FIRST_VIEW.storey_gap_m) + 1
+    groups = [one for one in np.split(heights, cuts) if len(one)]
+    least = FIRST_VIEW.storey_percent / 100.0 * len(heights)
+    found = [_storey(p_map[:, 2], normal, one) for one in groups if len(one) >= least]
+    return [one for one in found if one is not None]
+
+
+def _storey(z_m: Array, normal: NDArray[Any] | None, walk_z: Array) -> Storey | None:
+    walk = float(np.median(walk_z))
+    near, far = FIRST_VIEW.carried_m
+    up = np.ones(len(z_m)) if normal is None else normal[:, 2].astype(np.float64)
+    floor = z_m[(up > FIRST_VIEW.upright) & (z_m > walk - far) & (z_m < walk - near)]
+    if not len(floor):
+        return None
+    bins = np.floor(floor / FIRST_VIEW.bin_m).astype(np.int64)
+    counts = np.bincount(bins - bins.min())
+    level = FIRST_VIEW.bin_m * (bins.min() + int(np.argmax(counts)) + 0.5)
+    above = (z_m > walk) & (z_m < level + 2.0 * far)
+    down = np.count_nonzero(above & (np.abs(up) > FIRST_VIEW.upright))
+    has = normal is not None and down > FIRST_VIEW.ceiling_ratio * len(floor)
+    return Storey(floor_m=round(level, 3), walk_m=round(walk, 3), ceiling=bool(has))
+
+
+def _sample(tiles: TileSet, sizes: NDArray[np.int64], names: list[ColumnName]) -> Columns:
+    fields = ["xyz", *(FIELD_OF[name] for name in names)]
+    fields += [name for name in ("normal", "classification") if name in tiles.fields]
+    parts = []
+    for tile, size in zip(tiles, sizes.tolist(), strict=True):
+        part = dict(read_shown(tile, fields, slice(0, size)))
+        part["xyz"] = part["xyz"].astype(np.float64) + tile.origin_m
+        parts.append(part)
+    if not parts:
+        return {name: np.empty((0, 3) if name in ("xyz", "normal") else 0) for name in fields}
+    return {name: np.concatenate([part[name] for part in parts]) for name in fields}
+
+
+def _extent(p_map: Array) -> tuple[Array, Array]:
+    if not len(p_map):
+        return np.zeros(3), np.zeros(3)
+    low, high = np.percentile(p_map, FIRST_VIEW.extent_percent, axis=0)
+    margin = FIRST_VIEW.margin * (high - low)
+    return low - margin, high + margin
+
+
+def _tiles(tiles: TileSet, sizes: NDArray[np.int64]) -> list[MapTile]:
+    area_m2 = Cloud(tiles).boxes.area_m2
+    return [
+        MapTile(
+            low_m=tile.low_m,
+            high_m=tile.high_m,
+            points=len(tile),
+            sample=int(size),
+            spacing_m=float(np.sqrt(area / max(len(tile), 1))),
+        )
+        for tile, size, area in zip(tiles, sizes, area_m2, strict=True)
+    ]
+
+
+def _column(name: ColumnName, stored: NDArray[Any], tiles: TileSet) -> MapColumn:
+    values = values_of(name, stored, tiles)
+    values = values[np.isfinite(values)]
+    low, high = np.percentile(values, FIRST_VIEW.usual_percent) if len(values) else (0.0, 1.0)
+    offset, scale = steps_of(name, tiles)
+    unit = {"time": "s", "uncertainty": "m", "thickness": "m"}.get(name, "")
+    high = max(float(high), float(low) + scale)
+    return MapColumn(name=name, unit=unit, offset=offset, scale=scale, low=float(low), high=high)
+
+
+def _xyz(values: Array) -> tuple[float, float, float]:
+    x, y, z = values.tolist()
+    return x, y, z

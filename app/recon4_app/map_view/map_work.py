@@ -1,0 +1,148 @@
+"""Work of the page *Map* in child processes. Arguments and results are records and plain values."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.findings.walk import final_trajectory
+from recon4.geometry.se3 import Array
+from recon4.mapping.tile import DEVIATION
+from recon4.mapping.tiles import Tile
+from recon4.pose_graph.files import load_graph
+from recon4.review.evidence import Evidence
+from recon4.store.atomic import atomic_file, write_json
+from recon4_app.map_view.index import class_name, index_of
+from recon4_app.map_view.model import HitPoint, MapWalk, RayHit, RayRequest, Stored
+from recon4_app.map_view.points import FIELD_OF, encoded, sample
+from recon4_app.map_view.tuning import MAP_WALK
+from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, tiles_of
+from recon4_app.viewer.cloud.parts import Cloud
+from recon4_app.viewer.cloud.pick import Ray, hit_point
+
+_MORE = ("normal", "range_m", "intensity_normalized", "classification", DEVIATION, "surface_sd_m")
+
+
+def write_index(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
+    """Write the index of a map as JSON."""
+    tiles = map_of(artifacts, evidence)
+    walk = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
+    walk_m = np.empty((0, 3)) if walk is None else walk.T_a_b.t
+    made = index_of(Path(artifacts["map"]).name, tiles, map_frame(artifacts), walk_m=walk_m)
+    write_json(Path(out), made.model_dump(mode="json"))
+
+
+def write_sample(
+    artifacts: Artifacts, stored: Stored, out: str, *, evidence: Evidence | None
+) -> None:
+    """Write the sample of a whole map."""
+    with atomic_file(Path(out)) as temporary, temporary.open("wb") as file:
+        file.writelines(sample(map_of(artifacts, evidence), stored))
+
+
+def chunk(
+    artifacts: Artifacts,
+    stored: Stored,
+    part: tuple[int, int, int],
+    *,
+    evidence: Evidence | None,
+) -> bytes:
+    """Points of a tile: its row in the index, the first of its points, the last + 1.
+
+    Raises:
+        ConfigError: If there are no such points, or no such values.
+    """
+    row, start, stop = part
+    tiles = map_of(artifacts, evidence)
+    if stored != "xyz" and FIELD_OF[stored] not in tiles.fields:
+        raise ConfigError(f"the map does not state the {stored} of its points")
+    if row >= len(tiles.tiles) or stop > len(tiles.tiles[row]):
+        raise ConfigError(f"the map has no points {start} to {stop} in a tile {row}")
+    return encoded(tiles, row, stored, rows=slice(start, stop))
+
+
+def walk(artifacts: Artifacts) -> MapWalk:
+    """The walk, and the nodes of the pose graph."""
+    path = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
+    if path is None or not len(path):
+        return MapWalk(t_s=[], positions_m=[], nodes_m=[])
+    step = max(1, -(-len(path) // MAP_WALK.most_positions))
+    t_s = (path.t_ns[::step] - path.t_ns[0]) / 1e9
+    return MapWalk(
+        t_s=np.round(t_s, 3).tolist(),
+        positions_m=_rows(path.T_a_b.t[::step]),
+        nodes_m=_rows(_nodes(artifacts)),
+    )
+
+
+def hit(artifacts: Artifacts, ask: RayRequest) -> RayHit:
+    """The point nearest to a ray on the first surface that it meets, among all that are shown.
+
+    Raises:
+        ConfigError: If the ray has no direction.
+    """
+    direction = np.array(ask.direction)
+    length = float(np.linalg.norm(direction))
+    if length < 1e-6:
+        raise ConfigError(f"expected the direction of a ray, got {list(ask.direction)}")
+    ray = Ray(
+        np.array(ask.origin_m),
+        direction / length,
+        pixel_rad=ask.pixel_rad,
+        point_m=ask.point_m,
+        planes=np.array(ask.planes).reshape(-1, 4),
+    )
+    found = hit_point(_cloud(artifacts["map"]), ray)
+    return RayHit(point=None if found is None else _described(artifacts, *found))
+
+
+@lru_cache(maxsize=2)
+def _cloud(folder: str) -> Cloud:
+    return Cloud(tiles_of(folder))
+
+
+def _described(artifacts: Artifacts, tile: Tile, row: int) -> HitPoint:
+    tiles, frame = tiles_of(artifacts["map"]), map_frame(artifacts)
+    names = ["xyz", "t_ns", "sensor", "intensity", *(n for n in _MORE if n in tile.fields)]
+    one = {name: values[0] for name, values in tile.read(names, rows=slice(row, row + 1)).items()}
+    p = one["xyz"].astype(np.float64) + tile.origin_m
+    normal = one.get("normal")
+    names_of = dict(enumerate(tiles.notes.sensors))
+    return HitPoint(
+        p_map=_xyz(p),
+        p_crs=_xyz(frame.to_crs(p[None])[0]) if frame.to_crs else None,
+        normal=_xyz(normal) if normal is not None and np.any(normal) else None,
+        t_s=(int(one["t_ns"]) - tiles.first_ns) / 1e9,
+        sensor=names_of.get(int(one["sensor"]), str(one["sensor"])),
+        classification=class_name(int(one.get("classification", 0))),
+        intensity=int(one["intensity"]),
+        normalized=_finite(one.get("intensity_normalized")),
+        range_m=_finite(one.get("range_m")),
+        position_sd_m=_finite(one.get(DEVIATION)),
+        surface_sd_m=_finite(one.get("surface_sd_m")),
+    )
+
+
+def _nodes(artifacts: Artifacts) -> Array:
+    for stage in ("level", "review", "verification", "graph"):
+        if stage in artifacts and (Path(artifacts[stage]) / "graph.npz").is_file():
+            nodes = load_graph(Path(artifacts[stage])).T_map_body.t
+            return nodes[:: max(1, -(-len(nodes) // MAP_WALK.most_nodes))]
+    return np.empty((0, 3))
+
+
+def _rows(p_map: Array) -> list[tuple[float, float, float]]:
+    return [_xyz(p) for p in np.round(p_map, 3)]
+
+
+def _xyz(values: Any) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
+
+
+def _finite(value: Any) -> float | None:
+    return float(value) if value is not None and np.isfinite(value) else None

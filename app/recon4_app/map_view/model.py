@@ -1,0 +1,136 @@
+"""Requests and responses of the page *Map*."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, Field
+
+from recon4_app.map_view.tuning import MAP_PICKS
+from recon4_app.slices.model import Part, Strict, Xyz
+
+ColumnName = Literal["intensity", "normalized", "time", "uncertainty", "thickness"]
+"""Values that are stored for each point; height and class come with the positions."""
+Stored = Literal["xyz", "intensity", "normalized", "time", "uncertainty", "thickness"]
+"""What a chunk is read of: positions with normals and classes, or one kind of value."""
+Plane = tuple[Part, Part, Part, Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]]
+"""A clip plane (n, d): points with n · p + d < 0 are not shown."""
+
+
+class MapTile(BaseModel):
+    """A cube of the map."""
+
+    low_m: Xyz
+    """Smallest coordinates of its points [m]; positions in chunks are fractions of low to high."""
+    high_m: Xyz
+    points: int
+    sample: int
+    """Its first points that are in the sample of the whole map."""
+    spacing_m: float
+    """Distance of neighboring points if all are drawn [m]."""
+
+
+class MapColumn(BaseModel):
+    """A kind of value by which points can be colored: ``offset + scale * stored``."""
+
+    name: ColumnName
+    unit: str
+    offset: float
+    scale: float
+    low: float
+    """Usual low end of the colors."""
+    high: float
+
+
+class Storey(BaseModel):
+    """A storey that was walked through."""
+
+    floor_m: float
+    """Height of its floor [m]."""
+    walk_m: float
+    """Usual height of the sensors [m]."""
+    ceiling: bool
+    """Whether there is something above it that looks like a ceiling."""
+
+
+class MapIndex(BaseModel):
+    """What the page needs to know before it reads points."""
+
+    key: str
+    """The map's artifact: chunks of a key never change."""
+    points: int
+    low_m: Xyz
+    """Extent of nearly all points [m]: few stray ones do not decide it."""
+    high_m: Xyz
+    tiles: list[MapTile]
+    columns: list[MapColumn]
+    classes: dict[int, str]
+    """Names of the classes in the map, by code."""
+    storeys: list[Storey]
+    crs: str
+    frame: str
+    """Caption of the coordinate frame."""
+    surface: str
+    """Where the points lie: on fitted surfaces, or as measured."""
+    seconds: float
+
+
+class MapWalk(BaseModel):
+    """The walk and the nodes of the pose graph."""
+
+    t_s: list[float]
+    """Times after the first pose [s]."""
+    positions_m: list[Xyz]
+    nodes_m: list[Xyz]
+
+
+class ChunkQuery(Strict):
+    """Which points of the map a response has."""
+
+    stored: Stored
+    tile: int = Field(ge=0, le=1 << 32)
+    """Row in the index."""
+    start: int = Field(ge=0, le=1 << 40)
+    """First point, counted in the order in which they are shown."""
+    stop: int = Field(ge=0, le=1 << 40)
+    """The one after the last."""
+
+
+class RayRequest(Strict):
+    """A click on the map: the ray through its pixel."""
+
+    key: str = Field(max_length=64)
+    origin_m: Xyz
+    direction: tuple[Part, Part, Part]
+    pixel_rad: float = Field(ge=0.0, le=MAP_PICKS.max_pixel_rad, allow_inf_nan=False)
+    """Angle of a pixel; 0 in a parallel projection [rad]."""
+    point_m: float = Field(gt=0.0, le=MAP_PICKS.max_point_m, allow_inf_nan=False)
+    """Radius in which points are hit at the ray's origin, too [m]."""
+    planes: list[Plane] = Field(default=[], max_length=MAP_PICKS.max_planes)
+    """Points outside of one are not shown, and not hit."""
+
+
+class HitPoint(BaseModel):
+    """The point of the map that a click hit, of all its points."""
+
+    p_map: Xyz
+    p_crs: Xyz | None
+    normal: Xyz | None
+    """Unit normal of its surface; None = it has none."""
+    t_s: float
+    """After the first point of the map [s]."""
+    sensor: str
+    classification: str
+    intensity: int
+    normalized: float | None
+    range_m: float | None
+    position_sd_m: float | None
+    """Standard deviation of its place by the poses [m]; None = not stated."""
+    surface_sd_m: float | None
+    """Standard deviation of the returns across its surface [m]; None = not stated."""
+
+
+class RayHit(BaseModel):
+    """What a click hit."""
+
+    point: HitPoint | None

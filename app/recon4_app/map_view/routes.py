@@ -1,0 +1,156 @@
+"""HTTP routes of the page *Map*: index, points and picks of a map."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi.responses import FileResponse, HTMLResponse
+from pydantic import ValidationError
+from starlette.concurrency import run_in_threadpool
+
+from recon4.errors import StoreError
+from recon4.review.evidence import Evidence
+from recon4.untrusted.bounded import read_json_object
+from recon4_app.access.people import Permission, needs
+from recon4_app.deps import Server, parts
+from recon4_app.error_responses import ProblemDetail
+from recon4_app.errors import BadRequest
+from recon4_app.map_view import map_work
+from recon4_app.map_view.model import (
+    ChunkQuery,
+    MapIndex,
+    MapWalk,
+    RayHit,
+    RayRequest,
+    Stored,
+)
+from recon4_app.map_view.tuning import MAP_CHUNKS
+from recon4_app.network.request_caller import CalledBy
+from recon4_app.pages import page_response
+
+LOOK = [Depends(needs(Permission.LOOK))]
+FOREVER = "private, max-age=31536000, immutable"
+"""Chunks are named by the hash of their map: they never change."""
+
+router = APIRouter(
+    prefix="/api/projects/{project_id}/map",
+    tags=["map"],
+    dependencies=LOOK,
+    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+)
+page = APIRouter()
+
+
+@page.get("/projects/{project_id}/map/", include_in_schema=False, dependencies=LOOK)
+def map_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
+    server.projects.folder(project_id)
+    return page_response("map/map.html", request)
+
+
+@router.get("", summary="What is in the map")
+async def read_index(project_id: str, server: Server, caller: CalledBy) -> MapIndex:
+    """Tiles with boxes and counts, columns, an extent without stray points, storeys, frame."""
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id)
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id)
+    terms = slices.terms(project_id, caller.name)
+    index = "index.json"
+
+    async def make(out: Path) -> None:
+        made = replace(terms, outputs={index: out})
+        await slices.run_interactive(
+            made, map_work.write_index, artifacts, index, evidence=evidence
+        )
+
+    path = await caller.wait(slices.kept(_kept_name(artifacts, evidence, "index.json"), make))
+    return await run_in_threadpool(_read_index, path)
+
+
+@router.get("/walk", summary="The walk and the nodes of the graph")
+async def read_walk(project_id: str, server: Server, caller: CalledBy) -> MapWalk:
+    """Positions with times after the first pose; a long walk is thinned out."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    terms = server.slices.terms(project_id, caller.name)
+    return await caller.wait(server.slices.run_interactive(terms, map_work.walk, artifacts))
+
+
+@router.post("/pick", summary="The point of the map that a ray hits")
+async def pick(project_id: str, ask: RayRequest, *, server: Server, caller: CalledBy) -> RayHit:
+    """Of all points of the map that the clip planes leave, not only of those on screen."""
+    source = f"map:{ask.key}"
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
+    terms = server.slices.terms(project_id, caller.name, source)
+    return await caller.wait(server.slices.run_interactive(terms, map_work.hit, artifacts, ask))
+
+
+@router.get("/{key}/sample", response_class=FileResponse, summary="A sample of the whole map")
+async def read_sample(
+    project_id: str, key: str, stored: Stored, *, server: Server, caller: CalledBy
+) -> FileResponse:
+    """The first points of every tile, as many as the index says; ranges of bytes are allowed."""
+    slices, source = server.slices, f"map:{key}"
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
+    terms = slices.terms(project_id, caller.name, source)
+    name = "sample.bin"
+
+    async def make(out: Path) -> None:
+        made = replace(terms, outputs={name: out})
+        await slices.run_interactive(
+            made, map_work.write_sample, artifacts, stored, name, evidence=evidence
+        )
+
+    path = await caller.wait(slices.kept(_kept_name(artifacts, evidence, f"{stored}.bin"), make))
+    return FileResponse(
+        path, media_type="application/octet-stream", headers={"Cache-Control": FOREVER}
+    )
+
+
+@router.get("/{key}/points", response_class=Response, summary="Points of a tile")
+async def read_points(
+    request: Request,
+    project_id: str,
+    key: str,
+    *,
+    part: Annotated[ChunkQuery, Query()],
+    caller: CalledBy,
+) -> Response:
+    """Binary, as `recon4_app.map_view.points` says; the response may be kept for ever."""
+    if not 0 < part.stop - part.start <= MAP_CHUNKS.max_chunk_points:
+        raise BadRequest(
+            f"expected 1 to {MAP_CHUNKS.max_chunk_points} points, got {part.start} to {part.stop}"
+        )
+    slices, source = parts(request).slices, f"map:{key}"
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
+    rows = (part.tile, part.start, part.stop)
+    tag = f'"{MAP_CHUNKS.version}-{key}-{part.stored}-{"-".join(map(str, rows))}"'
+    headers = {"ETag": tag, "Cache-Control": FOREVER}
+    if request.headers.get("if-none-match") == tag:
+        return Response(status_code=304, headers=headers)
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
+    terms = slices.terms(project_id, caller.name, source)
+    data = await caller.wait(
+        slices.run_interactive(
+            terms, map_work.chunk, artifacts, part.stored, rows, evidence=evidence
+        )
+    )
+    return Response(data, media_type="application/octet-stream", headers=headers)
+
+
+def _kept_name(artifacts: dict[str, str], evidence: Evidence | None, ending: str) -> str:
+    """Name of a file made once per map; what was made of an approved map has a name of its own."""
+    folder = Path(artifacts["map"])
+    level = Path(artifacts.get("level", "")).name[:16]
+    checked = evidence.manifests["map"][:16] if evidence else "draft"
+    return f"{folder.name}-{level}-{checked}-map{MAP_CHUNKS.version}-{ending}"
+
+
+def _read_index(path: Path) -> MapIndex:
+    try:
+        record = read_json_object(path, MAP_CHUNKS.max_index_bytes, failure=StoreError)
+        return MapIndex.model_validate(record)
+    except ValidationError as error:
+        raise StoreError(f"{path.name}: {error}") from error

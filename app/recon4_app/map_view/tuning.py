@@ -1,0 +1,83 @@
+"""How much of a map the page *Map* reads at once, and what its first view shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapChunkTuning:
+    """Points as they are sent."""
+
+    version: int = 1
+    """Part of the names of kept files and of ETags: layout of index, sample and chunks."""
+    sample_points: int = 60_000
+    """Points of the coarsest sample of the whole map, which is sent first."""
+    max_chunk_points: int = 1 << 18
+    """Most points of one response."""
+    value_steps: int = 65_534
+    """Steps of a value; the one after them says that there is no value."""
+    length_step_m: float = 1e-4
+    """Step of a standard deviation [m]."""
+    intensity_step: float = 1.0 / 16.0
+    """Step of a normalized intensity, as in LAZ exports."""
+    max_index_bytes: int = 64 << 20
+    """A larger index was not written by us."""
+
+
+MAP_CHUNKS = MapChunkTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FirstViewTuning:
+    """What the first view is made for."""
+
+    usual_percent: tuple[float, float] = (2.0, 98.0)
+    """Ends of a color scale, among the values of the sample [%]."""
+    extent_percent: tuple[float, float] = (0.5, 99.5)
+    """Ends of the extent that the camera shows: few stray points do not decide it [%]."""
+    margin: float = 0.02
+    """Added to that extent on each side, as a part of it."""
+    storey_gap_m: float = 1.5
+    """Heights of the walk that are farther apart are of two storeys [m]."""
+    storey_percent: float = 3.0
+    """Less of the walk than this is a stair, not a storey [%]."""
+    carried_m: tuple[float, float] = (0.3, 2.5)
+    """The floor is this far below the sensors [m]."""
+    bin_m: float = 0.05
+    """Bins of heights in which the floor is looked for [m]."""
+    upright: float = 0.9
+    """Vertical part of a normal of floors and ceilings."""
+    ceiling_ratio: float = 0.2
+    """With more points looking down above the walk, per point of its floor, there is a ceiling."""
+
+
+FIRST_VIEW = FirstViewTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapWalkTuning:
+    """The walk on the page."""
+
+    most_positions: int = 4000
+    """A longer walk is thinned out."""
+    most_nodes: int = 20_000
+    """More nodes of the graph are thinned out."""
+
+
+MAP_WALK = MapWalkTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapPickLimits:
+    """Rays of clicks."""
+
+    max_planes: int = 16
+    """Clip planes of a request."""
+    max_pixel_rad: float = 0.05
+    """Largest angle of a pixel [rad]."""
+    max_point_m: float = 5.0
+    """Largest point on screen [m]."""
+
+
+MAP_PICKS = MapPickLimits()

@@ -1,0 +1,187 @@
+"""The points of the page *Map* over HTTP, on a real server with real child processes."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from recon4.mapping.tiles import TileSet
+from recon4.store.project import read_artifacts
+from tests.project_builder import ROOM_M, build_project
+from tests.served import served
+
+BASE = "/api/projects/office/map"
+EYE = (9.0, 5.0, 1.5)
+
+
+def projects(root):
+    build_project(root / "office", points=120_000, normals=True)
+    build_project(root / "young", with_map=False)
+
+
+server = served(projects)
+
+
+@pytest.fixture(scope="module")
+def tiles(server):
+    return TileSet.open(read_artifacts(server.root / "office")["map"])
+
+
+def index_of(server):
+    return server.get(BASE).json()
+
+
+def points(server, **query):
+    key = index_of(server)["key"]
+    return server.get(f"{BASE}/{key}/points", params={"stored": "xyz"} | query)
+
+
+def places(data, tile):
+    n = len(data) // 10
+    part = np.frombuffer(data, "<u2", 3 * n).reshape(n, 3) / 65535.0
+    low, high = np.array(tile["low_m"]), np.array(tile["high_m"])
+    return low + part * (high - low)
+
+
+def pick(server, **changes):
+    ask = {
+        "key": index_of(server)["key"],
+        "origin_m": EYE,
+        "direction": (1.0, 0.02, 0.01),
+        "pixel_rad": 0.001,
+        "point_m": 0.05,
+    }
+    return server.post(f"{BASE}/pick", json=ask | changes)
+
+
+def test_the_index_says_what_is_in_the_map(server):
+    index = index_of(server)
+
+    assert index["points"] == sum(tile["points"] for tile in index["tiles"]) == 120_000
+    assert sum(tile["sample"] for tile in index["tiles"]) == pytest.approx(60_000, abs=4)
+    assert index["high_m"] == pytest.approx(ROOM_M, abs=0.7)
+    assert index["frame"] == "map frame (local), x y z, z up, meters"
+    assert index["storeys"][0]["floor_m"] == pytest.approx(0.0, abs=0.1)
+    assert {"intensity", "time"} <= {column["name"] for column in index["columns"]}
+
+
+def test_all_chunks_of_a_tile_are_all_of_its_points_once(server, tiles):
+    tile = index_of(server)["tiles"][0]
+    ends = [0, 100, tile["points"] // 64 + 7, tile["points"]]
+
+    chunks = [points(server, tile=0, start=a, stop=b).content for a, b in pairwise(ends)]
+
+    found = np.vstack([places(chunk, tile) for chunk in chunks])
+    truth = tiles.tiles[0].xyz_m()
+    assert len(found) == len(truth)
+    assert np.abs(np.sort(found, axis=0) - np.sort(truth, axis=0)).max() < 2e-4
+
+
+def test_values_lie_beside_their_points(server, tiles):
+    index = index_of(server)
+    column = next(one for one in index["columns"] if one["name"] == "time")
+    start = index["tiles"][0]["points"] // 64  # from here on in the order in which it is stored
+
+    data = points(server, tile=0, start=start, stop=start + 500, stored="time").content
+
+    seconds = column["offset"] + column["scale"] * np.frombuffer(data, "<u2")
+    truth = tiles.tiles[0].read(["t_ns"], rows=slice(start, start + 500))["t_ns"]
+    assert seconds == pytest.approx((truth - tiles.first_ns) / 1e9, abs=column["scale"])
+
+
+def test_the_sample_is_the_first_points_of_every_tile(server):
+    index = index_of(server)
+    address = f"{BASE}/{index['key']}/sample"
+
+    data = server.get(address, params={"stored": "xyz"}).content
+    part = server.get(address, params={"stored": "xyz"}, headers={"Range": "bytes=0-99"})
+
+    at = 0
+    for row, tile in enumerate(index["tiles"]):
+        own = data[at : at + 10 * tile["sample"]]
+        assert own == points(server, tile=row, start=0, stop=tile["sample"]).content
+        at += len(own)
+    assert at == len(data)
+    assert (part.status_code, part.content) == (206, data[:100])
+
+
+def test_a_chunk_is_kept_for_ever_and_not_sent_again(server):
+    answer = points(server, tile=0, start=0, stop=10)
+    tag = answer.headers["ETag"]
+    key = index_of(server)["key"]
+
+    again = server.get(
+        f"{BASE}/{key}/points",
+        params={"stored": "xyz", "tile": 0, "start": 0, "stop": 10},
+        headers={"If-None-Match": tag},
+    )
+
+    assert "immutable" in answer.headers["Cache-Control"]
+    assert (again.status_code, again.content, again.headers["ETag"]) == (304, b"", tag)
+
+
+@pytest.mark.parametrize(
+    ("query", "status"),
+    [
+        ({"tile": 0, "start": 5, "stop": 5}, 400),
+        ({"tile": 0, "start": 9, "stop": 2}, 400),
+        ({"tile": 0, "start": 0, "stop": 1 << 39}, 400),
+        ({"tile": 0, "start": -1, "stop": 2}, 422),
+        ({"tile": 1 << 20, "start": 0, "stop": 2}, 422),
+        ({"tile": 0, "start": 119_999, "stop": 120_001}, 422),
+        ({"tile": 0, "start": 0, "stop": 2, "stored": "ring"}, 422),
+        ({"tile": 0, "start": 0, "stop": 2, "more": 1}, 422),
+    ],
+)
+def test_hostile_parameters_are_refused(server, query, status):
+    answer = points(server, **query)
+
+    assert answer.status_code == status and "error" in answer.json()
+
+
+@pytest.mark.parametrize("key", ["..%2f..", "0" * 64, "x", "map"])
+def test_a_map_that_is_none_of_the_project_is_not_found(server, key):
+    address = f"{BASE}/{key}/points?stored=xyz&tile=0&start=0&stop=1"
+
+    assert server.get(address).status_code == 404
+    assert server.get("/api/projects/young/map").status_code == 404
+
+
+def test_a_ray_hits_the_nearest_point_of_the_first_surface(server, tiles):
+    found = pick(server).json()["point"]
+
+    every = np.vstack([tile.xyz_m() for tile in tiles])
+    assert np.abs(every - found["p_map"]).max(axis=1).min() < 1e-6
+    assert found["p_map"][0] == pytest.approx(11.75, abs=0.15)  # a pillar stands before the wall
+    assert found["classification"] == "unclassified" and found["p_crs"] is None
+
+
+def test_a_ray_goes_through_what_is_clipped(server):
+    behind = pick(server, planes=[(1.0, 0.0, 0.0, -13.0)]).json()["point"]
+    nothing = pick(server, planes=[(0.0, 0.0, 1.0, -90.0)]).json()["point"]
+
+    assert behind["p_map"][0] == pytest.approx(ROOM_M[0], abs=0.05)
+    assert nothing is None
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"direction": (0.0, 0.0, 0.0)},
+        {"origin_m": (1e12, 0.0, 0.0)},
+        {"pixel_rad": -1.0},
+        {"planes": [(0.0, 0.0, 1.0, 0.0)] * 17},
+        {"point_m": 1e9},
+    ],
+)
+def test_a_ray_that_is_none_is_refused(server, changes):
+    assert pick(server, **changes).status_code == 422
+
+
+def test_the_walk_has_times_positions_and_nodes(server):
+    walk = server.get(f"{BASE}/walk").json()
+
+    assert len(walk["t_s"]) == len(walk["positions_m"]) == 600
+    assert walk["t_s"][-1] == pytest.approx(59.9)
+    assert walk["positions_m"][0] == pytest.approx([14.0, 5.0, 1.2])
+    assert len(walk["nodes_m"]) == 60

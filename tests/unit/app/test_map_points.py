@@ -1,0 +1,73 @@
+"""The order, extent and storeys of what the page *Map* draws."""
+
+import numpy as np
+import pytest
+
+from recon4.mapping.tiles import TileSet
+from recon4.store.project import read_artifacts
+from recon4_app.map_view import points
+from recon4_app.map_view.index import _extent, storeys
+from recon4_app.map_view.points import _shown_order, encoded, read_shown
+from tests.project_builder import build_project
+
+BOX = np.random.default_rng(3).uniform(0.0, (20.0, 10.0, 3.0), (50_000, 3))
+
+
+@pytest.fixture(scope="module")
+def tiles(tmp_path_factory):
+    root = tmp_path_factory.mktemp("project")
+    build_project(root, points=60_000, normals=True)
+    return TileSet.open(read_artifacts(root)["map"])
+
+
+@pytest.mark.parametrize("count", [10, 63, 400])
+def test_any_first_rows_are_spread_evenly(count):
+    order = _shown_order(938)
+
+    first = np.sort(order[:count])
+
+    assert sorted(order.tolist()) == list(range(938))
+    assert np.diff(np.concatenate([[0], first, [938]])).max() <= 2 * 1024 / count + 1
+
+
+def test_points_of_the_first_stratum_are_read_in_that_order(tiles):
+    tile = tiles.tiles[0]
+    stratum = len(tile) // 64
+
+    mine = read_shown(tile, ["xyz"], slice(5, stratum + 9))["xyz"]
+
+    every = tile.read(["xyz"])["xyz"]
+    assert (mine[: stratum - 5] == every[_shown_order(stratum)[5:]]).all()
+    assert (mine[stratum - 5 :] == every[stratum : stratum + 9]).all()
+
+
+def test_stray_points_do_not_decide_the_extent():
+    strays = np.tile([500.0, -300.0, 80.0], (100, 1))
+
+    low, high = _extent(np.vstack([BOX, strays]))
+
+    assert (low > -1.0).all() and (high < (21.0, 11.0, 4.0)).all()
+
+
+def test_each_storey_has_its_floor_and_stairs_are_none():
+    rng = np.random.default_rng(5)
+    floors = [np.column_stack([rng.uniform(0, 9, (4000, 2)), np.full(4000, z)]) for z in (0.0, 3.2)]
+    ceiling = np.column_stack([rng.uniform(0, 9, (4000, 2)), np.full(4000, 6.0)])
+    up = np.tile([0.0, 0.0, 1.0], (8000, 1))
+    normal = np.vstack([up, -up[:4000]])
+    heights = np.concatenate([np.full(300, 1.3), np.linspace(1.3, 4.5, 10), np.full(300, 4.5)])
+    walk = np.column_stack([np.zeros((len(heights), 2)), heights])
+    steep = np.delete(walk, slice(301, 309), axis=0)
+
+    found = storeys(np.vstack([*floors, ceiling]), normal, steep)
+
+    assert [one.floor_m for one in found] == pytest.approx([0.0, 3.2], abs=0.06)
+    assert found[-1].ceiling
+
+
+def test_what_has_no_value_is_said(tiles, monkeypatch):
+    monkeypatch.setattr(points, "read_shown", lambda *_: {"surface_sd_m": np.array([0.01, np.nan])})
+
+    steps = np.frombuffer(encoded(tiles, 0, "thickness", rows=slice(0, 2)), "<u2")
+
+    assert steps.tolist() == [100, 65_535]
