@@ -25,6 +25,7 @@ PAGES = {
     "/projects/office/": "projects/project.html",
     "/projects/office/review/": "review/review.html",
     "/projects/office/slices/": "slices/slices.html",
+    "/projects/office/map/": "map/map.html",
     "/nowhere": "shared/lost.html",
 }
 """Path -> its file in `web/`."""

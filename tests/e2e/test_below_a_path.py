@@ -11,6 +11,7 @@ pytestmark = [pytest.mark.e2e, needs_nginx]
 
 PAGES = (
     *("/", "/projects/office/", "/projects/office/review/", "/projects/office/slices/", "/live"),
+    "/projects/office/map/",
     *("/rigs", "/rigs/4recon/", "/storage", "/people", "/account", "/phone", "/api"),
     *("/docs/", "/docs/how-to/server.html"),
 )

@@ -62,7 +62,7 @@ def test_a_2d_map_is_shown_as_the_one_slice_it_is(server, page, screenshot):
     expect(plan).to_be_visible()
     expect(page.locator("main")).to_contain_text("one slice at the height of the laser")
     assert plan.evaluate("image => image.decode().then(() => image.naturalWidth)") > 50
-    expect(page.get_by_role("link", name="The page Map")).to_have_attribute(
+    expect(page.get_by_role("link", name="The page Project")).to_have_attribute(
         "href", "/projects/plan/"
     )
     expect(page.locator("#message, .tools")).to_have_count(0)

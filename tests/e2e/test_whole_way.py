@@ -175,7 +175,7 @@ def make_a_new_map(page):
     """The decisions are a stage of the next run; stages that do not depend on them are reused."""
     page.get_by_role("button", name="Rebuild map").click()
     expect(page.locator("#signing")).to_contain_text("A job waits or runs")
-    page.get_by_role("link", name="Map", exact=True).click()
+    page.get_by_role("link", name="Project", exact=True).click()
     row = page.get_by_role("row")
     expect(row.filter(has_text="graph")).to_contain_text("Reused")
     page.evaluate("window.unwatched = true")
@@ -217,7 +217,7 @@ def approve(page):
 
 def take_away(page, root):
     """The map as LAZ and the report contain the approval."""
-    page.get_by_role("link", name="Map", exact=True).click()
+    page.get_by_role("link", name="Project", exact=True).click()
     expect(page.locator("#approval")).to_contain_text("✓ Approved v1 · local · ")
     with page.expect_download() as download:
         page.locator("#files").get_by_role("link", name=re.compile("LAZ")).click()

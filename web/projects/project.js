@@ -6,6 +6,7 @@ import {
   fileUrl,
   findingsUrl,
   listJobsOf,
+  mapUrl,
   readProject,
   reportUrl,
   viewerUrl,
@@ -63,7 +64,8 @@ function draw() {
   render(
     html`${open ? nothing : badge(stateOf(project, view))}
       ${project?.finished ? approvalMark(project.approval) : nothing}
-      <p class="quiet">${project ? factsOf(project) : nothing}</p>`,
+      <p class="quiet">${project ? factsOf(project) : nothing}</p>
+      ${project?.stages.some(({ stage }) => stage === "map") ? mapLink(id) : nothing}`,
     byId("state"),
   );
   const status = only("job-status");
@@ -75,6 +77,10 @@ function draw() {
   drawStages();
   showMap();
 }
+
+/** The delivered points fill a page of their own; beside this text is the graph. */
+const mapLink = (/** @type {string} */ id) =>
+  html`<p><a class="button" href=${mapUrl(id)}>Open the map</a></p>`;
 
 const factsOf = (/** @type {ProjectView} */ { preset, rig, bytes: size, updated }) =>
   [preset && `preset ${preset}`, rig && `rig ${rig}`, bytes(size), when(updated)]

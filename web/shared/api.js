@@ -13,6 +13,7 @@ export * from "./api/uploads.js";
 export * from "./api/review.js";
 export * from "./api/phones.js";
 export * from "./api/live.js";
+export * from "./api/map.js";
 export * from "./api/slices.js";
 export * from "./api/rigs.js";
 export * from "./api/job_stream.js";

@@ -132,6 +132,15 @@ export async function canBeRead(/** @type {string} */ url) {
   await response.body?.cancel();
 }
 
+/** Reads a binary response; an `ApiError` if the server refuses it. */
+export async function readBytes(/** @type {string} */ url) {
+  const response = await fetch(url).catch(() => {
+    throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
+  });
+  if (!response.ok) throw await refusalOf(response);
+  return response.arrayBuffer();
+}
+
 /** The error of a response that is JSON, or the text of a proxy in between. */
 async function refusalOf(/** @type {Response} */ response) {
   const text = await response.text();

@@ -15,7 +15,8 @@ import { asError, html, nothing, render } from "./dom.js";
 
 /** @type {Array<[string, string]>} */
 const PAGES = [
-  ["", "Map"],
+  ["", "Project"],
+  ["map/", "Map"],
   ["review/", "Review"],
   ["slices/", "Slices"],
 ];

@@ -1,5 +1,7 @@
 // What the page of slices shows, and how it is drawn; each part from the state of the page.
 
+import { idHere } from "../shared/address.js";
+import { mapUrl } from "../shared/api.js";
 import { approvalFact } from "../shared/approval_lines.js";
 import { byId, html, nothing, render, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
@@ -7,6 +9,7 @@ import { cutText } from "./captions.js";
 import { besideFields, controls } from "./controls.js";
 import { legend } from "./legend.js";
 import { SURFACES, parse } from "./state.js";
+import { mapQuery } from "./to_map.js";
 import { SliceView } from "./view.js";
 
 /**
@@ -92,6 +95,7 @@ function drawTools(/** @type {Act} */ act) {
           "Swipe",
           "swipe",
         )}</span
+      ><a class="button" href=${mapUrl(idHere()) + mapQuery(page.state)}>Show in 3-D</a
       >${button("?", showHelp, "Keys  ?", "Help")}`,
     byId("tools"),
   );

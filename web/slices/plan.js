@@ -27,7 +27,7 @@ export function showPlan(id, { summary }) {
     html`<p>
         This is a 2-D map: one slice at the height of the laser, so no other can be cut. A pixel is
         ${inCm(shown_m)} cm. ${finer}<a href=${projectUrl(id)}
-          >The page Map shows places and distances.</a
+          >The page Project shows places and distances.</a
         >
       </p>
       <img src=${fileUrl(id, name)} alt="Floor plan: walls black, free white, not seen gray" />`,

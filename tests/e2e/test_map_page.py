@@ -1,0 +1,158 @@
+"""The page of the map in a real browser: what is drawn, clipped, measured and kept in links."""
+
+import io
+import re
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import expect
+
+from tests.e2e.conftest import looks
+from tests.project_builder import ROOM_M, build_project
+from tests.served import served
+
+pytestmark = pytest.mark.e2e
+
+SHOW = """shown => document.querySelectorAll("#bar, #panel, #status, #overlay")
+  .forEach((one) => (one.style.visibility = shown))"""
+TOP = "camera=8,5,1.5,0,-90,14,1"
+METERS_PER_PX = 14.0 * 2.0 * np.tan(np.pi / 6.0)
+"""Times the height of the canvas: of the camera ``TOP``."""
+
+
+def projects(root):
+    build_project(root / "office", points=60_000, normals=True)
+    build_project(root / "young", with_map=False)
+
+
+server = served(projects)
+
+
+def opened(page, server, query=""):
+    page.goto(f"{server.url}/projects/office/map/{query}")
+    rested(page)
+
+
+def rested(page):
+    """Wait until all points of the image are drawn; the page's policy forbids `eval`."""
+    expect(page.locator("#status .shown")).to_have_text(re.compile(r"of 60.000 points$"))
+
+
+def drawn(page):
+    """Pixels of the map's canvas that are not of its background."""
+    page.evaluate(SHOW, "hidden")
+    png = page.locator("#map").screenshot()
+    page.evaluate(SHOW, "")
+    rgb = np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+    return int((np.abs(rgb - rgb[2, 2]).max(axis=2) > 12).sum())
+
+
+def at(page, x, y):
+    """The pixel of a place of the map in the view ``TOP``."""
+    box = page.locator("#map").bounding_box()
+    px = box["height"] / METERS_PER_PX
+    return box["x"] + box["width"] / 2 + (x - 8.0) * px, box["y"] + box["height"] / 2 - (
+        y - 5.0
+    ) * px
+
+
+@looks("desktop light", "phone dark")
+def test_the_map_is_drawn_and_fills_the_window(server, page, screenshot):
+    opened(page, server)
+
+    assert drawn(page) > 20_000
+    box, window = page.locator("#map").bounding_box(), page.viewport_size
+    assert box["width"] == window["width"] and box["height"] > 0.6 * window["height"]
+    expect(page.locator("#status")).to_contain_text("map frame (local), x y z, z up, meters")
+    screenshot(page, "map")
+
+
+@looks("desktop light")
+def test_a_clip_removes_what_is_outside(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    whole = drawn(page)
+
+    page.get_by_label("From height [m]").fill("1")
+    page.get_by_label("From height [m]").press("Enter")
+    page.keyboard.press("Escape")
+    expect(page).to_have_url(re.compile(r"z=1\.\."))
+    rested(page)
+
+    assert drawn(page) < 0.5 * whole  # no floor: walls and pillars, seen from above
+    page.keyboard.press("z")
+    rested(page)
+    assert drawn(page) > 0.9 * whole
+
+
+@looks("desktop light")
+def test_a_measured_distance_is_that_of_the_walls(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+
+    page.keyboard.press("m")
+    for x in (0.0, ROOM_M[0]):
+        page.mouse.click(*at(page, x, 2.5))
+        expect(page.locator("#status .reading")).to_contain_text("m")
+    value = page.locator("#panel .value")
+    expect(value).to_be_visible()
+
+    parts = page.locator("#panel small").text_content()
+    horizontal = float(re.search(r"horizontal ([\d.]+) m", parts)[1])
+    assert horizontal == pytest.approx(ROOM_M[0], abs=0.01)  # not along the wall: it is square
+    assert float(value.text_content().split()[0]) >= horizontal
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download CSV").click()
+    rows = download.value.path().read_text().splitlines()
+    assert len(rows) == 3 and rows[1].startswith("Distance 1,distance,1,")
+    expect(page).to_have_url(re.compile("m=distance;"))
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("button", name="Distance")).to_have_attribute("aria-pressed", "false")
+
+
+@looks("desktop light")
+def test_a_link_opens_exactly_the_same(server, page, context):
+    opened(page, server, f"?{TOP}&z=..2&color=time&layers=walk&depth=0")
+    before = page.url
+
+    page.reload()
+    rested(page)
+
+    expect(page.get_by_label("Color by")).to_have_value("time")
+    expect(page.get_by_label("Walk", exact=True)).to_be_checked()
+    expect(page.get_by_label("To height [m]")).to_have_value("2")
+    assert page.url == before
+
+
+@looks("desktop light")
+def test_a_drag_orbits_and_the_wheel_zooms_without_a_click_first(server, page):
+    opened(page, server)
+
+    page.keyboard.press("7")
+    expect(page).to_have_url(re.compile(r"camera=[^&]*,0,-90,"))
+    page.mouse.move(500, 500)
+    page.mouse.wheel(0, -400)
+    expect(page).not_to_have_url(re.compile(r"camera=8\.000,"))
+    zoomed = page.url
+    page.mouse.down()
+    page.mouse.move(560, 460, steps=4)
+    page.mouse.up()
+    expect(page).not_to_have_url(zoomed)
+    expect(page).not_to_have_url(re.compile(r"camera=[^&]*,-90,"))
+
+
+@looks("desktop light")
+def test_a_section_leads_to_its_slice(server, page):
+    opened(page, server, f"?{TOP}&z=..&section=2,5,14,5,0.5")
+
+    link = page.get_by_role("link", name="Open as a slice")
+
+    expect(link).to_have_attribute("href", re.compile(r"kind=vertical&a=2\.000,5\.000&b=14\.000"))
+    link.click()
+    expect(page.locator(".facing")).to_contain_text("Vertical")
+
+
+@looks("desktop light")
+def test_a_project_without_points_says_so(server, page):
+    page.goto(f"{server.url}/projects/young/map/")
+
+    expect(page.locator("#message")).to_contain_text("no points in 3-D")

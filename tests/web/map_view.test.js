@@ -1,0 +1,355 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import {
+  axesOf,
+  between,
+  dot,
+  eyeOf,
+  fitted,
+  lookedAround,
+  minus,
+  panned,
+  rayAt,
+  toScreen,
+  zoomed,
+} from "../../web/map/camera.js";
+import { boxOver, cornersOfBox, planesOf, yawOfSection } from "../../web/map/clip.js";
+import { apartOf } from "../../web/map/density.js";
+import { nearestTo, positionAt, standingAt, walking } from "../../web/map/flight.js";
+import { choose, isOutside, nextPart, readingOrder, sidesOf } from "../../web/map/lod.js";
+import { angleOf, areaOf, distanceParts, resultOf, toCsv } from "../../web/map/measure.js";
+import { Pace } from "../../web/map/pace.js";
+import { format, parse } from "../../web/map/state.js";
+import { mapQuery } from "../../web/slices/to_map.js";
+
+const SCREEN = { width: 800, height: 600 };
+const CAMERA = { target: [4, 5, 1], yaw: 0.6, pitch: -0.7, distance: 12, parallel: false };
+const PARALLEL = { ...CAMERA, parallel: true };
+
+const near = (a, b, within = 1e-6) =>
+  [a].flat().forEach((x, k) => assert.ok(Math.abs(x - [b].flat()[k]) < within, `${a} ${b}`));
+
+// -- camera
+
+for (const camera of [CAMERA, PARALLEL])
+  test(`a ray goes through the point of its pixel, parallel ${camera.parallel}`, () => {
+    const p = [5.5, 7, 0.3];
+    const { x, y } = toScreen(camera, SCREEN, p);
+    const { origin, direction } = rayAt(camera, SCREEN, [x, y]);
+    const to = minus(p, origin);
+    const along = dot(to, direction);
+    near(
+      minus(
+        to,
+        direction.map((d) => d * along),
+      ),
+      [0, 0, 0],
+    );
+    assert.ok(along > 0);
+  });
+
+test("from above north is up and east is right", () => {
+  const top = { ...PARALLEL, yaw: 0, pitch: -Math.PI / 2 };
+  const middle = toScreen(top, SCREEN, [4, 5, 1]);
+  near([middle.x, middle.y], [400, 300]);
+  assert.ok(toScreen(top, SCREEN, [5, 5, 1]).x > 401);
+  assert.ok(toScreen(top, SCREEN, [4, 6, 1]).y < 299);
+});
+
+test("what is zoomed to stays under the pointer", () => {
+  for (const camera of [CAMERA, PARALLEL]) {
+    const p = [6, 4, 0.2];
+    const before = toScreen(camera, SCREEN, p);
+    const after = toScreen(zoomed(camera, 0.4, p), SCREEN, p);
+    near([before.x, before.y], [after.x, after.y], 1e-6);
+  }
+});
+
+test("what is grabbed follows the pointer", () => {
+  const p = [6, 4, 0.2];
+  const before = toScreen(CAMERA, SCREEN, p);
+  const after = toScreen(panned(CAMERA, SCREEN, [30, -20], p), SCREEN, p);
+  near([after.x - before.x, after.y - before.y], [30, -20], 1e-6);
+});
+
+test("who looks around stays where they are", () => {
+  const around = lookedAround(CAMERA, 50, 20);
+  near(eyeOf(around), eyeOf(CAMERA));
+  assert.notEqual(around.yaw, CAMERA.yaw);
+});
+
+test("a fitted camera shows all of the box, and nearly fills the image", () => {
+  for (const parallel of [false, true]) {
+    const box = { low: [-3, -2, 0], high: [20, 9, 3] };
+    const camera = fitted({ yaw: 0.5, pitch: -0.9, parallel }, SCREEN, box);
+    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) =>
+      toScreen(
+        camera,
+        SCREEN,
+        [0, 1, 2].map((axis) => ((k >> axis) & 1 ? box.high : box.low)[axis]),
+      ),
+    );
+    const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
+    assert.ok(Math.min(...xs) >= 0 && Math.max(...xs) <= 800);
+    assert.ok(Math.min(...ys) >= 0 && Math.max(...ys) <= 600);
+    assert.ok(Math.max(...xs) - Math.min(...xs) > 600);
+  }
+});
+
+test("a turn takes the shorter way", () => {
+  const half = between({ ...CAMERA, yaw: 3 }, { ...CAMERA, yaw: -3 }, 0.5);
+  near(Math.abs(half.yaw), Math.PI);
+});
+
+// -- level of detail
+
+const tile = (low, points = 100_000) => ({
+  low_m: low,
+  high_m: low.map((x) => x + 4),
+  points,
+  sample: 500,
+  spacing_m: 0.02,
+});
+const TILES = [tile([2, 3, -1]), tile([30, 40, -1]), tile([-60, -60, -1])];
+const view = (more) => ({ camera: CAMERA, screen: SCREEN, planes: [], budget: 1e9, ...more });
+
+test("near tiles get more points than far ones, hidden ones none", () => {
+  const { counts } = choose(TILES, view({}));
+  assert.ok(counts[0] > counts[1] && counts[1] >= 500);
+  assert.equal(counts[2], 0);
+});
+
+test("the budget holds, and is used", () => {
+  const { counts } = choose(TILES, view({ budget: 40_000 }));
+  const sum = counts.reduce((all, one) => all + one, 0);
+  assert.ok(sum <= 40_000 && sum > 36_000, String(sum));
+});
+
+test("tiles that a plane clips wholly get none", () => {
+  const { counts } = choose(TILES, view({ planes: [[0, 0, 1, -50]] }));
+  assert.deepEqual(counts, [0, 0, 0]);
+});
+
+test("the sides of the image hold what is in it", () => {
+  for (const camera of [CAMERA, PARALLEL]) {
+    const point = (p) => ({ low_m: p, high_m: p });
+    for (const at of [
+      [5, 5],
+      [795, 595],
+      [400, 300],
+    ]) {
+      const { origin, direction } = rayAt(camera, SCREEN, at);
+      const along = camera.parallel ? 1000 : 9;
+      const p = origin.map((x, k) => x + along * direction[k]);
+      assert.equal(isOutside(point(p), sidesOf(camera, SCREEN)), false);
+    }
+    const outside = rayAt(camera, SCREEN, [-20, 300]);
+    const p = outside.origin.map((x, k) => x + 9 * outside.direction[k]);
+    assert.equal(isOutside(point(p), sidesOf(camera, SCREEN)), true);
+  }
+});
+
+test("parts of a tile follow each other to its end", () => {
+  let have = 500;
+  const parts = [];
+  for (let part; (part = nextPart(have, 100_000, 100_000)); have = part.stop) parts.push(part);
+  assert.equal(parts[0].start, 500);
+  assert.equal(parts.at(-1).stop, 100_000);
+  assert.ok(parts.every((part, k) => k === 0 || part.start === parts[k - 1].stop));
+  assert.equal(nextPart(500, 400, 1000), null);
+});
+
+test("the coarsest tile on screen is read first", () => {
+  const order = readingOrder(TILES, { counts: [9000, 900, 0], have: [500, 500, 0] }, CAMERA);
+  assert.deepEqual(order, [0, 1]);
+});
+
+test("sparse places have larger points than dense ones", () => {
+  const places = new Uint16Array(3 * 2000);
+  for (let k = 0; k < 2000; k++) {
+    const dense = k < 1900;
+    places[3 * k] = dense ? (k * 7919) % 20_000 : 40_000 + ((k * 7919) % 20_000);
+    places[3 * k + 1] = (k * 104_729) % 20_000;
+  }
+  const apart = apartOf(places, {
+    low_m: [0, 0, 0],
+    high_m: [4, 4, 4],
+    points: 2000,
+    spacing_m: 0.02,
+  });
+  const mean = (part) => part.reduce((sum, x) => sum + x, 0) / part.length;
+  assert.ok(mean(apart.subarray(1900)) > mean(apart.subarray(0, 1900)) + 15);
+});
+
+test("a slow computer loses pixels first, then points; a quick one gets more", () => {
+  const pace = new Pace();
+  for (let k = 0; k < 3; k++) pace.note(pace.moving, 900);
+  assert.ok(pace.sharpness < 0.5 && pace.moving === 300_000);
+  for (let k = 0; k < 5; k++) pace.note(pace.moving, 900);
+  assert.ok(pace.moving < 150_000);
+  for (let k = 0; k < 40; k++) pace.note(pace.moving, 12);
+  assert.ok(pace.sharpness === 1 && pace.moving > 2_000_000 && pace.resting >= pace.moving);
+});
+
+// -- clip
+
+test("a box keeps its inside, also a turned one", () => {
+  const box = { center: [3, 4, 1], size: [2, 6, 2], yaw: 0.4 };
+  const planes = planesOf({ heights: [null, null], box, section: null });
+  const keeps = (p) => planes.every(([x, y, z, d]) => x * p[0] + y * p[1] + z * p[2] + d >= -1e-9);
+  assert.equal(planes.length, 6);
+  assert.ok(keeps([3, 4, 1]) && cornersOfBox(box).every(keeps));
+  assert.ok(!keeps([3 + 1.2, 4 + 0.5, 1]) && !keeps([3, 4, 2.1]));
+});
+
+test("a dragged rectangle becomes the box over it", () => {
+  const { center, size } = boxOver([1, 2], [5, 8], { yaw: 0, heights: [-1, 2] });
+  near(center, [3, 5, 0.5]);
+  near(size, [4, 6, 3]);
+});
+
+test("one looks at a section with its beginning at the left", () => {
+  const section = { a: [1, 2], b: [5, 4], thickness: 0.2 };
+  const camera = { ...PARALLEL, target: [3, 3, 1], pitch: 0, yaw: yawOfSection(section) };
+  const [a, b] = [section.a, section.b].map((p) => toScreen(camera, SCREEN, [...p, 1]));
+  assert.ok(a.x < b.x);
+  near([a.y, b.y], [300, 300]);
+  near(a.depth, b.depth);
+  assert.equal(planesOf({ heights: [0, 2], box: null, section }).length, 4);
+});
+
+// -- measuring
+
+test("measurements are what they are called", () => {
+  const { length, horizontal, vertical } = distanceParts([0, 0, 0], [3, 4, 12]);
+  near([length, horizontal, vertical], [13, 5, 12]);
+  near(
+    angleOf([
+      [1, 0, 0],
+      [0, 0, 0],
+      [0, 0, 2],
+    ]),
+    90,
+  );
+  const square = [
+    [0, 0, 0],
+    [2, 0, 2],
+    [2, 3, 2],
+    [0, 3, 0],
+  ];
+  near([areaOf(square).area, areaOf(square).plan], [3 * Math.hypot(2, 2), 6]);
+});
+
+test("a measurement says its standard deviation only if it is stated", () => {
+  const made = {
+    kind: "distance",
+    name: "d",
+    points: [
+      [0, 0, 0],
+      [1, 0, 0],
+    ],
+  };
+  assert.ok(!resultOf(made).parts.includes("σ"));
+  assert.ok(resultOf({ ...made, sd: [0.003, 0.004] }).parts.includes("σ 5.0 mm"));
+  assert.ok(!resultOf({ ...made, sd: [0.003, NaN] }).parts.includes("σ"));
+});
+
+test("a name cannot become a formula in a table", () => {
+  const points = [[1, 2, 3]];
+  const rows = toCsv([{ kind: "point", name: '=1+"2"', points }], "").split("\r\n");
+  assert.ok(rows[1].startsWith('"\'=1+""2""",point,1,1.0000,2.0000,3.0000'), rows[1]);
+});
+
+// -- the slices
+
+test("the plane of a slice is shown on the map", () => {
+  const { clip } = parse(mapQuery({ kind: "vertical", z: 0, a: [1, 2], b: [5, 4.5], t: 0.2 }));
+  assert.deepEqual(clip.section, { a: [1, 2], b: [5, 4.5], thickness: 0.2 });
+  const level = parse(mapQuery({ kind: "horizontal", z: 1.5, a: [0, 0], b: [1, 0], t: 0.1 }));
+  assert.deepEqual(level.clip.heights, [1.45, 1.55]);
+  assert.equal(mapQuery({ kind: "free", z: 0, a: [0, 0], b: [1, 0], t: 1 }), "");
+});
+
+// -- the walk
+
+const WALK = {
+  t_s: [0, 1, 3],
+  positions_m: [
+    [0, 0, 1],
+    [2, 0, 1],
+    [2, 8, 1],
+  ],
+};
+
+test("positions lie between those of the walk", () => {
+  near(positionAt(WALK, 2), [2, 4, 1]);
+  near(positionAt(WALK, -5), [0, 0, 1]);
+  near(positionAt(WALK, 50), [2, 8, 1]);
+});
+
+test("who walks is at the walk and looks along it", () => {
+  const camera = walking(WALK, 1.5, { ...CAMERA, yaw: 0 });
+  near(eyeOf(camera), [2, 2, 1]);
+  near(axesOf(camera).ahead[0], 0, 0.05);
+});
+
+test("the place of the walk nearest to a click is found", () => {
+  const { time, away } = nearestTo(WALK, { origin: [2.1, 8, 20], direction: [0, 0, -1] });
+  assert.equal(time, 3);
+  assert.ok(away < 0.01);
+  near(eyeOf(standingAt([1, 2, 3], 0.3, 0)), [1, 2, 3]);
+});
+
+// -- the address
+
+test("the address keeps the whole state", () => {
+  const state = parse("");
+  Object.assign(state, {
+    camera: { target: [1.5, -2, 0.25], yaw: 0.5, pitch: -0.5, distance: 7.125, parallel: true },
+    color: "time",
+    lo: 3,
+    layers: ["walk", "findings"],
+    cutCeiling: false,
+    depth: false,
+    size: 2,
+    measurements: [
+      {
+        kind: "height",
+        points: [
+          [0, 0, 1],
+          [0, 0.5, 2.25],
+        ],
+        name: "Door, left",
+      },
+    ],
+    clip: {
+      heights: [null, 2.5],
+      box: { center: [1, 2, 3], size: [4, 5, 6], yaw: 0.1 },
+      section: { a: [0, 0], b: [4, 1], thickness: 0.5 },
+    },
+  });
+  const again = parse(format(state));
+  near(again.camera.yaw, 0.5, 1e-3);
+  near(again.camera.target, [1.5, -2, 0.25]);
+  assert.deepEqual({ ...again, camera: null }, { ...state, camera: null });
+  assert.equal(format(parse(format(again))), format(again));
+});
+
+test("an address that is not ours shows the usual", () => {
+  const query =
+    "camera=1,2&color=__proto__&z=a..b&box=1,2,3,-1,1,1,0&section=1,1,1,1,1&size=1e9&m=x;1,2,3;n" +
+    "&m=distance;1,2,3;n&lo=NaN&camera=1,2,3,4,5,0,0&layers=all";
+  const { camera, color, clip, measurements, lo, layers } = parse(query);
+  assert.deepEqual(
+    { camera, color, clip, measurements, lo, layers },
+    {
+      camera: null,
+      color: null,
+      clip: { heights: [null, null], box: null, section: null },
+      measurements: [],
+      lo: null,
+      layers: [],
+    },
+  );
+});

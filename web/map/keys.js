@@ -1,0 +1,70 @@
+// Keys of the map, without a click first.
+
+import { byId, targetOf } from "../shared/dom.js";
+import { VIEWS } from "./views.js";
+
+/**
+ * @import {Act} from "./bar.js"
+ * @typedef {object} MoreActs
+ * @property {() => unknown} color the next one
+ * @property {() => unknown} ceilings with or without
+ * @property {() => unknown} walk shown or not
+ * @property {() => unknown} end of any tool
+ * @property {() => unknown} finish of a measurement
+ * @property {(x: number, y: number) => unknown} step by a part of the image
+ */
+
+/**
+ * @param {Act} act
+ * @param {MoreActs} more
+ * @returns {Record<string, () => unknown>}
+ */
+const keysOf = (act, more) => ({
+  f: act.fit,
+  o: act.parallel,
+  m: () => act.tool("measure", "distance"),
+  h: () => act.tool("measure", "height"),
+  a: () => act.tool("measure", "angle"),
+  q: () => act.tool("measure", "area"),
+  i: () => act.tool("measure", "point"),
+  b: () => act.tool("box"),
+  x: () => act.tool("section"),
+  g: () => act.tool("stand"),
+  p: act.fly,
+  l: act.share,
+  t: act.panel,
+  c: more.color,
+  z: more.ceilings,
+  w: more.walk,
+  "?": act.help,
+  Escape: more.end,
+  Enter: more.finish,
+  ArrowLeft: () => more.step(-1, 0),
+  ArrowRight: () => more.step(1, 0),
+  ArrowUp: () => more.step(0, 1),
+  ArrowDown: () => more.step(0, -1),
+  ...Object.fromEntries(
+    Object.entries(VIEWS).map(([name, { key }]) => [key, () => act.view(name)]),
+  ),
+});
+
+/**
+ * Listens to the keys of the page; what is typed into a field stays there.
+ * @param {Act} act
+ * @param {MoreActs} more
+ */
+export function listenToKeys(act, more) {
+  const keys = keysOf(act, more);
+  addEventListener("keydown", (event) => {
+    const typing = targetOf(event).closest?.("input:not([type=checkbox], [type=range]), select");
+    if ((typing && event.key !== "Escape") || event.ctrlKey || event.metaKey || event.altKey)
+      return;
+    if (byId("help", HTMLDialogElement).open) return;
+    const control = targetOf(event).closest?.("button, summary, a, input");
+    if (control && (event.key === "Enter" || event.key.startsWith("Arrow"))) return;
+    const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+}

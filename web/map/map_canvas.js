@@ -1,0 +1,372 @@
+// The canvas of the map: draws points while the camera moves, and all of them when it rests.
+
+import { axesOf, eyeOf, focalPx } from "./camera.js";
+import { rampOf } from "./colors.js";
+import { choose, depthsOf } from "./lod.js";
+import { Pace } from "./pace.js";
+import {
+  BACKGROUNDS,
+  MOST_PLANES,
+  PLAIN,
+  boundsOf,
+  drawingTarget,
+  pointMaterial,
+  screenMaterial,
+  sheetOf,
+} from "./materials.js";
+import { MapTiles } from "./tiles.js";
+import {
+  BufferGeometry,
+  BufferAttribute,
+  Line,
+  LineBasicMaterial,
+  PerspectiveCamera,
+  Points,
+  PointsMaterial,
+  Scene,
+  WebGLRenderer,
+} from "../shared/vendor/three/three.module.min.js";
+
+/**
+ * @import {Camera, Screen} from "./camera.js"
+ * @import {MapIndex} from "../shared/http_types"
+ * @import {WebGLRenderTarget} from "../shared/vendor/three/three.module.min.js"
+ * @import {ColorBy} from "./state.js"
+ * @import {Reader, Stored} from "./tiles.js"
+ * @typedef {object} Drawing what is drawn
+ * @property {Camera} camera
+ * @property {ColorBy} color
+ * @property {[number, number]} ends of the colors, in the unit of the values
+ * @property {number[][]} planes
+ * @property {boolean} depth
+ * @property {number} size
+ * @property {boolean} dark
+ * @property {{walk: boolean, nodes: boolean}} layers
+ */
+
+const REST_MS = 160;
+const WARM_UP = 2; // first frames, in which shaders are compiled
+const SHARPEST = 2; // pixels of the canvas per pixel of the page
+
+export class MapCanvas {
+  #canvas;
+  #renderer;
+  #index;
+  #scene = new Scene();
+  #lines = new Scene();
+  #screenScene = new Scene();
+  #camera = new PerspectiveCamera();
+  #material = pointMaterial();
+  #screen = screenMaterial();
+  #coarse = drawingTarget();
+  #fine = drawingTarget();
+  /** @type {Drawing | null} */
+  #drawing = null;
+  #moved = -Infinity;
+  /** @type {{queue: Array<{object: Points, points: number}>, next: number} | null} */
+  #refining = null;
+  #finished = false;
+  /** @type {{sync: WebGLSync, began: number, points: number, moving: boolean} | null} */
+  #pending = null;
+  #asked = false;
+  /** @type {{walk?: Line, nodes?: Points}} */
+  #layers = {};
+  pace = new Pace();
+  tiles;
+  /** Figures of the last frames, for the caption and for tests. */
+  drawn = { points: 0, ms: 0, frames: 0, rested: false };
+  onDrawn = () => {};
+
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {MapIndex} index
+   * @param {Reader} reader
+   */
+  constructor(canvas, index, reader) {
+    this.#canvas = canvas;
+    this.#index = index;
+    this.#renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false });
+    this.#renderer.autoClear = false;
+    Object.assign(this.#camera, { matrixWorldAutoUpdate: false, matrixAutoUpdate: false });
+    for (const scene of [this.#scene, this.#lines, this.#screenScene])
+      scene.matrixWorldAutoUpdate = false;
+    this.#screenScene.add(sheetOf(this.#screen));
+    const { uniforms } = this.#material;
+    this.tiles = new MapTiles(index, {
+      scene: this.#scene,
+      material: this.#material,
+      reader,
+      onLook: ({ thinned, known }) => {
+        uniforms.thinned.value = thinned * (this.#drawing?.size ?? 1);
+        uniforms.known.value = known;
+        this.#material.uniformsNeedUpdate = true;
+      },
+    });
+    this.tiles.onNews = () => this.#news();
+    new ResizeObserver(() => this.#news()).observe(canvas);
+    canvas.addEventListener("webglcontextrestored", () => this.#news());
+  }
+
+  /** The canvas in pixels of the page. */
+  get screen() {
+    return {
+      width: Math.max(this.#canvas.clientWidth, 1),
+      height: Math.max(this.#canvas.clientHeight, 1),
+    };
+  }
+
+  /** Draws something else; a camera that moved is drawn at once, with fewer points. */
+  set drawing(/** @type {Drawing} */ drawing) {
+    const before = this.#drawing;
+    this.#drawing = drawing;
+    if (before && before.camera !== drawing.camera) this.#moved = performance.now();
+    this.#finished = false;
+    this.#refining = null;
+    this.#ask();
+  }
+
+  /** The walk and the nodes of the graph, as lines and dots over the map. */
+  layers(/** @type {number[][]} */ walk, /** @type {number[][]} */ nodes) {
+    const flat = (/** @type {number[][]} */ points) => {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute("position", new BufferAttribute(new Float32Array(points.flat()), 3));
+      return geometry;
+    };
+    const over = { depthTest: false, depthWrite: false, transparent: true };
+    this.#layers.walk = new Line(flat(walk), new LineBasicMaterial({ color: "#ff8a1f", ...over }));
+    this.#layers.nodes = new Points(
+      flat(nodes),
+      new PointsMaterial({ color: "#2f9bff", size: 6, sizeAttenuation: false, ...over }),
+    );
+    for (const object of [this.#layers.walk, this.#layers.nodes]) {
+      Object.assign(object, { frustumCulled: false, visible: false });
+      this.#lines.add(object);
+    }
+    this.#news();
+  }
+
+  /** Has the image drawn again: points have arrived, or its size has changed. */
+  #news() {
+    this.#finished = false;
+    this.#refining = null;
+    this.#ask();
+  }
+
+  #ask() {
+    if (this.#asked) return;
+    this.#asked = true;
+    requestAnimationFrame(() => {
+      this.#asked = false;
+      this.#frame();
+    });
+  }
+
+  #frame() {
+    const drawing = this.#drawing;
+    if (!drawing || !this.#isReady()) return this.#ask();
+    const moving = performance.now() - this.#moved < REST_MS;
+    if (moving || !this.drawn.frames) this.#drawCoarse(drawing);
+    else if (!this.#finished) this.#refine(drawing);
+    if (moving || !this.#finished) this.#ask();
+    this.onDrawn();
+  }
+
+  /** Whether the frame before has been drawn; it says how long frames take. */
+  #isReady() {
+    if (!this.#pending) return true;
+    const gl = this.#renderer.getContext();
+    const { sync, began, points, moving } = this.#pending;
+    const state = gl.clientWaitSync(sync, 0, 0);
+    if (state === gl.TIMEOUT_EXPIRED && performance.now() - began < 5000) return false;
+    gl.deleteSync(sync);
+    this.#pending = null;
+    const ms = performance.now() - began;
+    Object.assign(this.drawn, { ms, frames: this.drawn.frames + 1 });
+    if (moving && this.drawn.frames > WARM_UP) this.pace.note(points, ms);
+    return true;
+  }
+
+  #begun(/** @type {number} */ began, /** @type {number} */ points, moving = false) {
+    const gl = this.#renderer.getContext();
+    const sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    if (sync) this.#pending = { sync, began, points, moving };
+  }
+
+  #drawCoarse(/** @type {Drawing} */ drawing) {
+    const began = performance.now();
+    this.#refining = null;
+    const { counts } = this.#choose(drawing, this.pace.moving);
+    const parts = this.tiles.show(counts);
+    this.#begin(drawing, this.#coarse);
+    this.#renderer.render(this.#scene, this.#camera);
+    this.#finish(drawing, this.#coarse);
+    const points = parts.reduce((sum, part) => sum + part.points, 0);
+    Object.assign(this.drawn, { points, rested: false });
+    this.#begun(began, points, true);
+  }
+
+  /** Draws the next points of the drawing at rest; it is shown when it is complete. */
+  #refine(/** @type {Drawing} */ drawing) {
+    const began = performance.now();
+    if (!this.#refining) {
+      const { counts } = this.#choose(drawing, this.pace.resting);
+      this.tiles.want(counts, drawing.camera);
+      this.#refining = { queue: this.tiles.show(counts), next: 0 };
+      this.#begin(drawing, this.#fine);
+    }
+    const { queue } = this.#refining;
+    for (const { object } of queue) object.visible = false;
+    let points = 0;
+    while (this.#refining.next < queue.length && points < this.pace.moving) {
+      const { object, points: more } = queue[this.#refining.next++];
+      object.visible = true;
+      points += more;
+    }
+    this.#renderer.setRenderTarget(this.#fine);
+    this.#renderer.render(this.#scene, this.#camera);
+    if (this.#refining.next >= queue.length) {
+      this.#finish(drawing, this.#fine);
+      this.#finished = true;
+      const all = queue.reduce((sum, part) => sum + part.points, 0);
+      Object.assign(this.drawn, { points: all, rested: this.tiles.complete });
+      this.#refining = null;
+    }
+    this.#begun(began, points);
+  }
+
+  #choose(/** @type {Drawing} */ { camera, planes }, /** @type {number} */ budget) {
+    return choose(this.#index.tiles, { camera, screen: this.screen, planes, budget });
+  }
+
+  /**
+   * @param {Drawing} drawing
+   * @param {WebGLRenderTarget} into
+   */
+  #begin(drawing, into) {
+    const { width, height } = this.screen;
+    const ratio =
+      Math.min(devicePixelRatio, SHARPEST) * (into === this.#coarse ? this.pace.sharpness : 1);
+    const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
+    if (into.width !== wide || into.height !== tall) into.setSize(wide, tall);
+    const range = this.#place(drawing.camera);
+    this.#look(drawing, ratio);
+    const { uniforms } = this.#screen;
+    const { near, far } = range;
+    if (drawing.camera.parallel) uniforms.nearness.value.set(-near, near - far);
+    else uniforms.nearness.value.set(1 / near, 1 / far - 1 / near);
+    uniforms.scale.value = drawing.camera.parallel ? 1 / drawing.camera.distance : 0;
+    uniforms.strength.value = drawing.depth ? 25 : 0;
+    uniforms.fine.value = into === this.#fine;
+    uniforms.ground.value.set(...BACKGROUNDS[drawing.dark ? "dark" : "light"]);
+    this.#renderer.setRenderTarget(into);
+    this.#renderer.setClearColor(0, 1);
+    this.#renderer.clear();
+  }
+
+  /** Gives three our camera; returns the depths between which it draws. */
+  #place(/** @type {Camera} */ camera) {
+    const { right, up, ahead } = axesOf(camera);
+    const eye = eyeOf(camera);
+    const back = ahead.map((x) => -x);
+    const { matrixWorld, matrixWorldInverse, projectionMatrix } = this.#camera;
+    const rows = [0, 1, 2].map((k) => [right[k], up[k], back[k], eye[k]]);
+    matrixWorld.set(...rows.flat(), 0, 0, 0, 1);
+    matrixWorldInverse.copy(matrixWorld).invert();
+    const { width, height } = this.screen;
+    const depths = depthsOf(camera, boundsOf(this.#index));
+    const margin = 1 + 0.01 * (depths.far - depths.near);
+    const far = Math.max(depths.far + margin, 2);
+    const near = camera.parallel
+      ? depths.near - margin
+      : Math.max(depths.near - margin, far / 4000, 0.03);
+    if (camera.parallel) {
+      const tall = (camera.distance * height) / focalPx({ width, height }) / 2;
+      const wide = (tall * width) / height;
+      const [a, b] = [-2 / (far - near), -(far + near) / (far - near)];
+      projectionMatrix.set(1 / wide, 0, 0, 0, 0, 1 / tall, 0, 0, 0, 0, a, b, 0, 0, 0, 1);
+    } else {
+      const tall = focalPx({ width, height }) / (height / 2);
+      const [a, b] = [-(far + near) / (far - near), (-2 * far * near) / (far - near)];
+      projectionMatrix.set(
+        (tall * height) / width,
+        0,
+        0,
+        0,
+        0,
+        tall,
+        0,
+        0,
+        0,
+        0,
+        a,
+        b,
+        0,
+        0,
+        -1,
+        0,
+      );
+    }
+    this.#camera.projectionMatrixInverse.copy(projectionMatrix).invert();
+    const { turn } = this.#material.uniforms;
+    turn.value = [0, 1, 2].flatMap((k) => [right[k], up[k], back[k]]);
+    return { near, far };
+  }
+
+  /**
+   * @param {Drawing} drawing
+   * @param {number} ratio
+   */
+  #look({ camera, color, ends, planes, dark, layers }, ratio) {
+    const { uniforms } = this.#material;
+    const focal = focalPx(this.screen) * ratio;
+    uniforms.parallel.value = camera.parallel;
+    uniforms.focal.value = camera.parallel ? focal / camera.distance : focal;
+    uniforms.sizes.value.set(ratio, 14 * ratio);
+    uniforms.mode.value =
+      color === "height" ? 0 : color === "class" ? 2 : color === "plain" ? 3 : 1;
+    uniforms.ends.value.set(...this.#endsOf(color, ends));
+    rampOf(color).forEach((rgb, k) => {
+      const [r, g, b] = rgb.map((x) => x / 255);
+      uniforms.ramp.value[k].set(r, g, b);
+    });
+    uniforms.plain.value.set(...PLAIN[dark ? "dark" : "light"]);
+    planes.slice(0, MOST_PLANES).forEach(([x, y, z, d], k) => {
+      uniforms.planes.value[k].set(x, y, z, d);
+    });
+    uniforms.planeCount.value = Math.min(planes.length, MOST_PLANES);
+    this.#material.uniformsNeedUpdate = true;
+    if (this.#layers.walk) this.#layers.walk.visible = layers.walk;
+    if (this.#layers.nodes) this.#layers.nodes.visible = layers.nodes;
+  }
+
+  /**
+   * Ends of the colors as the shader compares them: of values as fractions of their 16 bits.
+   * @param {ColorBy} color
+   * @param {[number, number]} ends
+   * @returns {[number, number]}
+   */
+  #endsOf(color, ends) {
+    const column = this.#index.columns.find(({ name }) => name === color);
+    if (!column) return ends;
+    const { offset, scale } = column;
+    const [low, high] = ends.map((value) => (value - offset) / scale / 65535);
+    return [low, high];
+  }
+
+  /**
+   * @param {Drawing} drawing
+   * @param {WebGLRenderTarget} from
+   */
+  #finish(drawing, from) {
+    const { uniforms } = this.#screen;
+    uniforms.colors.value = from.texture;
+    uniforms.depths.value = from.depthTexture;
+    if (this.#canvas.width !== from.width || this.#canvas.height !== from.height)
+      this.#renderer.setSize(from.width, from.height, false);
+    this.#renderer.setRenderTarget(null);
+    this.#renderer.render(this.#screenScene, this.#camera);
+    if (drawing.layers.walk || drawing.layers.nodes)
+      this.#renderer.render(this.#lines, this.#camera);
+  }
+}

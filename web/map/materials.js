@@ -1,0 +1,110 @@
+// What the canvas of the map draws with: materials, targets, colors.
+
+import { classColor } from "./colors.js";
+import { DEPTH_FRAGMENT, POINT_FRAGMENT, POINT_VERTEX, SCREEN_VERTEX } from "./shaders.js";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  DepthTexture,
+  GLSL3,
+  Mesh,
+  NearestFilter,
+  NoBlending,
+  RawShaderMaterial,
+  UnsignedIntType,
+  Vector2,
+  Vector3,
+  Vector4,
+  WebGLRenderTarget,
+} from "../shared/vendor/three/three.module.min.js";
+
+/**
+ * @import {MapIndex} from "../shared/http_types"
+ * @import {Material} from "../shared/vendor/three/three.module.min.js"
+ */
+
+export const MOST_PLANES = 12;
+export const BACKGROUNDS = { dark: [0.063, 0.078, 0.094], light: [0.914, 0.93, 0.941] };
+export const PLAIN = { dark: [0.82, 0.84, 0.86], light: [0.74, 0.76, 0.79] };
+const CLASS_CODES = 68;
+
+/** The box of all points: what is drawn lies in it. */
+export function boundsOf(/** @type {MapIndex} */ { tiles }) {
+  /**
+   * @param {"low_m" | "high_m"} end
+   * @param {(...of: number[]) => number} best
+   */
+  const all = (end, best) =>
+    [0, 1, 2].map((axis) =>
+      tiles.reduce((found, tile) => best(found, tile[end][axis]), tiles[0]?.[end][axis] ?? 0),
+    );
+  return { low: all("low_m", Math.min), high: all("high_m", Math.max) };
+}
+
+/** Colors and depths of an image. */
+export const drawingTarget = () =>
+  new WebGLRenderTarget(1, 1, {
+    minFilter: NearestFilter,
+    magFilter: NearestFilter,
+    depthTexture: new DepthTexture(1, 1, UnsignedIntType),
+  });
+
+/** A triangle that covers the image. */
+export function sheetOf(/** @type {Material} */ material) {
+  const corners = new BufferGeometry();
+  const triangle = new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]);
+  corners.setAttribute("position", new BufferAttribute(triangle, 3));
+  const sheet = new Mesh(corners, material);
+  sheet.frustumCulled = false;
+  return sheet;
+}
+
+const vectors = (/** @type {number} */ count) => Array.from({ length: count }, () => new Vector3());
+
+export function pointMaterial() {
+  const classes = Array.from({ length: CLASS_CODES }, (_, code) => {
+    const [r, g, b] = classColor(code).map((x) => x / 255);
+    return new Vector3(r, g, b);
+  });
+  return new RawShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: POINT_VERTEX,
+    fragmentShader: POINT_FRAGMENT,
+    blending: NoBlending,
+    uniforms: {
+      thinned: { value: 1 },
+      focal: { value: 1 },
+      parallel: { value: false },
+      turn: { value: [1, 0, 0, 0, 1, 0, 0, 0, 1] },
+      sizes: { value: new Vector2(1, 14) },
+      mode: { value: 0 },
+      known: { value: true },
+      ends: { value: new Vector2(0, 1) },
+      ramp: { value: vectors(17) },
+      classes: { value: classes },
+      unknown: { value: new Vector3(0.5, 0.5, 0.52) },
+      plain: { value: new Vector3(0.8, 0.8, 0.8) },
+      planes: { value: Array.from({ length: MOST_PLANES }, () => new Vector4()) },
+      planeCount: { value: 0 },
+    },
+  });
+}
+
+export const screenMaterial = () =>
+  new RawShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: SCREEN_VERTEX,
+    fragmentShader: DEPTH_FRAGMENT,
+    blending: NoBlending,
+    depthTest: false,
+    depthWrite: false,
+    uniforms: {
+      colors: { value: null },
+      depths: { value: null },
+      nearness: { value: new Vector2(1, -1) },
+      scale: { value: 1 },
+      fine: { value: true },
+      strength: { value: 1 },
+      ground: { value: new Vector3() },
+    },
+  });

@@ -1,0 +1,133 @@
+// Measurements on points of the map: mathematics, captions, CSV. No DOM, no network.
+
+import { add, dot, lengthOf, minus } from "./camera.js";
+
+/**
+ * @typedef {"point" | "distance" | "height" | "angle" | "area"} MeasureKind
+ * @typedef {object} Measurement
+ * @property {MeasureKind} kind
+ * @property {number[][]} points in the map [m]
+ * @property {string} name
+ * @property {number[]} [sd] standard deviations of the points' places [m]; NaN = not stated
+ * @property {number[][]} [crs] the points in the map's CRS [m]
+ */
+
+/** @type {Record<MeasureKind, {text: string, least: number, most: number, hint: string}>} */
+export const KINDS = {
+  point: { text: "Point", least: 1, most: 1, hint: "Click a point" },
+  distance: { text: "Distance", least: 2, most: 2, hint: "Click two points" },
+  height: { text: "Height", least: 2, most: 2, hint: "Click two points, the lower one first" },
+  angle: { text: "Angle", least: 3, most: 3, hint: "Click an end, the corner, the other end" },
+  area: { text: "Area", least: 3, most: Infinity, hint: "Click the corners, then press Enter" },
+};
+
+const meters = (/** @type {number} */ m) => `${m.toFixed(3)} m`;
+
+/**
+ * The parts of a distance [m].
+ * @param {number[]} a
+ * @param {number[]} b
+ */
+export function distanceParts(a, b) {
+  const d = minus(b, a);
+  return { length: lengthOf(d), horizontal: Math.hypot(d[0], d[1]), vertical: d[2] };
+}
+
+/** The angle at the second of three points [°]. */
+export function angleOf(/** @type {number[][]} */ [a, corner, b]) {
+  const [u, v] = [minus(a, corner), minus(b, corner)];
+  const cosine = dot(u, v) / (lengthOf(u) * lengthOf(v));
+  return (Math.acos(Math.min(1, Math.max(-1, cosine))) * 180) / Math.PI;
+}
+
+/** The area of a polygon in space, on its mean plane, and its perimeter [m², m]. */
+export function areaOf(/** @type {number[][]} */ points) {
+  let normal = [0, 0, 0];
+  let perimeter = 0;
+  points.forEach((p, k) => {
+    const next = points[(k + 1) % points.length];
+    const [u, v] = [minus(p, points[0]), minus(next, points[0])];
+    normal = add(normal, [
+      u[1] * v[2] - u[2] * v[1],
+      u[2] * v[0] - u[0] * v[2],
+      u[0] * v[1] - u[1] * v[0],
+    ]);
+    perimeter += lengthOf(minus(next, p));
+  });
+  return { area: lengthOf(normal) / 2, perimeter, plan: Math.abs(normal[2]) / 2 };
+}
+
+/** Standard deviation of a distance by those of its ends [m]; NaN if they are not stated. */
+export const sdOf = (/** @type {Measurement} */ { sd }) =>
+  sd?.length === 2 ? Math.hypot(sd[0], sd[1]) : NaN;
+
+/** What a measurement says, as the figure and its parts. */
+export function resultOf(/** @type {Measurement} */ measurement) {
+  const { kind, points } = measurement;
+  if (kind === "point") return { value: points[0].map((x) => x.toFixed(3)).join(" "), parts: "" };
+  if (kind === "angle") return { value: `${angleOf(points).toFixed(2)}°`, parts: "" };
+  if (kind === "area") {
+    const { area, perimeter, plan } = areaOf(points);
+    const parts = `from above ${plan.toFixed(3)} m², perimeter ${meters(perimeter)}`;
+    return { value: `${area.toFixed(3)} m²`, parts };
+  }
+  const { length, horizontal, vertical } = distanceParts(points[0], points[1]);
+  const sd = sdOf(measurement);
+  const known = Number.isFinite(sd) ? `, σ ${(1000 * sd).toFixed(1)} mm by the poses` : "";
+  if (kind === "height")
+    return { value: meters(vertical), parts: `horizontal ${meters(horizontal)}${known}` };
+  const parts = `horizontal ${meters(horizontal)}, vertical ${meters(vertical)}${known}`;
+  return { value: meters(length), parts };
+}
+
+/** A cell of a CSV file; a spreadsheet does not take a name for a formula. */
+function cell(/** @type {string} */ text) {
+  const safe = /^[=+@\t\r-]/.test(text) ? `'${text}` : text;
+  return /[",\r\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
+}
+
+const FIGURES = ["length_m", "horizontal_m", "vertical_m", "sd_m", "angle_deg", "area_m2"];
+
+/** @returns {Record<string, number>} */
+function figuresOf(/** @type {Measurement} */ measurement) {
+  const { kind, points } = measurement;
+  if (kind === "angle") return { angle_deg: angleOf(points) };
+  if (kind === "area") return { area_m2: areaOf(points).area };
+  if (kind === "point") return {};
+  const { length, horizontal, vertical } = distanceParts(points[0], points[1]);
+  return {
+    length_m: length,
+    horizontal_m: horizontal,
+    vertical_m: vertical,
+    sd_m: sdOf(measurement),
+  };
+}
+
+/**
+ * All measurements as CSV: a row for each point, the figures in the first one of each.
+ * @param {Measurement[]} measurements
+ * @param {string} crs
+ */
+export function toCsv(measurements, crs) {
+  const places = ["x_m", "y_m", "z_m", ...(crs ? ["crs", "e", "n", "h"] : [])];
+  const head = ["name", "kind", "point", ...places, ...FIGURES];
+  const rows = measurements.flatMap((one) =>
+    one.points.map((p, k) => {
+      const figures = k ? {} : figuresOf(one);
+      const at = one.crs?.[k];
+      const there = crs ? [crs, ...(at ? at.map((x) => x.toFixed(4)) : ["", "", ""])] : [];
+      return [
+        cell(one.name),
+        one.kind,
+        k + 1,
+        ...p.map((x) => x.toFixed(4)),
+        ...there,
+        ...FIGURES.map((name) => {
+          const value = /** @type {Record<string, number>} */ (figures)[name];
+          return value === undefined || Number.isNaN(value) ? "" : value.toFixed(4);
+        }),
+      ].join(",");
+    }),
+  );
+  return [head.join(","), ...rows, ""].join("\r\n");
+}

@@ -1,0 +1,109 @@
+// What lies over the map as lines and texts: measurements, clip box, section, findings.
+
+import { nothing, svg } from "../shared/dom.js";
+import { add, axesOf, eyeOf, minus, dot, toScreen } from "./camera.js";
+import { cornersOfBox } from "./clip.js";
+import { resultOf } from "./measure.js";
+
+/**
+ * @import {Camera, Screen} from "./camera.js"
+ * @import {Clip} from "./clip.js"
+ * @import {Measurement} from "./measure.js"
+ * @import {Content} from "../shared/dom.js"
+ * @typedef {object} Place a finding
+ * @property {number[]} p
+ * @property {string} text
+ * @property {string} level
+ */
+
+const EDGES = [0, 1, 2].flatMap((axis) =>
+  [0, 1, 2, 3, 4, 5, 6, 7].filter((k) => !((k >> axis) & 1)).map((k) => [k, k | (1 << axis)]),
+);
+const NEAR_M = 0.06;
+
+/**
+ * @param {{camera: Camera, screen: Screen}} view
+ * @param {{measurements: Measurement[], draft: number[][], clip: Clip, heights: [number, number],
+ *   findings: Place[], drag: number[][] | null, tool: string}} shown
+ * @returns {Content}
+ */
+export function overlay({ camera, screen }, shown) {
+  const at = (/** @type {number[]} */ p) => toScreen(camera, screen, p);
+  /** A line in space, as far as it is ahead of the eye. */
+  const line = (
+    /** @type {number[]} */ a,
+    /** @type {number[]} */ b,
+    /** @type {string} */ kind,
+  ) => {
+    const ends = camera.parallel ? [a, b] : ahead(camera, a, b);
+    const [from, to] = (ends ?? []).map(at);
+    return from && to
+      ? svg`<line class=${kind} x1=${from.x} y1=${from.y} x2=${to.x} y2=${to.y} />`
+      : nothing;
+  };
+  const dot = (/** @type {number[]} */ p, /** @type {string} */ kind) => {
+    const to = at(p);
+    return to ? svg`<circle class=${kind} cx=${to.x} cy=${to.y} r="4" />` : nothing;
+  };
+  const text = (/** @type {number[]} */ p, /** @type {string} */ words) => {
+    const to = at(p);
+    return to ? svg`<text x=${to.x + 9} y=${to.y - 7}>${words}</text>` : nothing;
+  };
+  const path = (/** @type {number[][]} */ points, /** @type {boolean} */ closed) =>
+    points.map((p, k) => {
+      const next = points[k + 1] ?? (closed && points.length > 2 ? points[0] : null);
+      return next ? line(p, next, "measure") : nothing;
+    });
+  const { measurements, draft, clip, findings, drag, tool } = shown;
+  const section = clip.section ? sectionLines(clip.section, shown.heights) : [];
+  const corners = clip.box ? cornersOfBox(clip.box) : [];
+  return svg`${clip.box ? EDGES.map(([a, b]) => line(corners[a], corners[b], "clip")) : nothing}
+    ${section.map(([a, b]) => line(a, b, "clip"))}
+    ${measurements.map((one) => [
+      path(one.points, one.kind === "area"),
+      one.points.map((p) => dot(p, "measure")),
+      text(middleOf(one.points), `${one.name}  ${resultOf(one).value}`),
+    ])}
+    ${path(draft, false)}${draft.map((p) => dot(p, "draft"))}
+    ${findings.map(({ p, text: words, level }) => [dot(p, `finding ${level}`), text(p, words)])}
+    ${drag ? dragged(drag, tool) : nothing}`;
+}
+
+const middleOf = (/** @type {number[][]} */ points) =>
+  points.reduce((sum, p) => add(sum, p), [0, 0, 0]).map((x) => x / points.length);
+
+/**
+ * @param {number[][]} drag
+ * @param {string} tool
+ */
+function dragged([[ax, ay], [bx, by]], tool) {
+  if (tool === "section") return svg`<line class="clip" x1=${ax} y1=${ay} x2=${bx} y2=${by} />`;
+  return svg`<rect class="clip" x=${Math.min(ax, bx)} y=${Math.min(ay, by)}
+    width=${Math.abs(bx - ax)} height=${Math.abs(by - ay)} />`;
+}
+
+/**
+ * @param {NonNullable<Clip["section"]>} section
+ * @param {[number, number]} heights
+ */
+const sectionLines = ({ a, b }, [low]) => [
+  [
+    [...a, low],
+    [...b, low],
+  ],
+];
+
+/**
+ * A line without what is behind the eye; null if all of it is.
+ * @param {Camera} camera
+ * @param {number[]} a
+ * @param {number[]} b
+ */
+function ahead(camera, a, b) {
+  const [eye, axis] = [eyeOf(camera), axesOf(camera).ahead];
+  const [from, to] = [a, b].map((p) => dot(minus(p, eye), axis) - NEAR_M);
+  if (from < 0 && to < 0) return null;
+  if (from >= 0 && to >= 0) return [a, b];
+  const cut = add(a, minus(b, a), from / (from - to));
+  return from < 0 ? [cut, b] : [a, cut];
+}

@@ -1,0 +1,325 @@
+// The panel of the map: colors, layers, clip, measurements, views.
+
+import { html, nothing, render, repeat, targetOf } from "../shared/dom.js";
+import { slicesUrl } from "../shared/api.js";
+import { idHere } from "../shared/address.js";
+import { classColor, css, endText, rampOf } from "./colors.js";
+import { resultOf } from "./measure.js";
+import {
+  colorShown,
+  colorsOf,
+  endsShown,
+  findingPlaces,
+  heightsOf,
+  heightsShown,
+  page,
+} from "./page.js";
+import { COLORS, LAYERS } from "./state.js";
+
+/**
+ * @import {Act} from "./bar.js"
+ * @import {ColorBy, Layer} from "./state.js"
+ * @import {MapIndex} from "../shared/http_types"
+ */
+
+export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */ act) {
+  const { index, panel } = page;
+  element.hidden = !panel || !index;
+  if (!index || !panel) return;
+  render(
+    html`<section aria-labelledby="colors-title">
+        <h2 id="colors-title">Colors</h2>
+        ${colors(index, act)}
+      </section>
+      <section aria-labelledby="clip-title">
+        <h2 id="clip-title">Shown part</h2>
+        ${clip(index, act)}
+      </section>
+      <section aria-labelledby="layers-title">
+        <h2 id="layers-title">Layers</h2>
+        ${layers(act)}
+      </section>
+      <section aria-labelledby="measured-title">
+        <h2 id="measured-title">Measurements</h2>
+        ${measurements(act)}
+      </section>
+      <section aria-labelledby="views-title">
+        <h2 id="views-title">Saved views</h2>
+        ${views(act)}
+      </section>`,
+    element,
+  );
+}
+
+/** A field for a number; empty = null. */
+const field = (
+  /** @type {string} */ label,
+  /** @type {number | null} */ value,
+  /** @type {(value: number | null) => void} */ set,
+  { step = 0.1, usual = "" } = {},
+) =>
+  html`<label
+    ><span>${label}</span
+    ><input
+      type="number"
+      step=${step}
+      placeholder=${usual}
+      .value=${value === null ? "" : String(Number(value.toFixed(4)))}
+      @change=${(/** @type {Event} */ event) => {
+        const text = targetOf(event).value;
+        set(text === "" || !Number.isFinite(Number(text)) ? null : Number(text));
+      }}
+  /></label>`;
+
+function colors(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
+  const { state } = page;
+  const shown = colorShown();
+  const choose = (/** @type {Event} */ event) =>
+    act.change({ color: /** @type {ColorBy} */ (targetOf(event).value), lo: null, hi: null });
+  return html`<label
+      ><span class="unseen">Color by</span
+      ><select @change=${choose}>
+        ${colorsOf(index).map(
+          (color) =>
+            html`<option value=${color} ?selected=${color === shown}>${COLORS[color]}</option>`,
+        )}
+      </select></label
+    >
+    ${legend(index, act)}
+    <label class="check"
+      ><input
+        type="checkbox"
+        .checked=${state.depth}
+        @change=${() => act.change({ depth: !state.depth })}
+      /><span>Shade edges by depth</span></label
+    >
+    <label
+      ><span>Point size</span
+      ><input
+        type="range"
+        min="-2"
+        max="2"
+        step="0.25"
+        .value=${String(Math.log2(state.size))}
+        @input=${(/** @type {Event} */ event) =>
+          act.change({ size: 2 ** Number(targetOf(event).value) })}
+    /></label>`;
+}
+
+/** What the colors mean. */
+function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
+  const { state } = page;
+  const color = colorShown();
+  if (color === "plain") return nothing;
+  if (color === "class")
+    return html`<ul class="classes">
+      ${Object.entries(index.classes).map(
+        ([code, name]) =>
+          html`<li><i .style=${`background: ${css(classColor(Number(code)))}`}></i>${name}</li>`,
+      )}
+    </ul>`;
+  const { ends, unit } = endsShown();
+  const stops = rampOf(color).map(css).join(", ");
+  return html`<div class="ramp" .style=${`background: linear-gradient(to right, ${stops})`}></div>
+    <p class="ends"><span>${endText(ends[0], unit)}</span><span>${endText(ends[1], unit)}</span></p>
+    <details>
+      <summary>Range of the colors</summary>
+      <div class="pair">
+        ${field("Low end", state.lo, (lo) => act.change({ lo }), { usual: ends[0].toPrecision(3) })}
+        ${field("High end", state.hi, (hi) => act.change({ hi }), {
+          usual: ends[1].toPrecision(3),
+        })}
+      </div>
+    </details>`;
+}
+
+function clip(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
+  const { clip: shown } = page.state;
+  const [low, high] = shown.heights;
+  const [lowest, highest] = heightsShown().map((z) => z.toFixed(2));
+  const heights = (/** @type {[number | null, number | null]} */ next) =>
+    act.change({ clip: { ...shown, heights: next }, cutCeiling: false });
+  return html`<div class="pair">
+      ${field("From height [m]", low, (z) => heights([z, high]), { usual: lowest })}
+      ${field("To height [m]", high, (z) => heights([low, z]), { usual: highest })}
+    </div>
+    <div class="buttons">
+      <button type="button" @click=${() => heights([null, null])}>All heights</button>
+      ${index.storeys.map(
+        (storey, k) =>
+          html`<button type="button" @click=${() => heights(heightsOf(storey))}>
+            Storey ${k + 1}
+          </button>`,
+      )}
+      <a
+        class="button"
+        href="${slicesUrl(idHere())}?kind=horizontal&z=${sliceHeight(index).toFixed(3)}"
+        >Slice at this height</a
+      >
+    </div>
+    ${boxFields(act)} ${sectionFields(act)}`;
+}
+
+/** Height of a slice of what is shown: a hand below its upper end. */
+const sliceHeight = (/** @type {MapIndex} */ { high_m }) =>
+  (page.state.clip.heights[1] ?? high_m[2]) - 0.7;
+
+function boxFields(/** @type {Act} */ act) {
+  const { clip: shown } = page.state;
+  const { box } = shown;
+  if (!box) return nothing;
+  const set = (/** @type {Partial<typeof box>} */ next) =>
+    act.change({ clip: { ...shown, box: { ...box, ...next } } });
+  const part = (/** @type {"center" | "size"} */ name, /** @type {number} */ axis) =>
+    field(
+      `${name === "center" ? "Middle" : "Size"} ${"xyz"[axis]} [m]`,
+      box[name][axis],
+      (value) => {
+        if (value === null || (name === "size" && value <= 0)) return;
+        const next = /** @type {[number, number, number]} */ ([...box[name]]);
+        next[axis] = value;
+        set({ [name]: next });
+      },
+    );
+  return html`<details open>
+    <summary>Clip box</summary>
+    <div class="three">
+      ${[0, 1, 2].map((axis) => part("center", axis))}
+      ${[0, 1, 2].map((axis) => part("size", axis))}
+    </div>
+    <div class="buttons">
+      <button type="button" @click=${() => act.change({ clip: { ...shown, box: null } })}>
+        Remove the box
+      </button>
+    </div>
+  </details>`;
+}
+
+function sectionFields(/** @type {Act} */ act) {
+  const { clip: shown } = page.state;
+  const { section } = shown;
+  if (!section) return nothing;
+  const set = (/** @type {Partial<typeof section>} */ next) =>
+    act.change({ clip: { ...shown, section: { ...section, ...next } } });
+  const move = (/** @type {number} */ times) => {
+    const [dx, dy] = [section.b[0] - section.a[0], section.b[1] - section.a[1]];
+    const step = (times * section.thickness) / (Math.hypot(dx, dy) || 1);
+    const by = [dy * step, -dx * step];
+    set({
+      a: [section.a[0] + by[0], section.a[1] + by[1]],
+      b: [section.b[0] + by[0], section.b[1] + by[1]],
+    });
+  };
+  const { a, b, thickness } = section;
+  const places = [...a, ...b].map((x) => x.toFixed(3));
+  const [from, to] = [places.slice(0, 2).join(","), places.slice(2).join(",")];
+  const query = `kind=vertical&a=${from}&b=${to}&t=${Math.min(thickness, 100)}`;
+  return html`<details open>
+    <summary>Section</summary>
+    ${field("Thickness [m]", thickness, (t) => t && t > 0 && set({ thickness: t }), { step: 0.05 })}
+    <div class="buttons">
+      <button type="button" @click=${() => move(-1)}>Step back</button
+      ><button type="button" @click=${() => move(1)}>Step forward</button
+      ><button type="button" @click=${act.faceSection}>Look at it</button
+      ><a class="button" href="${slicesUrl(idHere())}?${query}">Open as a slice</a
+      ><button type="button" @click=${() => act.change({ clip: { ...shown, section: null } })}>
+        Remove the section
+      </button>
+    </div>
+  </details>`;
+}
+
+function layers(/** @type {Act} */ act) {
+  const { state, flight, walk } = page;
+  const toggle = (/** @type {Layer} */ layer) =>
+    act.change({
+      layers: state.layers.includes(layer)
+        ? state.layers.filter((one) => one !== layer)
+        : [...state.layers, layer],
+    });
+  const names = /** @type {Array<[Layer, string]>} */ (Object.entries(LAYERS));
+  const places = findingPlaces();
+  return html`${names.map(
+    ([layer, text]) =>
+      html`<label class="check"
+        ><input
+          type="checkbox"
+          .checked=${state.layers.includes(layer)}
+          @change=${() => toggle(layer)}
+        /><span>${text}${layer === "findings" ? ` (${places.length})` : ""}</span></label
+      >`,
+  )}
+  ${
+    state.layers.includes("findings") && places.length
+      ? html`<ul class="rows">
+          ${places.map(
+            ({ p, text }) =>
+              html`<li><button type="button" @click=${() => act.goTo(p)}>${text}</button></li>`,
+          )}
+        </ul>`
+      : nothing
+  }
+  ${
+    walk?.t_s.length
+      ? html`<label
+          ><span>Along the walk</span
+          ><input
+            type="range"
+            min="0"
+            step="0.1"
+            max=${walk.t_s.at(-1) ?? 0}
+            .value=${String(flight.time)}
+            @input=${(/** @type {Event} */ event) => act.seek(Number(targetOf(event).value))}
+        /></label>`
+      : nothing
+  }`;
+}
+
+function measurements(/** @type {Act} */ act) {
+  const { measurements: all } = page.state;
+  const set = (/** @type {typeof all} */ next) => act.change({ measurements: next });
+  if (!all.length) return html`<p class="quiet">None yet: press M and click two points.</p>`;
+  const rows = all.map((one, k) => ({ one, k }));
+  return html`<ol class="rows">
+      ${repeat(
+        rows,
+        ({ k }) => k,
+        ({ one, k }) => {
+          const { value, parts } = resultOf(one);
+          const rename = (/** @type {Event} */ event) =>
+            set(all.map((each, n) => (n === k ? { ...each, name: targetOf(event).value } : each)));
+          return html`<li>
+            <input aria-label="Name" .value=${one.name} maxlength="80" @change=${rename} />
+            <b class="value">${value}</b><small>${parts}</small>
+            <span class="buttons"
+              ><button type="button" @click=${() => act.goTo(one.points[0])}>Go to</button
+              ><button type="button" @click=${() => set(all.filter((_, n) => n !== k))}>
+                Remove
+              </button></span
+            >
+          </li>`;
+        },
+      )}
+    </ol>
+    <div class="buttons">
+      <button type="button" @click=${act.csv}>Download CSV</button
+      ><button type="button" @click=${() => set([])}>Remove all</button>
+    </div>`;
+}
+
+const views = (/** @type {Act} */ act) =>
+  html`<ul class="rows">
+      ${page.saved.map(
+        ({ name, query }) =>
+          html`<li>
+            <button type="button" @click=${() => act.open(query)}>${name}</button
+            ><button type="button" aria-label="Remove ${name}" @click=${() => act.forget(name)}>
+              ×
+            </button>
+          </li>`,
+      )}
+    </ul>
+    <div class="buttons">
+      <button type="button" @click=${act.save}>Save this view</button>
+    </div>
+    <p class="quiet">Kept by this browser. A link holds the whole view, for anybody.</p>`;

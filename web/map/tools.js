@@ -1,0 +1,232 @@
+// The tools of the map: clicks and drags become measurements, a clip box, a section, a standpoint.
+
+import { idHere } from "../shared/address.js";
+import { pickOnMap } from "../shared/api.js";
+import { dot, minus, pixelM, rayAt } from "./camera.js";
+import { boxOver, yawOfSection } from "./clip.js";
+import { nearestTo, standingAt } from "./flight.js";
+import { KINDS, resultOf } from "./measure.js";
+import { heightsShown, page, planes } from "./page.js";
+
+/**
+ * @import {HitPoint} from "../shared/http_types"
+ * @import {Camera, Screen} from "./camera.js"
+ * @import {MapState} from "./state.js"
+ * @import {MeasureKind} from "./measure.js"
+ * @typedef {object} Stage
+ * @property {() => Camera} camera
+ * @property {() => Screen} screen
+ * @property {(next: Partial<MapState>) => void} change
+ * @property {(camera: Camera) => void} flyTo
+ * @property {(name: string, parallel: boolean) => void} view
+ * @property {() => void} draw
+ */
+
+const id = idHere();
+const BEHIND_M = 2000;
+const PICK_PX = 2;
+const STAND_AWAY = 0.15; // a click beside the walk stands on it up to this angle away [rad]
+const EYES_M = 1.6;
+
+/**
+ * The point of the map under a pixel, among all of its points.
+ * @param {number[]} at
+ * @param {Stage} stage
+ */
+async function pointAt(at, { camera, screen }) {
+  const view = camera();
+  const { origin, direction } = rayAt(view, screen(), at, BEHIND_M);
+  const pixel = pixelM(view, screen());
+  const answer = await pickOnMap(id, {
+    key: page.index?.key ?? "",
+    origin_m: origin,
+    direction,
+    pixel_rad: view.parallel ? 0 : pixel / view.distance,
+    point_m: view.parallel ? PICK_PX * pixel : 0.01,
+    planes: /** @type {[number, number, number, number][]} */ (planes()),
+  });
+  return answer.point;
+}
+
+/** What is known of a point, in words. */
+function pointText(/** @type {HitPoint} */ point) {
+  const { p_map, p_crs, classification, t_s, sensor, position_sd_m, surface_sd_m } = point;
+  const mm = (/** @type {number | null} */ m, /** @type {string} */ text) =>
+    m === null ? "" : `${text} ${(1000 * m).toFixed(1)} mm`;
+  const place = `x ${p_map[0].toFixed(3)}  y ${p_map[1].toFixed(3)}  z ${p_map[2].toFixed(3)} m`;
+  const [e, n, h] = (p_crs ?? []).map((x) => x.toFixed(3));
+  const there = p_crs ? `E ${e}  N ${n}  H ${h} (${page.index?.crs})` : "";
+  const more = [
+    classification,
+    `intensity ${point.intensity}`,
+    `${t_s.toFixed(1)} s`,
+    sensor,
+    mm(position_sd_m, "σ of the pose"),
+    mm(surface_sd_m, "thickness"),
+  ];
+  return [place, there, more.filter(Boolean).join(" · ")].filter(Boolean).join("\n");
+}
+
+/**
+ * A click on the map, for the tool that is chosen.
+ * @param {number[]} at
+ * @param {Stage} stage
+ */
+export async function clicked(at, stage) {
+  if (page.tool === "stand") return stand(at, stage);
+  const found = await pointAt(at, stage);
+  if (!found) return read("No point of the map here", stage);
+  page.picked = found;
+  if (page.tool !== "measure") return read(pointText(found), stage);
+  page.draft.push({ p: found.p_map, sd: found.position_sd_m ?? NaN, crs: found.p_crs });
+  if (page.draft.length >= KINDS[page.measuring].most) finishMeasurement(stage);
+  else read(pointText(found), stage);
+}
+
+/**
+ * The point to fly to after a double click.
+ * @param {number[]} at
+ * @param {Stage} stage
+ */
+export async function target(at, stage) {
+  const found = await pointAt(at, stage);
+  if (!found) return;
+  const camera = stage.camera();
+  stage.flyTo({ ...camera, target: found.p_map, distance: Math.max(camera.distance / 2.5, 1.5) });
+}
+
+/** Ends the measurement that has enough points. */
+export function finishMeasurement(/** @type {Stage} */ stage) {
+  const { draft, measuring, state } = page;
+  if (draft.length < KINDS[measuring].least) return;
+  const same = state.measurements.filter(({ kind }) => kind === measuring).length + 1;
+  const crs = draft.map((one) => one.crs).filter((one) => one !== null);
+  const made = {
+    kind: measuring,
+    points: draft.map(({ p }) => p),
+    name: `${KINDS[measuring].text} ${same}`,
+    sd: draft.map(({ sd }) => sd),
+    ...(crs.length === draft.length ? { crs } : {}),
+  };
+  page.draft = [];
+  const { value, parts } = resultOf(made);
+  page.reading = [`${made.name}: ${value}`, parts].filter(Boolean).join("\n");
+  stage.change({ measurements: [...state.measurements, made] });
+}
+
+/**
+ * A drag of a tool over the image from above.
+ * @param {number[]} from
+ * @param {number[]} to
+ * @param {Stage & {done: boolean}} stage
+ */
+export function dragged(from, to, stage) {
+  page.drag = stage.done ? null : [from, to];
+  if (!stage.done) return stage.draw();
+  const [a, b] = [from, to].map((at) => onLevel(at, stage));
+  const { clip } = page.state;
+  if (page.tool === "box") {
+    const { yaw } = stage.camera();
+    const box = boxOver(a, b, { yaw: -yaw, heights: heightsShown() });
+    choose("", stage);
+    stage.change({ clip: { ...clip, box } });
+  } else if (Math.hypot(b[0] - a[0], b[1] - a[1]) > 0.1) {
+    const section = {
+      a: /** @type {[number, number]} */ (a.slice(0, 2)),
+      b: /** @type {[number, number]} */ (b.slice(0, 2)),
+      thickness: 0.5,
+    };
+    choose("", stage);
+    stage.change({ clip: { ...clip, section } });
+    face(stage);
+  }
+}
+
+/** Turns the camera straight to the section. */
+export function face(/** @type {Stage} */ stage) {
+  const { section } = page.state.clip;
+  if (!section) return;
+  const { a, b } = section;
+  const [low, high] = heightsShown();
+  const { width, height } = stage.screen();
+  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  const pixel = Math.max((length * 1.1) / width, ((high - low) * 1.3) / height);
+  stage.flyTo({
+    target: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (low + high) / 2],
+    yaw: yawOfSection(section),
+    pitch: 0,
+    distance: pixel / pixelM({ ...stage.camera(), distance: 1 }, stage.screen()),
+    parallel: true,
+  });
+}
+
+/**
+ * Where the ray of a pixel crosses the level of the camera's target.
+ * @param {number[]} at
+ * @param {Stage} stage
+ */
+function onLevel(at, { camera, screen }) {
+  const { origin, direction } = rayAt(camera(), screen(), at);
+  const [, , z] = camera().target;
+  const along = Math.abs(direction[2]) < 1e-6 ? 0 : (z - origin[2]) / direction[2];
+  return [0, 1, 2].map((k) => origin[k] + along * direction[k]);
+}
+
+/**
+ * Stands on the walk near a click; elsewhere on what was clicked.
+ * @param {number[]} at
+ * @param {Stage} stage
+ */
+async function stand(at, stage) {
+  const { walk } = page;
+  const ray = rayAt(stage.camera(), stage.screen(), at, BEHIND_M);
+  const { yaw } = stage.camera();
+  const near = walk?.t_s.length ? nearestTo(walk, ray) : null;
+  const found = await pointAt(at, stage);
+  const depth = found ? dot(minus(found.p_map, ray.origin), ray.direction) : 0;
+  const onWalk = near && (stage.camera().parallel ? near.away * depth < 1 : near.away < STAND_AWAY);
+  if (near && onWalk) page.flight.time = near.time;
+  const eye = near && onWalk ? near.position : found && [...found.p_map];
+  if (!eye) return read("Click on the walk, or on a floor", stage);
+  if (!onWalk) eye[2] += EYES_M;
+  choose("", stage);
+  stage.change({
+    standing: true,
+    clip: { ...page.state.clip, heights: [null, null], section: null, box: null },
+    cutCeiling: false,
+  });
+  stage.flyTo(standingAt(eye, yaw, -0.08));
+}
+
+/**
+ * Chooses a tool, or none; the same one again ends it.
+ * @param {import("./page.js").Tool} tool
+ * @param {Stage} stage
+ * @param {MeasureKind} [kind]
+ */
+export function choose(tool, stage, kind = page.measuring) {
+  const same = tool === page.tool && (tool !== "measure" || kind === page.measuring);
+  Object.assign(page, { tool: same ? "" : tool, measuring: kind, draft: [], drag: null });
+  const hints = {
+    "": "",
+    measure: KINDS[kind].hint,
+    box: "Drag a rectangle around what is to stay",
+    section: "Drag the line of the section",
+    stand: "Click a place of the walk to stand there",
+  };
+  page.reading = hints[page.tool];
+  const above = Math.abs(stage.camera().pitch + Math.PI / 2) < 0.02 && stage.camera().parallel;
+  if ((page.tool === "box" || page.tool === "section") && !above) stage.view("top", true);
+  if (page.tool === "stand" && !page.state.layers.includes("walk"))
+    stage.change({ layers: [...page.state.layers, "walk"] });
+  stage.draw();
+}
+
+/**
+ * @param {string} text
+ * @param {Stage} stage
+ */
+function read(text, stage) {
+  page.reading = text;
+  stage.draw();
+}
