@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.calibration.tuning_joint import BEAMS
+from recon4.geometry.distinct import distinct
 from recon4.model.beams import BEAMS_OF_MODEL
 from recon4.model.frames import RecordedFrames
 
@@ -35,6 +36,6 @@ def beam_counts(frames: RecordedFrames, rows: tuple[int, ...]) -> dict[int, int]
 
 def _are_cones(xyz: NDArray[np.float32], ring: NDArray[np.uint8]) -> bool:
     elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
-    parts = (elevation[ring == one] for one in np.unique(ring))
+    parts = (elevation[ring == one] for one in distinct(ring))
     spread = [np.median(np.abs(part - np.median(part))) for part in parts]
     return bool(np.median(spread) < BEAMS.max_spread_rad)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.classes.tuning import VOLUME
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
 
@@ -48,7 +49,7 @@ class CarrierVolume:
         """
         self.scans += 1
         size, cube = self.occupied.size, _cubes(p_body)
-        self.occupied.ravel()[np.unique(cube)] += 1
+        self.occupied.ravel()[distinct(cube)] += 1
         for counts, what in ((self.through, VERDICT.seen_through), (self.met, VERDICT.met)):
             counts.ravel()[:] += np.bincount(cube[verdict == what], minlength=size)
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, RecordingError
 from recon4.evaluation.tuning import MESH_ALIGNMENT
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import SE3, Array
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class TriangleMesh:
 
     def bounds(self) -> tuple[Array, Array]:
         """Lowest and highest coordinates of the triangles [m], (3,) each."""
-        used = self.vertices_m[np.unique(self.triangles)]
+        used = self.vertices_m[distinct(self.triangles)]
         return used.min(axis=0), used.max(axis=0)
 
 

@@ -16,6 +16,7 @@ from scipy.spatial import cKDTree
 
 from recon4.evaluation.tuning import SHARPNESS
 from recon4.geometry.cubes import cube_keys, cubes_of
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 
 
@@ -96,7 +97,7 @@ def around(places: Array, chunks: Iterable[Array], *, radius_m: float) -> Iterat
     """
     shifts = np.stack(np.meshgrid(*[[-1, 0, 1]] * 3), axis=-1).reshape(-1, 3)
     cells = np.floor(places / radius_m).astype(np.int64)[:, None] + shifts
-    wanted = np.unique(_key(cells.reshape(-1, 3)))
+    wanted = distinct(_key(cells.reshape(-1, 3)))
     for chunk in chunks:
         p = np.asarray(chunk, dtype=np.float64)
         key = _key(np.floor(p / radius_m).astype(np.int64))

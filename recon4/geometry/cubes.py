@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 
 
@@ -20,12 +21,13 @@ def cube_keys(cubes: NDArray[np.int64]) -> NDArray[np.int64]:
     """
     if not len(cubes):
         return np.empty(0, np.int64)
-    low = cubes.min(axis=0)
-    x, y, z = (cubes - low).T
-    _, size_y, size_z = cubes.max(axis=0) - low + 1
+    columns = np.ascontiguousarray(cubes.T)  # extremes of short rows take five times as long
+    columns -= columns.min(axis=1)[:, None]
+    x, y, z = columns
+    _, size_y, size_z = columns.max(axis=1) + 1
     return np.asarray((x * size_y + y) * size_z + z, np.int64)
 
 
 def count_cubes(p: Array, edge_m: float) -> int:
     """Number of cubes with a point."""
-    return len(np.unique(cube_keys(cubes_of(p, edge_m))))
+    return len(distinct(cube_keys(cubes_of(p, edge_m))))

@@ -21,6 +21,7 @@ from scipy.ndimage import binary_dilation, label
 from scipy.spatial import cKDTree
 
 from recon4.errors import StoreError
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tuning import MIRRORS
@@ -279,7 +280,7 @@ def _whole(
     crossed[tuple((but[inside] - low).T)] = False
     crossed[tuple((mirrored - low).T)] = True
     opening = label(crossed)[0]
-    wanted = np.unique(opening[tuple((mirrored - low).T)])
+    wanted = distinct(opening[tuple((mirrored - low).T)])
     return np.argwhere(np.isin(opening, wanted)) + low
 
 

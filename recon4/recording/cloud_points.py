@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.geometry.distinct import distinct
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.model.rig import Sensor
@@ -288,7 +289,7 @@ def _upwards(rings: NDArray[np.uint8], elevation: NDArray[np.floating]) -> NDArr
     Rings that are no cones (a cloud already turned into another frame) are left as they are.
     """
     same = np.arange(256, dtype=np.uint8)
-    known = np.unique(rings)
+    known = distinct(rings)
     parts = [elevation[rings == ring] for ring in known]
     middle = np.array([np.median(part) for part in parts])
     spread = np.array([np.median(np.abs(part - m)) for part, m in zip(parts, middle, strict=True)])
@@ -324,7 +325,7 @@ def _fitting_model(elevation: NDArray[np.floating]) -> str:
 
 def _covers_turn(azimuth: NDArray[np.floating]) -> bool:
     """Whether the points are spread over more than half of a revolution."""
-    cells = np.unique(((azimuth + np.pi) * (36 / (2 * np.pi))).astype(np.int64))
+    cells = distinct(((azimuth + np.pi) * (36 / (2 * np.pi))).astype(np.int64))
     return len(cells) > 18
 
 

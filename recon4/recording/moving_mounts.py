@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import SE3, Array, so3_log
 from recon4.kernels.imu import place_points
 from recon4.model.trajectory import Times, Trajectory
@@ -209,7 +210,7 @@ def _composed(
     """Poses of a frame in the part that carries its joints, at the times of all of their poses."""
     chains = [poses[joint.child] for joint in joints]
     first_ns, last_ns = max(c.t_ns[0] for c in chains), min(c.t_ns[-1] for c in chains)
-    t_ns = np.unique(np.concatenate([chain.t_ns for chain in chains]))
+    t_ns = distinct(np.concatenate([chain.t_ns for chain in chains]))
     t_ns = t_ns[(t_ns >= first_ns) & (t_ns <= last_ns)]
     if len(t_ns) < 2:
         return None

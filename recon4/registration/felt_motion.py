@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -135,7 +136,7 @@ def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
     if not np.isfinite(force).all():
         return None
     known = np.concatenate([imu.t_ns, t_ns])
-    grid = np.unique(known[(known >= t_ns[0]) & (known <= t_ns[-1])])
+    grid = distinct(known[(known >= t_ns[0]) & (known <= t_ns[-1])])
     s = 1e-9 * (grid - grid[0])
     sample_s = 1e-9 * (imu.t_ns - grid[0])
     f = np.stack([np.interp(s, sample_s, force[:, axis]) for axis in range(3)], axis=1)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.export.names import check_name
 from recon4.export.points import OutputCrs
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION, STORED
 from recon4.mapping.tile_order import progressive
@@ -186,7 +187,7 @@ def _first_of_cells(
     u, v = np.floor(uvd[:, :2] / SLICE_EXPORT.dxf_cell_m).astype(np.int64).T
     keys, first = np.unique((u << 32) + v, return_index=True)
     fresh = ~np.isin(keys, taken, assume_unique=True)
-    return np.sort(first[fresh]), np.union1d(taken, keys[fresh])
+    return np.sort(first[fresh]), distinct(np.append(taken, keys[fresh]))
 
 
 def layer_name(number: int, plane: SlicePlane) -> str:

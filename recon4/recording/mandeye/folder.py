@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.geometry.distinct import distinct
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.folders import natural
@@ -101,7 +102,7 @@ def _part(path: Path, report: ImportReport) -> WalkPart | None:
         if head is None:
             raise CorruptFile(f"{path.name}: no points")
         times = times_ns(head)
-        ids = tuple(np.unique(np.asarray(head.user_data)).tolist())
+        ids = tuple(distinct(np.asarray(head.user_data)).tolist())
     except (RecordingError, AttributeError) as error:
         report.count("files_corrupt")
         report.outcome = "lossy"

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from recon4.geometry.distinct import distinct
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.formats.shared_topics import TopicSource, frame_named, source_of
 from recon4.recording.packets.family import MessagePackets
@@ -50,7 +51,7 @@ def _senders(row: MessagePackets, packets: Sequence[TimedPacket]) -> list[str]:
     """Which sensor sent each packet, as its bytes say."""
     datagrams = datagrams_of([0] * len(packets), [data for _, data in packets])
     names = [""] * len(packets)
-    for size in np.unique(datagrams.length).tolist():
+    for size in distinct(datagrams.length).tolist():
         rows = np.flatnonzero(datagrams.length == size)
         named = row.senders(datagrams.payloads(rows, size))
         for place, name in zip(rows.tolist(), named, strict=True):

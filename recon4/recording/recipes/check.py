@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import ANGLES, LENGTHS, TIMES, PointRecipe, Units
@@ -209,7 +210,7 @@ def _spread_rad(points: Columns, order: str) -> float:
     sound = np.isfinite(p).all(axis=1) & p.any(axis=1)
     p, rings = p[sound], points["ring"][sound]
     elevation = np.arctan2(p[:, 2], np.hypot(p[:, 0], p[:, 1]))
-    parts = [elevation[rings == ring] for ring in np.unique(rings)]
+    parts = [elevation[rings == ring] for ring in distinct(rings)]
     if len(parts) < 2:
         return float("nan")
     return float(np.median([np.median(np.abs(one - np.median(one))) for one in parts]))
@@ -225,7 +226,7 @@ def _is_mirrored(points: Columns) -> bool:
     order = np.argsort(points[key][sound], kind="stable")
     azimuth = np.arctan2(p[sound, 1], p[sound, 0])[order]
     ring = points["ring"][sound][order]
-    turns = [_turn(azimuth[ring == one]) for one in np.unique(ring)]
+    turns = [_turn(azimuth[ring == one]) for one in distinct(ring)]
     return len(turns) > 1 and float(np.median(turns)) > RECIPES.turn_rad
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.distinct import distinct
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import MODELS, LivoxModel, PointLayout, header_of
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
@@ -72,7 +73,7 @@ def _packet_s(layout: PointLayout, payloads: Payloads) -> float:
         stated = np.median(header_of(payloads, 2)["interval"]) * 1e-7
         if stated > 0:
             return float(stated)
-    steps = np.diff(np.unique(stamps_ns(payloads, layout.sdk)))
+    steps = np.diff(distinct(stamps_ns(payloads, layout.sdk)))
     return float(np.median(steps)) * 1e-9 if len(steps) else float("nan")
 
 

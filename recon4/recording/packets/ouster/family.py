@@ -10,6 +10,7 @@ import numpy as np
 from msgspec.structs import replace as replace_fields
 
 from recon4.errors import ConfigError
+from recon4.geometry.distinct import distinct
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.datagrams import Datagrams
@@ -167,7 +168,7 @@ def _most_are_known(head: Datagrams, size: int) -> bool:
     """
     length = head.length[: HEAD.packets]
     known = int((length == size).sum())
-    for other in np.unique(length[length != size]).tolist():
+    for other in distinct(length[length != size]).tolist():
         rows = np.flatnonzero(length == other)
         known += int(is_known_packet(head.payloads(rows, other)).sum())
     return 2 * known > len(length)

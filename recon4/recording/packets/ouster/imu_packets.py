@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
@@ -95,7 +96,7 @@ class ImuPackets:
         datagrams = self._own(datagrams)
         parts = [
             self._of_size(datagrams, size, clock)
-            for size in np.unique(datagrams.length).tolist()
+            for size in distinct(datagrams.length).tolist()
             if imu_samples_in(size)
         ]
         if not parts:

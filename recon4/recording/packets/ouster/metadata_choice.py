@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.geometry.distinct import distinct
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Sensor
@@ -183,7 +184,7 @@ def _doubts(head: Datagrams, item: OusterMetadata) -> tuple[Finding, ...]:
 
 def missing_text(head: Datagrams, found: MetadataFiles, sensor: Sensor) -> str:
     """Why there is no metadata for a sensor, for a message."""
-    sizes = np.unique(head.length).tolist()
+    sizes = distinct(head.length).tolist()
     seen = [
         f"{item.name} is of packets of {item.layout.size} bytes ({item.layout.profile.name}, "
         f"{item.layout.beams} beams, {item.layout.columns} columns), those here "

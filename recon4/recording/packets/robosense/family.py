@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.geometry.distinct import distinct
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -306,7 +307,7 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
     if found.model != "Helios 32":
         return found
     device = _device(head, MODELS["Helios 32"])
-    steps = np.diff(np.unique(stamps(packets, MODELS["Helios 32"])[0]))
+    steps = np.diff(distinct(stamps(packets, MODELS["Helios 32"])[0]))
     usual_s = float(np.median(steps)) / SECOND_NS if len(steps) > 4 else float("nan")
     lasers = 32 if device is None else len(device.angles_cdeg)
     if lasers == 16 or _fits(MODELS["Helios 16P"], usual_s, dual=False):

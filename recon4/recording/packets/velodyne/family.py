@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.distinct import distinct
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
@@ -256,7 +257,7 @@ def _recognized_wide(payloads: Payloads) -> Recognized | None:
 
 
 def _usual_step_s(stamp_ns: Times) -> float:
-    steps = np.diff(np.unique(stamp_ns))
+    steps = np.diff(distinct(stamp_ns))
     return float(np.median(steps)) / SECOND_NS if len(steps) > 4 else float("nan")
 
 

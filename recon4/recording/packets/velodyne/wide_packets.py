@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.geometry.distinct import distinct
 from recon4.kernels.laser_corrections import correct
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -184,7 +185,7 @@ def _hdl64(of: PacketSensor, head: Payloads) -> WideModel:
             "of the ROS driver (a row laser_id, rot_correction, vert_correction, … of each of 64 "
             "lasers) or the db.xml of VeloView beside the recording"
         )
-    stamps = np.unique(as_packets(head)["time_us"]) if len(head) else np.zeros(0)
+    stamps = distinct(as_packets(head)["time_us"]) if len(head) else np.zeros(0)
     step_us = float(np.median(np.diff(stamps))) if len(stamps) > 4 else 0.0
     dual = len(head) > 0 and bool(
         np.median(dual_packets(head, hdl64_model(calibration, s3=True))) > 0.5
