@@ -33,8 +33,15 @@ def observable_directions(
     """
     feigned = DEGENERACY.curved_information if with_imu else 0.0
     root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad, least_of_turn=feigned)
-    both = np.kron(np.eye(2), root)
-    return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
+    both = _of_both(root)
+    return both.T @ match.H @ both, _of_both(full).T @ match.g
+
+
+def _of_both(reduction: Array) -> Array:
+    """The same matrix (6, 6) for the poses at start and end, (12, 12)."""
+    out = np.zeros((12, 12))
+    out[START, START] = out[END_POSE, END_POSE] = reduction
+    return out
 
 
 def of_rigid_pose(H: Array) -> Array:
