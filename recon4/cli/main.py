@@ -18,6 +18,7 @@ import typer
 
 import recon4
 from recon4.cli.backup import backups
+from recon4.cli.batch import batches
 from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.delivery import delivery, is_delivery, show_checked
@@ -26,6 +27,7 @@ from recon4.cli.exports import exports
 from recon4.cli.findings import findings
 from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
+from recon4.cli.machine import machine
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
 from recon4.cli.storage import space
@@ -51,12 +53,12 @@ app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
 for _part in (server, live, simulation, slices, backups, space):
     app.add_typer(_part)
-for _part in (calibration, evaluation, exports, delivery, findings):
+for _part in (calibration, evaluation, exports, delivery, findings, batches, machine):
     app.add_typer(_part)
 
 _INTERRUPTED = 130
 """What shells report for a program that Ctrl-C ended."""
-_RESUMABLE = {"process", "demo"}
+_RESUMABLE = {"process", "demo", "batch"}
 """Commands that keep finished stages."""
 
 PresetOption = Annotated[
@@ -251,27 +253,6 @@ def _note_accepted(state: Path, project: Path) -> None:
 
     with access_of(state.parent) as access:
         note(access, "accept project as it is", project.resolve().name)
-
-
-@app.command()
-def doctor(
-    folder: Annotated[Path, typer.Argument(help="Where projects are kept.")] = Path(),
-    as_json: JsonOption = False,
-) -> None:
-    """Look at versions, cores, memory, disk and threads of this machine."""
-    from dataclasses import asdict
-
-    from recon4.system.doctor import examine
-
-    checks = examine(folder)
-    if as_json:
-        _write_json([asdict(check) for check in checks])
-    else:
-        for check in checks:
-            mark = "ok " if check.ok else "NO "
-            write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
-    if not all(check.ok for check in checks):
-        raise typer.Exit(1)
 
 
 def _version(wanted: bool) -> None:

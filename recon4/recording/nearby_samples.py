@@ -23,7 +23,7 @@ def unread_samples(sources: Sources) -> list[str]:
     )
     texts = []
     for kind, option, given in wanted:
-        file = None if given else _nearby(sources.recordings, kind)
+        file = None if given else nearby_samples(sources.recordings, kind)
         if file and file not in sources.recordings:
             texts.append(
                 f"{file} lies beside the recording and is not read: give it (page: IMU and GNSS "
@@ -35,14 +35,14 @@ def unread_samples(sources: Sources) -> list[str]:
 def samples_beside(recording: Path, kind: RecordingKind) -> str:
     """What to do with samples of a kind beside a recording; empty = there are none."""
     option = {RecordingKind.IMU_CSV: "--imu", RecordingKind.GNSS_CSV: "--gnss"}[kind]
-    file = _nearby([recording], kind)
+    file = nearby_samples([recording], kind)
     if file is None:
         return ""
     return f"{file.name} beside it has them: page: IMU and GNSS files; command: {option} FILE"
 
 
-def _nearby(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:
-    """The first CSV file of a kind in the folders of the recordings."""
+def nearby_samples(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:
+    """The first CSV file of a kind in the folders of the recordings; None = there is none."""
     folders = {path if path.is_dir() else path.parent for path in recordings}
     for folder in sorted(folders):
         try:

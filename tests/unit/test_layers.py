@@ -35,6 +35,12 @@ MAY_IMPORT = {
     "recon4/archive": STAGE | {"recon4.archive", "recon4.review"},
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
+    "recon4/executors": {"recon4.errors", "recon4.executors"},
+    "recon4/batch": MODEL
+    | {"recon4.batch", "recon4.executors", "recon4.store"}
+    | {"recon4.recording.kinds", "recon4.recording.nearby_samples"}
+    | {"recon4.system.processes", "recon4.system.stopping"},
+    "recon4/batch/child.py": {"recon4"},
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,
     "recon4/kernels": {"recon4.kernels", "recon4.units"},
@@ -160,6 +166,7 @@ NOBODY_IMPORTS = {
 ONLY_HERE = {
     "serial": {"recon4/live/recorder/serial_port.py"},
     "gtsam": {"recon4/pose_graph/factors.py"},
+    "distributed": {"recon4/executors/cluster.py"},
     "open3d": {"recon4/geometry/raycast.py"},
     "laspy": {f"recon4/export/{name}.py" for name in ("copc", "las_points", "laz")}
     | {f"recon4/recording/formats/{name}.py" for name in ("las_records", "cloud_crs")}
@@ -298,6 +305,7 @@ def test_the_page_names_every_package():
 def test_every_package_imported_is_named_in_pyproject():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     texts = [*project["dependencies"], *project["optional-dependencies"]["pdf"]]
+    texts += project["optional-dependencies"]["dask"]
     named = {_distribution(Requirement(text).name) for text in texts}
     homes = metadata.packages_distributions()
 

@@ -1,0 +1,56 @@
+"""The command ``recon4 doctor``."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from recon4.cli.batch import SchedulerOption, TlsOption, certificates_in
+from recon4.cli.terminal import write
+from recon4.errors import ConfigError
+
+if TYPE_CHECKING:
+    from recon4.system.doctor import Check
+
+machine = typer.Typer()
+
+
+@machine.command()
+def doctor(
+    folder: Annotated[Path, typer.Argument(help="Where projects are kept.")] = Path(),
+    as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
+    *,
+    scheduler: SchedulerOption = "",
+    tls: TlsOption = None,
+) -> None:
+    """Look at versions, cores, memory, disk and threads of this machine, and at a cluster's."""
+    from recon4.system.doctor import examine
+
+    checks = examine(folder)
+    if scheduler:
+        checks += [_examine_cluster(scheduler, tls, folder)]
+    if as_json:
+        write(json.dumps([asdict(check) for check in checks], indent=1, ensure_ascii=False))
+    else:
+        for check in checks:
+            mark = "ok " if check.ok else "NO "
+            write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
+    if not all(check.ok for check in checks):
+        raise typer.Exit(1)
+
+
+def _examine_cluster(scheduler: str, tls: Path | None, shared: Path) -> Check:
+    """Whether the workers of a scheduler have this version and see a folder of this computer."""
+    from recon4.executors.cluster import workers_of
+    from recon4.system.doctor import Check
+
+    cluster = workers_of(scheduler, certificates_in(tls), shared.absolute())
+    try:
+        with cluster:
+            return Check("cluster", f"{cluster.size} workers", ok=True)
+    except ConfigError as error:
+        return Check("cluster", scheduler, ok=False, advice=str(error))

@@ -1,0 +1,241 @@
+"""Workers of Dask: processes of this machine, or of others by a scheduler with TLS.
+
+Anyone who may talk to a scheduler can run code on its workers. So a scheduler of others is used
+with certificates only, and that of this machine has temporary ones.
+"""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import recon4
+from recon4.errors import Cancelled, ConfigError
+from recon4.executors.executor import Finished, Result, Say, Task
+from recon4.executors.tuning import CLUSTER
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+_LINES = "recon4-lines-"
+"""Topic of the lines that a run's tasks say; its number follows."""
+_MISSING = "needs Dask, which is not installed; command: pip install 'recon4[dask]'"
+
+
+@dataclass(frozen=True, slots=True)
+class Certificates:
+    """Files by which client, scheduler and workers know each other."""
+
+    authority: Path
+    """Certificate of the authority that signed the others (PEM)."""
+    certificate: Path
+    """Of this client (PEM)."""
+    key: Path
+    """Its private key (PEM)."""
+
+
+@dataclass(frozen=True, slots=True)
+class SeenWorker:
+    """What a worker says of itself."""
+
+    address: str
+    version: str
+    """Of recon4 there."""
+    sees_folder: bool
+    """Whether it can read what this machine wrote into the shared folder."""
+
+
+class Cluster:
+    """Workers of a scheduler; ends those that it started itself."""
+
+    def __init__(self, connect: Callable[[ExitStack], Client]) -> None:
+        self._connect = connect
+        self._open = ExitStack()
+        self._client: Client | None = None
+
+    def __enter__(self) -> Cluster:
+        with ExitStack() as opened:
+            self._client = self._connect(opened)
+            self._open = opened.pop_all()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._open.close()
+
+    def run(
+        self, function: Callable[[Task, Say], Result], tasks: Sequence[Task], say: Say
+    ) -> Iterator[Finished[Task, Result]]:
+        """Yield each task as soon as it has ended; one whose worker dies is run again elsewhere."""
+        from distributed import Event, as_completed
+
+        client, topic = self._connected, _LINES + uuid.uuid4().hex
+        stop = Event(topic, client)
+        client.subscribe_topic(topic, lambda event: say(*event[1]))
+        # A task writes files, so the same one is never run twice at a time: no copies of it.
+        futures = [
+            client.submit(_on_worker, function, task, topic, pure=False, retries=0)
+            for task in tasks
+        ]
+        of_future = dict(zip((future.key for future in futures), tasks, strict=True))
+        try:
+            for future in as_completed(futures):
+                yield _finished(of_future[future.key], future)
+        finally:
+            stop.set()  # a task that still runs stops at its next line
+            client.cancel(futures, force=True)
+            client.unsubscribe_topic(topic)
+
+    @property
+    def size(self) -> int:
+        """Workers that are connected now."""
+        return len(self._connected.scheduler_info(n_workers=-1)["workers"])
+
+    @property
+    def _connected(self) -> Client:
+        assert self._client is not None, "used outside of its with block"
+        return self._client
+
+
+def workers_here(count: int) -> Cluster:
+    """Processes of this machine, which end with this one.
+
+    Raises:
+        ConfigError: If Dask is not installed, or the count is none.
+    """
+    _require()
+    if not 1 <= count <= CLUSTER.most_workers:
+        raise ConfigError(f"command: --workers: expected 1 to {CLUSTER.most_workers}, got {count}")
+
+    def connect(opened: ExitStack) -> Client:
+        from distributed import Client, LocalCluster, Security
+
+        security = Security.temporary()
+        cluster = opened.enter_context(
+            LocalCluster(
+                n_workers=count,
+                threads_per_worker=1,
+                dashboard_address=None,
+                security=security,
+                protocol="tls://",
+                silence_logs=CLUSTER.log_level,
+            )
+        )
+        return opened.enter_context(Client(cluster, security=security))
+
+    return Cluster(connect)
+
+
+def workers_of(scheduler: str, certificates: Certificates, shared: Path) -> Cluster:
+    """Workers of a scheduler that runs already; they are checked when the cluster is entered.
+
+    Args:
+        scheduler: Its address, ``tls://HOST:PORT``.
+        certificates: Of this client.
+        shared: Folder that this computer and all workers see under the same name.
+
+    Raises:
+        ConfigError: If Dask is not installed, the address has no TLS, or a certificate is missing;
+            when entered, if no scheduler answers, it has no workers, or one has another version or
+            does not see the folder.
+    """
+    _require()
+    if not scheduler.startswith("tls://"):
+        raise ConfigError(
+            f"command: --scheduler: expected tls://HOST:PORT, got {scheduler!r}: anyone who "
+            "reaches a scheduler without certificates can run programs on its workers"
+        )
+    for path in (certificates.authority, certificates.certificate, certificates.key):
+        if not path.is_file():
+            raise ConfigError(f"command: no such certificate or key: {path}")
+
+    def connect(opened: ExitStack) -> Client:
+        from distributed import Client, Security
+
+        security = Security(
+            tls_ca_file=str(certificates.authority),
+            tls_client_cert=str(certificates.certificate),
+            tls_client_key=str(certificates.key),
+            require_encryption=True,
+        )
+        try:
+            client = Client(scheduler, security=security, timeout=CLUSTER.connects_within_s)
+        except (OSError, TimeoutError) as error:
+            raise ConfigError(f"no scheduler answers at {scheduler}: {error}") from error
+        opened.enter_context(client)
+        require_workers(seen_workers(client, shared), shared)
+        return client
+
+    return Cluster(connect)
+
+
+def seen_workers(client: Client, shared: Path) -> list[SeenWorker]:
+    """Ask all workers for their version, and whether they see a folder of this computer."""
+    token = uuid.uuid4().hex
+    probe = shared / f".seen-{token}"
+    probe.write_text(token, "utf-8")
+    try:
+        found = client.run(_look, str(probe), token)
+    finally:
+        probe.unlink()
+    return [SeenWorker(address, *said) for address, said in sorted(found.items())]
+
+
+def require_workers(workers: Sequence[SeenWorker], shared: Path) -> None:
+    """Check that workers can do the work of this machine.
+
+    Raises:
+        ConfigError: If there are none, one has another version, or does not see the folder.
+    """
+    if not workers:
+        raise ConfigError("the scheduler has no workers: start some")
+    for worker in workers:
+        if worker.version != recon4.__version__:
+            raise ConfigError(
+                f"{worker.address}: expected recon4 {recon4.__version__} as here, "
+                f"got {worker.version}"
+            )
+        if not worker.sees_folder:
+            raise ConfigError(
+                f"{worker.address} does not see {shared}: all workers need this folder, under the "
+                "same name"
+            )
+
+
+def _require() -> None:
+    try:
+        import distributed  # noqa: F401
+    except ImportError as error:
+        raise ConfigError(_MISSING) from error
+
+
+def _look(probe: str, token: str) -> tuple[str, bool]:
+    try:
+        sees = Path(probe).read_text("utf-8") == token
+    except OSError:
+        sees = False
+    return recon4.__version__, sees
+
+
+def _on_worker(function: Callable[[Task, Say], Result], task: Task, topic: str) -> Result:
+    from distributed import Event, get_worker
+
+    worker, stop = get_worker(), Event(topic)
+
+    def say(name: str, line: str) -> None:
+        if stop.is_set():
+            raise Cancelled("stopped by the program that sent the task")
+        worker.log_event(topic, (name, line))
+
+    return function(task, say)
+
+
+def _finished(task: Task, future: Any) -> Finished[Task, Any]:
+    if future.status == "finished":
+        return Finished(task, future.result())
+    if future.status == "cancelled":
+        return Finished(task, None, "the scheduler has ended or lost it")
+    return Finished(task, None, f"{type(future.exception()).__name__}: {future.exception()}")

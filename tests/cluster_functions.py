@@ -1,0 +1,45 @@
+"""Functions that tests run on workers of a cluster."""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from pathlib import Path
+
+from recon4.errors import CorruptFile
+from recon4.executors.executor import Say
+
+
+def double(task: int, say: Say) -> int:
+    say(str(task), "doubled")
+    return 2 * task
+
+
+def refuse(task: str, say: Say) -> str:
+    raise CorruptFile(f"{task}: damaged")
+
+
+def die_first(task: str, say: Say) -> str:
+    """End this worker as a power cut does; the next one to try returns who was killed."""
+    killed = Path(task)
+    if not killed.exists():
+        killed.write_text(str(os.getpid()), "ascii")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return killed.read_text("ascii")
+
+
+def always_die(task: str, say: Say) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def until_stopped(task: str, say: Say) -> None:
+    """Say something for ever; when that is refused, leave a file. An empty name ends at once."""
+    pause = threading.Event()
+    try:
+        while task:
+            say(task, "runs")
+            pause.wait(0.05)
+    finally:
+        if task:
+            Path(task).write_text("stopped", "ascii")
