@@ -97,6 +97,7 @@ class FrameFitter:
         ``rest`` at the end has no velocity there. Both ends of a segment are used, not its
         midpoint: planes are fitted to ends. While stationary this halves the scatter of the pose.
         """
+        tuning = tuned(OdometryTuning, self.settings)
         information, g_prior = self._known(prediction, rest)
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
@@ -111,7 +112,7 @@ class FrameFitter:
                 p_odom, frame_fraction, center=center,
                 finest=max(self.coarse + 1 - rounds, 0), gate_m=self._gate_m(rounds),
             )  # fmt: skip
-            H_lidar, g_lidar = self._weighted(match)
+            H_lidar, g_lidar = self._weighted(match, tuning)
             if weak is not None:
                 gate_m = self._gate_m(rounds)
                 H_points, g_points = weak.pull(match, rounds, gate_m, T_odom_body=T_dense)
@@ -176,8 +177,7 @@ class FrameFitter:
             min(rounds - 1 + (0 if self.coarse else 1), len(FRAME_FIT.gates_m) - 1)
         ]
 
-    def _weighted(self, match: Match) -> tuple[Array, Array]:
-        tuning = tuned(OdometryTuning, self.settings)
+    def _weighted(self, match: Match, tuning: OdometryTuning) -> tuple[Array, Array]:
         H, g = observable_directions(match, tuning.normal_noise_rad, with_imu=self.with_imu)
         return tuning.information_scale * H, tuning.information_scale * g
 
