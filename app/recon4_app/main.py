@@ -66,7 +66,7 @@ from recon4_app.network.listen import (
 from recon4_app.network.streams import StreamLimits, Streams
 from recon4_app.openapi import description
 from recon4_app.pages import WEB, page_response
-from recon4_app.projects import map_routes
+from recon4_app.projects import map_routes, report_file
 from recon4_app.projects import routes as project_routes
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.store import ProjectStore
@@ -153,6 +153,7 @@ def _routes() -> list[BaseRoute]:
         pairing_routes,
         project_routes,
         map_routes,
+        report_file,
         job_routes,
     ):
         router.include_router(part.router)

@@ -126,7 +126,13 @@ def checked_approval(root: Path, *, draft: bool) -> tuple[ApprovalState, Approva
 def report_of(
     root: Path, approval: Approval | None, state: ApprovalState, *, wish: ReportWish
 ) -> ClientReport:
-    """The record that the PDF lays out."""
+    """The record that the PDF lays out.
+
+    Raises:
+        StoreError: If the map is none of a 3-D walk, or a file is damaged.
+    """
+    if not (read_artifacts(root).get("map", root) / "tiles.json").is_file():
+        raise StoreError(f"{root.name}: a report for the client is made of a finished 3-D map")
     assessed = assess(project_facts(root))
     extras = ReportExtras(
         signature=_signature(approval, state, words(wish.language), wish=wish),
@@ -151,7 +157,7 @@ def _signature(
         "version": str(stamp.version),
         "verdict": stamp.verdict,
         "why": state.why,
-        "hash": f"{stamp.hash[:32]} {stamp.hash[32:]}",
+        "hash": " ".join(stamp.hash[k : k + 16] for k in range(0, len(stamp.hash), 16)),
         "pdf": texts(f"signature.{signed}"),
     }
     rows = tuple(Row(texts(f"signature.{key}"), text) for key, text in pairs.items() if text)

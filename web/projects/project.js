@@ -8,6 +8,7 @@ import {
   listJobsOf,
   mapUrl,
   readProject,
+  reportPdfUrl,
   reportUrl,
   viewerUrl,
   watchJobs,
@@ -109,10 +110,12 @@ function drawFiles() {
   const { project } = state;
   const files = project?.files ?? [];
   byId("files").hidden = files.length === 0;
-  only("map-file").hidden = !project?.stages.some(({ stage }) => stage === "map");
+  const mapped = project?.stages.some(({ stage }) => stage === "map") ?? false;
+  only("map-file").hidden = !mapped;
   render(project ? approvalLines(project.approval) : nothing, byId("approval"));
   const found = project?.summary.findings ? ["csv", "geojson"] : [];
-  render([files.map(fileRow), found.map(findingsRow)], within(byId("files"), "ul"));
+  const rows = [files.map(fileRow), mapped ? reportRow() : nothing, found.map(findingsRow)];
+  render(rows, within(byId("files"), "ul"));
 }
 
 const filePlaces = () => ({ message: byId("files-message"), status: byId("files-status") });
@@ -126,6 +129,14 @@ function fileRow(/** @type {ResultFile} */ { name, label, bytes: size }) {
       : html`<a href=${fileUrl(id, name)} download @click=${askFirst(filePlaces)}>${label}</a>`;
   return html`<li>${link}<small>${name}, ${bytes(size)}</small></li>`;
 }
+
+/** The report for the client, made and signed when it is asked for. */
+const reportRow = () =>
+  html`<li>
+    <a href=${reportPdfUrl(state.id)} download @click=${askFirst(filePlaces)}
+      >Report for the client, PDF</a
+    ><small>report.pdf</small>
+  </li>`;
 
 /** A download of the findings: a table, or for a GIS. */
 const findingsRow = (/** @type {string} */ ending) =>

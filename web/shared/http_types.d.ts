@@ -1443,6 +1443,10 @@ export interface Operations {
     path: { project_id: string };
     response: string;
   };
+  "GET /api/projects/{project_id}/report.pdf": {
+    path: { project_id: string };
+    response: string;
+  };
   "GET /api/projects/{project_id}/review": {
     path: { project_id: string };
     response: ReviewView;

@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import json
+import secrets
 import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
@@ -125,6 +126,15 @@ class Exports:
                 )
         self._making.pop(place, None)
         return place
+
+    def free_place(self, ending: str) -> Path:
+        """A new name among the exports, for a file that is made each time.
+
+        Raises:
+            NoRoom: If the disk is nearly full.
+        """
+        self._refuse_if_full()
+        return self._folder / f"{secrets.token_hex(32)}.{ending}"
 
     def sweep(self, now_s: float) -> int:
         """Remove exports older than a day, and the oldest if all together are too large.

@@ -1,0 +1,62 @@
+"""HTTP route of the report for the client as PDF, signed if the map is approved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fastapi import APIRouter, Depends
+from fastapi.responses import FileResponse
+from starlette.concurrency import run_in_threadpool
+
+from recon4.review.newest_approval import judging_folders
+from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
+from recon4_app.access.people import Permission, needs
+from recon4_app.compute_pool.model import FileAccess, Lane, Terms
+from recon4_app.deps import Server
+from recon4_app.error_responses import ProblemDetail
+from recon4_app.network.request_caller import CalledBy
+from recon4_app.review.tuning import SIGNING
+
+router = APIRouter(
+    prefix="/api/projects/{project_id}",
+    tags=["projects"],
+    dependencies=[Depends(needs(Permission.LOOK))],
+    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+)
+_NAME = "report.pdf"
+
+
+@router.get("/report.pdf", response_class=FileResponse, summary="Report for the client")
+async def report_pdf(project_id: str, *, server: Server, caller: CalledBy) -> FileResponse:
+    """Write the report for the client as PDF/A; that of an approved map is signed (PAdES).
+
+    422 says how to install the packages that it needs, if they are missing.
+    """
+    root = server.projects.folder(project_id)
+    server.projects.result(project_id, "report.html")  # 404 before there is a map
+    key = server.settings.state / SIGNING_KEY
+    await run_in_threadpool(ensure_own_key, key.parent)
+    place = await run_in_threadpool(server.slices.exports.free_place, "pdf")
+    terms = Terms(
+        person=caller.name,
+        access=FileAccess(read=(key, *judging_folders(key.parent)), write=(root,)),
+        limit_s=SIGNING.signing_limit_s,
+        outputs={_NAME: place},
+    )
+    run = server.compute_pool.run_background
+    await caller.wait(run(Lane.SIGN, terms, write_report_file, str(root), out=_NAME))
+    return FileResponse(place, filename=f"{project_id}-report.pdf", media_type="application/pdf")
+
+
+def write_report_file(root: str, *, out: str) -> str:
+    """Write the report, and sign it if the map is approved; in the lane that may read the key.
+
+    Raises:
+        Altered: If the map is not what was approved.
+        ConfigError: If the extra ``pdf`` is not installed.
+    """
+    from recon4.delivery.report_files import ReportWish, server_key, write_pdf
+
+    project = Path(root)
+    write_pdf(project, Path(out), ReportWish(key=server_key(project)))
+    return out
