@@ -53,15 +53,17 @@ class OpenedMap:
     """Its approval; None = a draft."""
 
 
-def open_map(project: Path, *, draft: bool = False) -> OpenedMap:
+def open_map(project: Path, *, draft: bool = False, crs: str = "") -> OpenedMap:
     """Open the map of a finished project.
 
     Args:
         project: The folder.
         draft: Without its approval, whether or not there is one.
+        crs: Code of the CRS of its frame; empty = that of the map.
 
     Raises:
         Altered: If it was approved and is not what was approved, or the approval does not count.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
         StoreError: If there is no map, it is a 2-D map, or it is damaged.
     """
     from recon4.mapping.tiles import TileSet
@@ -76,7 +78,7 @@ def open_map(project: Path, *, draft: bool = False) -> OpenedMap:
     approval = None if draft else approval_of(project, keys)
     if approval:
         approval.evidence.check_frame(artifacts)
-    frame = frame_of(artifacts)
+    frame = frame_of(artifacts, crs)
     if not approval:
         return OpenedMap(TileSet.open(artifacts["map"]), frame, None)
     return OpenedMap(approval.evidence.open_map(artifacts["map"]), frame, approval.stamp)

@@ -150,7 +150,7 @@ def write_planes(
 def _write_image(opened: OpenedMap, plane: SlicePlane, file: Path, *, look: SliceLook) -> int:
     from recon4.mapping.tiles import surface_text
     from recon4.slices.colors import LABELS
-    from recon4.slices.export import write_geotiff
+    from recon4.slices.geotiff import write_geotiff
     from recon4.slices.points import extent
     from recon4.slices.sheet import SheetText, approval_text, lay_out, source_text, write_sheet
     from recon4.slices.slice_image import RasterGrid, draw

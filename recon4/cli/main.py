@@ -28,6 +28,7 @@ from recon4.cli.findings import findings
 from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
 from recon4.cli.machine import machine
+from recon4.cli.products import products
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
 from recon4.cli.storage import space
@@ -53,7 +54,7 @@ app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
 for _part in (server, live, simulation, slices, backups, space):
     app.add_typer(_part)
-for _part in (calibration, evaluation, exports, delivery, findings, batches, machine):
+for _part in (calibration, evaluation, exports, delivery, findings, batches, machine, products):
     app.add_typer(_part)
 
 _INTERRUPTED = 130

@@ -100,13 +100,14 @@ def _slice_plane(z: float | None, line: str, plane: str, *, thickness_m: float) 
     if z is not None:
         return SlicePlane.horizontal(z, thickness_m=thickness_m)
     if line:
-        x1, y1, x2, y2 = _numbers(line, 4)
+        x1, y1, x2, y2 = numbers(line, 4)
         return SlicePlane.vertical((x1, y1), (x2, y2), thickness_m=thickness_m)
-    px, py, pz, nx, ny, nz = _numbers(plane, 6)
+    px, py, pz, nx, ny, nz = numbers(plane, 6)
     return SlicePlane.free((px, py, pz), (nx, ny, nz), thickness_m=thickness_m)
 
 
-def _numbers(text: str, count: int) -> list[float]:
+def numbers(text: str, count: int) -> list[float]:
+    """Numbers of an option, with commas between them."""
     try:
         values = [float(word) for word in text.split(",")]
     except ValueError as error:

@@ -1,4 +1,4 @@
-"""Export of slices as LAZ, CSV, DXF and GeoTIFF; streamed, and atomic."""
+"""Export of slices as LAZ, CSV and DXF; streamed, and atomic."""
 
 from __future__ import annotations
 
@@ -6,15 +6,13 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import ConfigError, GeoreferenceError
-from recon4.export.names import check_name
+from recon4.errors import ConfigError
 from recon4.export.points import OutputCrs
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
@@ -23,9 +21,8 @@ from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.scratch import scratch_folder
-from recon4.slices.map_crs import MapFrame, jacobian
+from recon4.slices.map_crs import MapFrame
 from recon4.slices.points import SliceWindow, TilePart, points_in
-from recon4.slices.slice_image import SliceImage
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import SLICE_EXPORT
 from recon4.store.atomic import atomic_file
@@ -200,106 +197,8 @@ def layer_name(number: int, plane: SlicePlane) -> str:
     return f"SLICE_{number:03d}_{place}".replace(".", "_")
 
 
-def write_geotiff(
-    drawn: SliceImage,
-    path: Path,
-    *,
-    frame: MapFrame,
-    rgba: NDArray[np.uint8],
-    description: str = "",
-) -> None:
-    """Write the image as GeoTIFF, colored, transparent where there are no points.
-
-    A horizontal slice of a georeferenced map has its CRS, and a transformation that is exact at
-    its center. All other slices have the coordinates of the slice (u, v in meters) and no CRS.
-
-    Args:
-        drawn: The slice.
-        path: File to write.
-        frame: Of the map.
-        rgba: Its colors, see `SliceImage.rgba`.
-        description: For the tag ImageDescription.
-
-    Raises:
-        GeoreferenceError: If an affine transformation would be off by half a pixel at a corner.
-        StoreError: If the file cannot be written.
-    """
-    from PIL import Image, TiffImagePlugin
-
-    check_name(path, ".tif")
-
-    tags = TiffImagePlugin.ImageFileDirectory_v2()
-    geo = _georeference(drawn, frame)
-    for tag, values in geo.items():
-        text = isinstance(values, str)
-        tags.tagtype[tag] = 2 if text else (3 if tag == GeoTag.KEYS else 12)
-        tags[tag] = values if text else tuple(values)
-    tags[TiffImagePlugin.IMAGEDESCRIPTION] = description.encode("ascii", "replace").decode()
-    image = Image.fromarray(rgba)
-    with atomic_file(path) as temporary:
-        image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
-
-
-class GeoTag(IntEnum):
-    """Tags of GeoTIFF 1.1."""
-
-    MATRIX = 34264
-    KEYS = 34735
-    ASCII = 34737
-
-
 _FIRST_HANDLE = 0x10000
 _NEXT_HANDLE = 0x1000_0000
-
-
-def _georeference(drawn: SliceImage, frame: MapFrame) -> dict[int, Any]:
-    """Tags of GeoTIFF 1.1: the transformation from pixels, and keys that name the CRS."""
-    plane, paper = drawn.plane, drawn.paper
-    u0, v0 = paper.corner
-    if plane.kind == "horizontal" and frame.to_crs is not None:
-        middle = np.array([u0 + paper.width * paper.pixel_m / 2.0,
-                           v0 - paper.height * paper.pixel_m / 2.0, plane.origin_m[2]])  # fmt: skip
-        J, place = jacobian(frame.to_crs, middle)
-        _refuse_bent(drawn, frame, middle)
-        A = J[:2, :2] * [paper.pixel_m, -paper.pixel_m]
-        corner = place[:2] + J[:2, :2] @ (np.array([u0, v0]) - middle[:2])
-        code = _epsg(frame)
-        keys = [(1024, 0, 1, 1), (1025, 0, 1, 1), (3072, 0, 1, code), (3076, 0, 1, 9001)]
-        citation = ""
-    else:
-        A, corner = np.diag([paper.pixel_m, -paper.pixel_m]), np.array([u0, v0])
-        citation = f"recon4 slice {plane.name}, {frame.text}|"
-        keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, GeoTag.ASCII, len(citation), 0)]
-        keys.append((3076, 0, 1, 9001))
-    matrix = [A[0, 0], A[0, 1], 0, corner[0], A[1, 0], A[1, 1], 0, corner[1],
-              0, 0, 0, 0, 0, 0, 0, 1]  # fmt: skip
-    directory = [1, 1, 1, len(keys), *(number for key in keys for number in key)]
-    tags: dict[int, Any] = {GeoTag.KEYS: directory, GeoTag.MATRIX: [float(x) for x in matrix]}
-    if citation:
-        tags[GeoTag.ASCII] = citation.encode("ascii", "replace").decode()
-    return tags
-
-
-def _refuse_bent(drawn: SliceImage, frame: MapFrame, middle: Array) -> None:
-    assert frame.to_crs is not None
-    J, place = jacobian(frame.to_crs, middle)
-    w = drawn.paper.window
-    corners = np.array([[x, y, middle[2]] for x in (w.left, w.right) for y in (w.bottom, w.top)])
-    off = frame.to_crs(corners) - (place + (corners - middle) @ J.T)
-    worst = float(np.linalg.norm(off[:, :2], axis=1).max())
-    if worst > max(0.5 * drawn.paper.pixel_m, 0.005):
-        raise GeoreferenceError(
-            f"GeoTIFF: the image is too large, its corners would be off by {worst:.3f} m in "
-            f"{frame.crs}; export a smaller part"
-        )
-
-
-def _epsg(frame: MapFrame) -> int:
-    """Code of the horizontal system."""
-    first = frame.crs.removeprefix("EPSG:").split("+")[0]
-    if not first.isdigit():
-        raise GeoreferenceError(f"a GeoTIFF needs an EPSG code, the map is in {frame.crs}")
-    return int(first)
 
 
 def _dxf_points(p: Array, layer: str, *, owner: str, handle: int) -> Iterator[str]:

@@ -70,22 +70,26 @@ def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
     return J, around[6]
 
 
-def frame_of(artifacts: dict[str, Path]) -> MapFrame:
+def frame_of(artifacts: dict[str, Path], crs: str = "") -> MapFrame:
     """The frame of a project's map; local if the map is not georeferenced.
 
     Args:
         artifacts: Stage -> folder of its artifact.
+        crs: Code of another CRS; empty = that of the map.
 
     Raises:
+        GeoreferenceError: If another CRS is requested and the map is not georeferenced.
         StoreError: If there is no map.
     """
     if "map" not in artifacts:
         raise StoreError("the project has no map yet")
     level = artifacts.get("level")
     if level is not None and (level / "georeference.json").exists():
-        place = read_crs(level)
+        place = read_crs(level, crs)
         if place is not None:
             return MapFrame(place.crs, place.wkt, place.to_crs)
+    if crs:
+        raise GeoreferenceError(f"the map cannot be put into {crs}: its place is not known")
     own = TileSet.open(artifacts["map"]).crs
     if own is not None:
         shift = np.array(own.origin_m)

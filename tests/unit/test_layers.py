@@ -126,6 +126,9 @@ MAY_IMPORT = {
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
+    "recon4/products": STAGE
+    | {f"recon4.{room}" for room in ("mapping", "products", "slices")}
+    | {"recon4.review.stamp"},
     "recon4/report": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"}
     | {"recon4.findings"},
@@ -184,7 +187,8 @@ ONLY_HERE = {
         "recon4/slices/sheet.py",
         "app/recon4_app/viewer/cloud/palette.py",
     },
-    "ezdxf": {"recon4/slices/export.py"},
+    "ezdxf": {"recon4/slices/export.py", "recon4/products/drawing.py"},
+    "shapely": {"recon4/products"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
     "typer": {"recon4/cli", "app/recon4_app/cli"},

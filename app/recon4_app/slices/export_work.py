@@ -9,7 +9,8 @@ import numpy as np
 from recon4.mapping.tiles import surface_text
 from recon4.review.stamp import stamp_file
 from recon4.slices.compare import compare, signed_text
-from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
+from recon4.slices.geotiff import write_geotiff
 from recon4.slices.points import SliceWindow
 from recon4.slices.sheet import SheetText, lay_out, source_text, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw

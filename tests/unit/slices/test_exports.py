@@ -19,7 +19,8 @@ from recon4.errors import ConfigError, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.recording.formats.scratch import sweep_scratch
 from recon4.slices import export
-from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
+from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
+from recon4.slices.geotiff import write_geotiff
 from recon4.slices.map_crs import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, points_in

@@ -1,0 +1,160 @@
+"""Drawings as DXF and GeoJSON: lines and areas on layers, in the coordinates of a CRS."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.slices.map_crs import MapFrame
+from recon4.store.atomic import atomic_file
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+    from ezdxf.layouts.layout import Modelspace
+
+DRAWINGS = (".dxf", ".geojson")
+"""Endings of drawings."""
+Facts = Mapping[str, float | str | bool]
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """How the lines of a layer look."""
+
+    name: str
+    color: int
+    """AutoCAD color index."""
+    lineweight: int = 18
+    """In 1/100 mm."""
+    linetype: str = "CONTINUOUS"
+    hatched: bool = False
+    """Areas of it are filled, without an outline."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shape:
+    """A line or an area."""
+
+    layer: Layer
+    p_map: Array
+    """Corners in the map [m], (N, 3)."""
+    closed: bool = False
+    facts: Facts = field(default_factory=dict)
+    """Of GeoJSON: its properties."""
+    holes: tuple[Array, ...] = ()
+    """Of an area, in the map [m], (M, 3) each."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Title:
+    """A text."""
+
+    layer: Layer
+    text: str
+    p_map: Array
+    """Its lower left corner in the map [m], (3,)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrawingNotes:
+    """What a drawing says besides its shapes."""
+
+    frame: MapFrame
+    """Of the map: the file has coordinates of its CRS, if it has one."""
+    description: str = ""
+    titles: Sequence[Title] = ()
+
+
+def write_drawing(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None:
+    """Write lines and areas.
+
+    Args:
+        shapes: What is drawn.
+        path: File to write, ``.dxf`` (R2010, meters) or ``.geojson``.
+        notes: Coordinates, titles and description.
+
+    Raises:
+        ConfigError: If the ending is another.
+        StoreError: If the file cannot be written.
+    """
+    write = {".dxf": _write_dxf, ".geojson": _write_geojson}.get(path.suffix.lower())
+    if write is None:
+        raise ConfigError(f"a drawing is written as {' or '.join(DRAWINGS)}, got {path.name}")
+    with atomic_file(path) as temporary:
+        write(shapes, temporary, notes)
+
+
+def _placed(p_map: Array, frame: MapFrame) -> Array:
+    return frame.to_crs(p_map) if frame.to_crs else p_map
+
+
+def _write_dxf(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None:
+    import ezdxf.filemanagement
+    import ezdxf.units
+
+    drawing = ezdxf.filemanagement.new("R2010", units=ezdxf.units.M, setup=True)
+    space = drawing.modelspace()
+    layers = [shape.layer for shape in shapes] + [title.layer for title in notes.titles]
+    for layer in {layer.name: layer for layer in layers}.values():
+        _add_layer(drawing, layer)
+    for shape in shapes:
+        _add_shape(space, shape, notes.frame)
+    for title in notes.titles:
+        at = _placed(title.p_map[None], notes.frame)[0]
+        facts = {"layer": title.layer.name, "insert": tuple(at.tolist())}
+        space.add_text(title.text, height=0.25, dxfattribs=facts)
+    drawing.header.custom_vars.append("recon4", notes.description)
+    drawing.header.custom_vars.append("coordinates", notes.frame.text)
+    drawing.saveas(path)
+
+
+def _add_layer(drawing: Drawing, layer: Layer) -> None:
+    made = drawing.layers.add(layer.name, color=layer.color)
+    made.dxf.lineweight = layer.lineweight
+    made.dxf.linetype = layer.linetype
+
+
+def _add_shape(space: Modelspace, shape: Shape, frame: MapFrame) -> None:
+    rings = [_placed(ring, frame) for ring in (shape.p_map, *shape.holes)]
+    z_m = float(rings[0][:, 2].mean())
+    facts: dict[str, object] = {"layer": shape.layer.name}
+    if not shape.layer.hatched:
+        facts["elevation"] = z_m
+        space.add_lwpolyline(rings[0][:, :2], close=shape.closed, dxfattribs=facts)
+        return
+    hatch = space.add_hatch(dxfattribs=facts | {"elevation": (0.0, 0.0, z_m)})
+    hatch.set_solid_fill(color=shape.layer.color)
+    for k, ring in enumerate(rings):
+        hatch.paths.add_polyline_path(ring[:, :2], is_closed=True, flags=16 if k else 1)
+
+
+def _write_geojson(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None:
+    features = [
+        {
+            "type": "Feature",
+            "geometry": _geometry(shape, notes.frame),
+            "properties": {"layer": shape.layer.name, **shape.facts},
+        }
+        for shape in shapes
+    ]
+    record: dict[str, object] = {"type": "FeatureCollection", "name": notes.description}
+    code = notes.frame.crs.removeprefix("EPSG:").split("+")[0]
+    if notes.frame.to_crs and code.isdigit():
+        record["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{code}"}}
+    record |= {"coordinates": notes.frame.text, "features": features}
+    path.write_text(json.dumps(record), "utf-8")
+
+
+def _geometry(shape: Shape, frame: MapFrame) -> dict[str, object]:
+    """Coordinates to 0.1 mm."""
+    rings = [np.round(_placed(ring, frame), 4).tolist() for ring in (shape.p_map, *shape.holes)]
+    if not shape.closed:
+        return {"type": "LineString", "coordinates": rings[0]}
+    return {"type": "Polygon", "coordinates": [[*ring, ring[0]] for ring in rings]}

@@ -1,0 +1,189 @@
+"""Storeys of a building: found from its level surfaces and the heights at which it was walked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.mapping.tiles import TileSet
+from recon4.products.tuning import STOREYS
+
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class Storey:
+    """A floor that was walked on, and what is above it."""
+
+    name: str
+    """``0`` is where the walk begins, ``1`` the next one above, ``-1`` below."""
+    floor_m: float
+    """Height of the floor in the map [m]."""
+    ceiling_m: float
+    """Height of the ceiling of most of it in the map [m]."""
+    area_m2: float
+    """Area of the floor that was seen."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Levels:
+    """Level surfaces of a map, counted in columns of `STOREYS.column_m`."""
+
+    column: Ints
+    """Index of the column in x and y, (N, 2)."""
+    level: Ints
+    """Height in steps of `STOREYS.bin_m`, (N,)."""
+    up: NDArray[np.bool_]
+    """Whether it is seen from above: a floor, a table, (N,)."""
+    area_m2: Array
+    """Area in this column, (N,)."""
+
+    @property
+    def z_m(self) -> Array:
+        """Middle of each level in the map [m], (N,)."""
+        out: Array = (self.level + 0.5) * STOREYS.bin_m
+        return out
+
+    def only(self, rows: NDArray[np.bool_]) -> Levels:
+        """Some of them."""
+        return Levels(self.column[rows], self.level[rows], self.up[rows], self.area_m2[rows])
+
+
+def level_surfaces(tiles: TileSet) -> Levels:
+    """Count the level surfaces of a map, tile by tile."""
+    parts = [_of_tile(tile.read(["xyz", "normal"]), np.array(tile.origin_m)) for tile in tiles]
+    if not parts:
+        return Levels(
+            np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty(0, bool), np.empty(0)
+        )
+    rows = np.concatenate([rows for rows, _ in parts])
+    keys, inverse = np.unique(rows, axis=0, return_inverse=True)
+    areas = np.concatenate([area for _, area in parts])
+    area: Array = np.bincount(inverse.reshape(-1), areas, len(keys)).astype(np.float64)
+    return Levels(keys[:, :2], keys[:, 2], keys[:, 3] > 0, area)
+
+
+def _of_tile(columns: dict[str, NDArray[np.float32]], origin_m: Array) -> tuple[Ints, Array]:
+    """Rows of column x, y, level, up, and their areas."""
+    vertical = columns["normal"][:, 2].astype(np.float32)
+    level = np.abs(vertical) > STOREYS.level
+    p = columns["xyz"][level].astype(np.float64) + origin_m
+    cell = np.floor(p[:, :2] / STOREYS.cell_m).astype(np.int64)
+    z = np.floor(p[:, 2] / STOREYS.bin_m).astype(np.int64)
+    cells = np.unique(np.column_stack([cell, z, vertical[level] > 0.0]), axis=0)
+    per = round(STOREYS.column_m / STOREYS.cell_m)
+    cells[:, :2] //= per
+    rows, count = np.unique(cells, axis=0, return_counts=True)
+    return rows.astype(np.int64), count.astype(np.float64) * STOREYS.cell_m**2
+
+
+def find_storeys(tiles: TileSet, levels: Levels) -> tuple[Storey, ...]:
+    """Storeys of a map from the lowest up; none outdoors.
+
+    A floor is a height at which much level surface is seen from above, above which the sensors
+    were carried, and which is below a ceiling. Landings, steps and tables are nearer to a larger
+    floor than `STOREYS.apart_m`; a ramp has no height.
+    """
+    floors: list[tuple[float, float]] = []
+    up = levels.only(levels.up)
+    if not len(up.level) or not tiles.columns.paths.known:
+        return ()
+    first = int(up.level.min())
+    area = np.bincount(up.level - first, up.area_m2).astype(np.float64)
+    area = np.convolve(area, np.ones(3), "same")
+    largest = 0.0
+    for row in np.argsort(-area):
+        z_m = (int(row) + first + 0.5) * STOREYS.bin_m
+        if area[row] < max(STOREYS.least_area_m2, STOREYS.least_ratio * largest):
+            break
+        if any(abs(z_m - other) < STOREYS.apart_m for other, _ in floors):
+            continue
+        near = up.only(np.abs(up.z_m - z_m) < 1.5 * STOREYS.bin_m)
+        if (
+            _walked_s(tiles, near, z_m) < STOREYS.walked_s
+            or _roofed(near, levels, z_m) < STOREYS.roofed
+        ):
+            continue
+        largest = max(largest, float(area[row]))
+        floors.append((float(np.average(near.z_m, weights=near.area_m2)), _area(near)))
+    floors.sort()
+    return _named(floors, tiles, levels)
+
+
+def _named(floors: list[tuple[float, float]], tiles: TileSet, levels: Levels) -> tuple[Storey, ...]:
+    start_m = float(tiles.columns.paths.p_map[0, 0, 2])
+    below = [k for k, (z_m, _) in enumerate(floors) if z_m < start_m - STOREYS.body_m[0]]
+    zero = below[-1] if below else 0
+    found = []
+    for k, (z_m, area) in enumerate(floors):
+        above = floors[k + 1][0] if k + 1 < len(floors) else np.inf
+        ceiling = _ceiling(levels, z_m, above)
+        found.append(Storey(str(k - zero), z_m, ceiling, area))
+    return tuple(found)
+
+
+def _area(floor: Levels) -> float:
+    """Area of a floor, whose points may lie in several steps of height [m²]."""
+    _, column = np.unique(floor.column, axis=0, return_inverse=True)
+    return float(
+        np.minimum(np.bincount(column.reshape(-1), floor.area_m2), STOREYS.column_m**2).sum()
+    )
+
+
+def _walked_s(tiles: TileSet, floor: Levels, z_m: float) -> float:
+    """How long the sensors were carried above a floor [s]."""
+    paths = tiles.columns.paths
+    p, step_s = paths.p_map[0], 1e-9 * np.diff(paths.t_ns, append=paths.t_ns[-1])
+    low, high = STOREYS.body_m
+    above = (p[:, 2] - z_m > low) & (p[:, 2] - z_m < high)
+    return float(step_s[above][_in_columns(p[above, :2], floor.column)].sum())
+
+
+def _in_columns(xy_m: Array, columns: Ints) -> NDArray[np.bool_]:
+    """Which places are in some columns or beside them, (N,)."""
+    own = np.floor(xy_m / STOREYS.column_m).astype(np.int64)
+    known = set(map(tuple, columns.tolist()))
+    steps = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    return np.array(
+        [any((x + i, y + j) in known for i, j in steps) for x, y in own.tolist()], dtype=bool
+    )
+
+
+def _roofed(floor: Levels, levels: Levels, z_m: float) -> float:
+    """Part of a floor's columns that are below a ceiling."""
+    low, high = STOREYS.ceiling_m
+    over = levels.z_m - z_m
+    above = set(map(tuple, levels.column[~levels.up & (over > low) & (over < high)].tolist()))
+    own = set(map(tuple, floor.column.tolist()))
+    return len(own & above) / max(1, len(own))
+
+
+def _ceiling(levels: Levels, floor_m: float, next_m: float) -> float:
+    """Height of the ceiling of most of a storey; the usual one if none was seen [m]."""
+    low, high = STOREYS.ceiling_m
+    over = levels.z_m - floor_m
+    rows = ~levels.up & (over > low) & (over < high) & (levels.z_m < next_m)
+    if not rows.any():
+        return min(floor_m + STOREYS.usual_m, next_m)
+    first = int(levels.level[rows].min())
+    area = np.bincount(levels.level[rows] - first, levels.area_m2[rows])
+    return float((first + int(np.argmax(area)) + 0.5) * STOREYS.bin_m)
+
+
+def storey_named(storeys: tuple[Storey, ...], name: str) -> Storey:
+    """One storey by its name.
+
+    Raises:
+        ConfigError: If there is none of this name.
+    """
+    for storey in storeys:
+        if storey.name == name:
+            return storey
+    if not storeys:
+        raise ConfigError("the map has no storeys: no floor below a ceiling was walked on")
+    names = ", ".join(f"{one.name} (floor at {one.floor_m:.2f} m)" for one in storeys)
+    raise ConfigError(f"no storey named {name}; there are: {names}")

@@ -1,0 +1,123 @@
+"""Volume between a terrain and a plane inside of a polygon."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.products.terrain import Terrain
+from recon4.products.tuning import TERRAIN
+
+
+@dataclass(frozen=True, slots=True)
+class Volume:
+    """What lies above and below a plane."""
+
+    above_m3: float
+    below_m3: float
+    sd_m3: float
+    """Standard deviation (1 σ) of their difference [m³]."""
+    area_m2: float
+    """Of the polygon."""
+    unseen_m2: float
+    """Part of it without a height: it counts as nothing."""
+    base_m: float
+    """Height of the plane in the middle of the polygon, in the map [m]."""
+    base_sd_m: float
+    """Standard deviation of the base in its middle [m]; 0 = the plane was given."""
+
+    @property
+    def text(self) -> str:
+        """All figures in words."""
+        return (
+            f"{self.above_m3:.2f} m³ above and {self.below_m3:.2f} m³ below the plane "
+            f"(1 σ of the difference {self.sd_m3:.2f} m³); area {self.area_m2:.2f} m², "
+            f"of these {self.unseen_m2:.2f} m² not seen; base at {self.base_m:.3f} m"
+        )
+
+
+def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> Volume:
+    """Sum the cells of a terrain over a plane.
+
+    The deviation has three parts: that of each cell (independent), that of the map's heights as
+    far as the covariances of its poses state it, and that of the base (both common to all cells):
+    ``sd² = Σ (a sd_cell)² + (A sd_map)² + (A sd_base)²``. With a base that is fitted to the border
+    the map's own part cancels: only the difference of heights counts.
+
+    Args:
+        terrain: Heights.
+        polygon: Corners in the map, x and y [m], (N, 2).
+        base_m: Height of a level plane in the map [m]; None = a plane fitted to the terrain along
+            the border.
+
+    Raises:
+        ConfigError: If the polygon has no area or crosses itself, or nothing was seen in it.
+    """
+    inside, border, area = _cells_in(terrain, polygon)
+    rows = inside & terrain.seen
+    if not rows.any():
+        raise ConfigError("volume: nothing was seen inside of the polygon")
+    x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
+    plane, base_sd = (np.array([0.0, 0.0, base_m]), 0.0)
+    map_sd = terrain.position_sd_m
+    if base_m is None:
+        plane, base_sd = _fitted_base(terrain, border)
+        map_sd = 0.0
+    base = np.column_stack([x, y, np.ones(len(x))]) @ plane
+    off = terrain.height_m[rows] - base
+    cell = area / max(1, int(inside.sum()))
+    sd = np.sqrt(
+        np.sum((cell * terrain.sd_m[rows].astype(np.float64)) ** 2)
+        + (cell * len(off) * map_sd) ** 2
+        + (cell * len(off) * base_sd) ** 2
+    )
+    return Volume(
+        float(cell * off[off > 0].sum()),
+        float(-cell * off[off < 0].sum()),
+        float(sd),
+        area,
+        float(cell * (inside & ~terrain.seen).sum()),
+        float(base.mean()),
+        base_sd,
+    )
+
+
+def _cells_in(
+    terrain: Terrain, polygon: Array
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_], float]:
+    """Cells inside of a polygon, those near its border, and its area [m²]."""
+    from shapely import Polygon, contains_xy, is_valid_reason, prepare
+
+    corners = np.asarray(polygon, dtype=np.float64)
+    if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 3:
+        raise ConfigError(f"volume: expected three corners or more, got {len(corners)}")
+    shape = Polygon(corners)
+    if not shape.is_valid or shape.area < terrain.grid.pixel_m**2:
+        raise ConfigError(f"volume: the polygon encloses no area: {is_valid_reason(shape)}")
+    x, y = np.meshgrid(*terrain.centers_m())
+    near = shape.exterior.buffer(TERRAIN.border_m)
+    prepare(shape)
+    prepare(near)
+    return contains_xy(shape, x, y), contains_xy(near, x, y), float(shape.area)
+
+
+def _fitted_base(terrain: Terrain, border: NDArray[np.bool_]) -> tuple[Array, float]:
+    """Plane ``z = a x + b y + c`` through the terrain along a border, and its deviation [m]."""
+    rows = border & terrain.seen
+    if rows.sum() < TERRAIN.border_cells:
+        raise ConfigError(
+            f"volume: expected {TERRAIN.border_cells} cells with ground along the border, got "
+            f"{int(rows.sum())}; give the height of the base"
+        )
+    x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
+    A, z = np.column_stack([x, y, np.ones(len(x))]), terrain.height_m[rows].astype(np.float64)
+    plane: Array
+    plane, _, rank, _ = np.linalg.lstsq(A, z, rcond=None)
+    if rank < 3:
+        raise ConfigError("volume: the ground along the border lies on a line")
+    residual = z - A @ plane
+    return plane, float(np.sqrt(residual @ residual / max(1, len(z) - 3) / len(z)))

@@ -1,0 +1,191 @@
+"""The products of a map as files: what is wanted, and who writes it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.mapping.tiles import TileSet
+from recon4.products.drawing import DRAWINGS, DrawingNotes, Shape, Title, write_drawing
+from recon4.products.storeys import Levels, Storey, find_storeys, level_surfaces, storey_named
+from recon4.products.terrain import Terrain, TerrainKind, terrain
+from recon4.review.stamp import Stamp, stamp_file
+from recon4.slices.geotiff import Raster, write_raster, write_world_file
+from recon4.slices.map_crs import MapFrame
+from recon4.slices.slice_plane import SlicePlane
+from recon4.store.atomic import atomic_file
+
+ProductKind = Literal["plan", "orthophoto", "terrain"]
+ENDINGS: dict[ProductKind, tuple[str, ...]] = {
+    "plan": (*DRAWINGS, ".png"),
+    "orthophoto": (".tif", ".png"),
+    "terrain": (".tif", *DRAWINGS, ".png"),
+}
+"""Kind of a product -> endings of its files; a ``.png`` is a picture to look at."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProductOptions:
+    """What is wanted of a product; each kind reads some of it."""
+
+    storey: str = ""
+    """Of a plan: only this storey. Of an orthophoto: this one; empty = ``0``."""
+    line: tuple[float, float, float, float] | None = None
+    """Of an orthophoto: an elevation, seen with x1, y1 on the left and x2, y2 on the right [m]."""
+    depth_m: float = 1.0
+    """Of an elevation: points this far from the line, on both sides together [m]."""
+    pixel_m: float = 0.01
+    """Of an orthophoto [m]."""
+    surface: TerrainKind = "dtm"
+    """Of a terrain: the ground, or what is highest."""
+    cell_m: float = 0.25
+    """Of a terrain [m]."""
+    interval_m: float = 0.5
+    """Of contours [m]."""
+
+    def __post_init__(self) -> None:
+        for name in ("depth_m", "pixel_m", "cell_m", "interval_m"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0.0):
+                raise ConfigError(f"{name}: expected a number above 0, got {value}")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProductSource:
+    """The map of which a product is made."""
+
+    tiles: TileSet
+    frame: MapFrame
+    stamp: Stamp | None
+    """Its approval, which the file notes; None = not approved, or a draft."""
+
+    @property
+    def description(self) -> str:
+        """For the file: the approval of the map."""
+        if self.stamp is None:
+            return "recon4, not approved"
+        return f"recon4 approval {self.stamp.json_line()}"
+
+
+def write_product(
+    kind: ProductKind, source: ProductSource, path: Path, options: ProductOptions
+) -> str:
+    """Write a product of a map in the format of the ending.
+
+    Args:
+        kind: Which product.
+        source: The map.
+        path: File to write, one of `ENDINGS`; a raster has a world file beside it.
+        options: What is wanted of it.
+
+    Returns:
+        What was written, in words.
+
+    Raises:
+        ConfigError: If the ending is another, or the map does not have what is wanted.
+        GeoreferenceError: If a raster is too large for its CRS.
+        StoreError: If the file cannot be written.
+    """
+    if path.suffix.lower() not in ENDINGS[kind]:
+        raise ConfigError(f"a {kind} is written as {' '.join(ENDINGS[kind])}, got {path.name}")
+    if kind == "plan":
+        return _write_plan(source, path, options)
+    if kind == "orthophoto":
+        return _write_orthophoto(source, path, options)
+    return _write_terrain(source, path, options)
+
+
+def _write_plan(source: ProductSource, path: Path, options: ProductOptions) -> str:
+    from recon4.products.floor_plan import draw_plan
+    from recon4.products.shapes import plan_shapes, plan_title
+
+    storeys, levels = _storeys(source.tiles)
+    chosen = (storey_named(storeys, options.storey),) if options.storey or not storeys else storeys
+    plans = [draw_plan(source.tiles, storey, levels) for storey in chosen]
+    shapes = [shape for plan in plans for shape in plan_shapes(plan)]
+    if not any(plan.walls for plan in plans):
+        raise ConfigError("plan: no wall that reaches a ceiling was found")
+    _draw(shapes, path, source, titles=[plan_title(plan) for plan in plans])
+    return "\n".join(plan.text for plan in plans)
+
+
+def _write_orthophoto(source: ProductSource, path: Path, options: ProductOptions) -> str:
+    from recon4.products.orthophoto import orthophoto, storey_slab
+
+    if options.line:
+        a, b = options.line[:2], options.line[2:]
+        plane = SlicePlane.vertical(a, b, thickness_m=options.depth_m)
+    else:
+        storeys, _ = _storeys(source.tiles)
+        plane = storey_slab(storey_named(storeys, options.storey or "0"))
+    made = orthophoto(source.tiles, plane, pixel_m=options.pixel_m)
+    _raster(made.raster, path, source)
+    height, width = made.raster.pixels.shape[:2]
+    return f"{width} x {height} pixels of {options.pixel_m} m, {100 * made.seen:.0f} % seen"
+
+
+def _write_terrain(source: ProductSource, path: Path, options: ProductOptions) -> str:
+    from recon4.products.contours import contours
+    from recon4.products.shapes import contour_shapes
+
+    made = terrain(source.tiles, options.surface, cell_m=options.cell_m)
+    up_m = up_to_crs(made, source.frame)
+    if path.suffix.lower() in DRAWINGS:
+        lines = contours(made, interval_m=options.interval_m, up_m=up_m)
+        if not lines:
+            raise ConfigError(
+                f"contours: the terrain crosses no multiple of {options.interval_m} m: use a "
+                "smaller interval"
+            )
+        _draw(list(contour_shapes(lines, up_m)), path, source)
+        return f"{len(lines)} contours, {options.interval_m} m apart"
+    _raster(made.raster(up_m), path, source, relief=made)
+    seen = float(made.seen.sum()) * options.cell_m**2
+    return f"{made.grid.width} x {made.grid.height} cells of {options.cell_m} m, {seen:.0f} m² seen"
+
+
+def up_to_crs(made: Terrain, frame: MapFrame) -> float:
+    """Heights of the CRS minus those of the map, in the middle of a terrain [m]."""
+    if frame.to_crs is None:
+        return 0.0
+    window = made.grid.window
+    middle = [(window.left + window.right) / 2.0, (window.bottom + window.top) / 2.0, 0.0]
+    return float(frame.to_crs(np.array([middle]))[0, 2])
+
+
+def _storeys(tiles: TileSet) -> tuple[tuple[Storey, ...], Levels]:
+    levels = level_surfaces(tiles)
+    return find_storeys(tiles, levels), levels
+
+
+def _draw(
+    shapes: list[Shape], path: Path, source: ProductSource, *, titles: list[Title] | None = None
+) -> None:
+    from recon4.products.pictures import picture_of_shapes, save_picture
+
+    if path.suffix.lower() == ".png":
+        save_picture(picture_of_shapes(shapes), path)
+        return
+    notes = DrawingNotes(frame=source.frame, description=source.description, titles=titles or ())
+    with atomic_file(path) as temporary:
+        write_drawing(shapes, temporary, notes)
+        if source.stamp and path.suffix.lower() == ".dxf":
+            stamp_file(temporary, temporary, source.stamp)
+
+
+def _raster(
+    raster: Raster, path: Path, source: ProductSource, *, relief: Terrain | None = None
+) -> None:
+    from recon4.products.pictures import picture_of_pixels, picture_of_terrain, save_picture
+
+    if path.suffix.lower() == ".png":
+        image = picture_of_terrain(relief) if relief else picture_of_pixels(raster.pixels)
+        save_picture(image, path)
+        return
+    write_raster(raster, path, frame=source.frame, description=source.description)
+    write_world_file(raster, path.with_suffix(".tfw"), frame=source.frame)
