@@ -1,7 +1,10 @@
-"""The commands ``recon4 plan``, ``recon4 orthophoto`` and ``recon4 terrain``."""
+"""The commands ``recon4 plan``, ``recon4 orthophoto``, ``recon4 terrain`` and
+``recon4 volume``.
+"""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +23,9 @@ if TYPE_CHECKING:
 
 products = typer.Typer()
 
+SurfaceOption = Annotated[
+    str, typer.Option(help="dtm (the ground) or dsm (what is highest: heaps, roofs).")
+]
 CrsOption = Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")]
 
 
@@ -36,7 +42,7 @@ def plan(
     from recon4.products.write import ProductOptions
 
     options = ProductOptions(storey=storey)
-    write(_made("plan", _open(project, file, crs, draft=draft), file, options))
+    write(_made("plan", _open(project, file, crs, draft=draft), file, options=options))
 
 
 @products.command("orthophoto")
@@ -44,60 +50,80 @@ def orthophoto(
     project: ProjectArgument,
     file: Annotated[Path, typer.Argument(help="File to write: .tif (and .tfw) or .png")],
     *,
-    storey: Annotated[str, typer.Option(help="0, 1, -1; default: 0, where the walk begins.")] = "",
-    line: Annotated[
-        str, typer.Option(help="An elevation, seen from X1,Y1 (left) to X2,Y2 (right), in m.")
-    ] = "",
-    depth: Annotated[float, typer.Option(help="Of an elevation, around its line, in m.")] = 1.0,
+    of: Annotated[
+        str,
+        typer.Option(
+            help="A storey from above: 0, 1, -1. Or an elevation: X1,Y1,X2,Y2 in m, seen with "
+            "the first point on the left, and its depth: X1,Y1,X2,Y2,1.2."
+        ),
+    ] = "0",
     pixel: Annotated[float, typer.Option(help="Edge of a pixel in m.")] = 0.01,
     crs: CrsOption = "",
-    draft: DraftOption = False,
 ) -> None:
     """Draw a storey from above, or the elevation of a wall, by normalized intensity."""
     from recon4.products.write import ProductOptions
 
-    x1, y1, x2, y2 = numbers(line, 4) if line else [0.0] * 4
-    options = ProductOptions(
-        storey=storey, line=(x1, y1, x2, y2) if line else None, depth_m=depth, pixel_m=pixel
-    )
-    write(_made("orthophoto", _open(project, file, crs, draft=draft), file, options))
+    options = ProductOptions(storey=of, pixel_m=pixel)
+    if "," in of:
+        x1, y1, x2, y2, *depth = numbers(of, 5 if of.count(",") == 4 else 4)
+        options = replace(options, storey="", line=(x1, y1, x2, y2))
+        options = replace(options, depth_m=depth[0]) if depth else options
+    write(_made("orthophoto", _open(project, file, crs), file, options=options))
 
 
 @products.command("terrain")
-def terrain_of(  # noqa: PLR0913 - options of a command
+def terrain_of(
     project: ProjectArgument,
     file: Annotated[
         Path, typer.Argument(help="Heights: .tif (and .tfw); contours: .dxf .geojson; .png")
     ],
     *,
-    surface: Annotated[
-        str, typer.Option(help="dtm (the ground) or dsm (what is highest).")
-    ] = "dtm",
-    cell: Annotated[float, typer.Option(help="Edge of a cell in m.")] = 0.25,
-    interval: Annotated[float, typer.Option(help="Between contours, in m.")] = 0.5,
-    polygon: Annotated[
-        str, typer.Option(help="Also print the volume inside of X1,Y1,X2,Y2,X3,Y3… in m.")
-    ] = "",
-    base: Annotated[
-        float | None, typer.Option(help="Height of its plane in m; default: fitted to its border.")
+    surface: SurfaceOption = "dtm",
+    spacing: Annotated[
+        float | None,
+        typer.Option(help="Cell of heights, or between contours, in m; default: 0.25, 0.5."),
     ] = None,
     crs: CrsOption = "",
-    draft: DraftOption = False,
 ) -> None:
-    """Model the terrain of an outdoor walk: heights, contours, a volume over a plane."""
+    """Model the terrain of an outdoor walk: its heights, or contours of the ground."""
+    from recon4.products.drawing import DRAWINGS
     from recon4.products.write import ProductOptions
 
-    if surface not in ("dtm", "dsm"):
-        raise ConfigError(f"a surface is dtm or dsm, got {surface!r}")
-    kind: TerrainKind = "dtm" if surface == "dtm" else "dsm"
-    options = ProductOptions(surface=kind, cell_m=cell, interval_m=interval)
-    opened = _open(project, file, crs, draft=draft)
-    write(_made("terrain", opened, file, options))
-    if polygon:
-        write(_volume(opened, options, polygon, base=base))
+    options = ProductOptions(surface=_surface(surface))
+    if spacing is not None:
+        lines = file.suffix.lower() in DRAWINGS
+        options = (
+            replace(options, interval_m=spacing) if lines else replace(options, cell_m=spacing)
+        )
+    write(_made("terrain", _open(project, file, crs), file, options=options))
 
 
-def _open(project: Path, file: Path, crs: str, *, draft: bool) -> OpenedMap:
+@products.command("volume")
+def volume_of(
+    project: ProjectArgument,
+    polygon: Annotated[str, typer.Argument(help="Its corners: X1,Y1,X2,Y2,X3,Y3… in m.")],
+    *,
+    base: Annotated[
+        float | None, typer.Option(help="Height of the plane in m; default: fitted to the border.")
+    ] = None,
+    surface: SurfaceOption = "dsm",
+    crs: CrsOption = "",
+) -> None:
+    """Say how much lies above and below a plane inside of a polygon, as a heap, and how sure."""
+    confine_command()
+    from recon4.api.maps import open_map
+
+    opened = open_map(project, crs=crs)
+    write(_volume(opened, polygon, surface=_surface(surface), base=base))
+
+
+def _surface(name: str) -> TerrainKind:
+    if name not in ("dtm", "dsm"):
+        raise ConfigError(f"a surface is dtm or dsm, got {name!r}")
+    return "dtm" if name == "dtm" else "dsm"
+
+
+def _open(project: Path, file: Path, crs: str, *, draft: bool = False) -> OpenedMap:
     confine_command(write=[file.parent])
     from recon4.api.maps import open_map
     from recon4.review.approval_state import latest_state
@@ -107,25 +133,23 @@ def _open(project: Path, file: Path, crs: str, *, draft: bool) -> OpenedMap:
     return opened
 
 
-def _made(kind: ProductKind, opened: OpenedMap, file: Path, options: ProductOptions) -> str:
+def _made(kind: ProductKind, opened: OpenedMap, file: Path, *, options: ProductOptions) -> str:
     from recon4.products.write import ProductSource, write_product
 
     source = ProductSource(opened.tiles, opened.frame, opened.stamp)
-    return f"{write_product(kind, source, file, options)}\nin {file}"
+    return f"{write_product(kind, source, file, options=options)}\nin {file}"
 
 
-def _volume(opened: OpenedMap, options: ProductOptions, polygon: str, *, base: float | None) -> str:
+def _volume(opened: OpenedMap, polygon: str, *, surface: TerrainKind, base: float | None) -> str:
     """The volume inside of a polygon of the map or its CRS, in words."""
-    from dataclasses import replace
-
     import numpy as np
 
     from recon4.products.terrain import terrain
     from recon4.products.volume import volume
-    from recon4.products.write import up_to_crs
+    from recon4.products.write import ProductOptions, up_to_crs
 
-    corners = np.reshape(numbers(polygon, 2 * (1 + polygon.count(",")) // 2), (-1, 2))
-    made = terrain(opened.tiles, options.surface, cell_m=options.cell_m)
+    corners = np.reshape(numbers(polygon, 2 * ((1 + polygon.count(",")) // 2)), (-1, 2))
+    made = terrain(opened.tiles, surface, cell_m=ProductOptions().cell_m)
     up_m = up_to_crs(made, opened.frame)
     if opened.frame.to_crs:
         raised = np.column_stack([corners, np.full(len(corners), up_m)])

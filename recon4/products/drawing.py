@@ -25,7 +25,7 @@ Facts = Mapping[str, float | str | bool]
 
 
 @dataclass(frozen=True, slots=True)
-class Layer:
+class DrawingLayer:
     """How the lines of a layer look."""
 
     name: str
@@ -39,10 +39,10 @@ class Layer:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shape:
+class DrawnShape:
     """A line or an area."""
 
-    layer: Layer
+    layer: DrawingLayer
     p_map: Array
     """Corners in the map [m], (N, 3)."""
     closed: bool = False
@@ -53,10 +53,10 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Title:
+class DrawnTitle:
     """A text."""
 
-    layer: Layer
+    layer: DrawingLayer
     text: str
     p_map: Array
     """Its lower left corner in the map [m], (3,)."""
@@ -69,10 +69,10 @@ class DrawingNotes:
     frame: MapFrame
     """Of the map: the file has coordinates of its CRS, if it has one."""
     description: str = ""
-    titles: Sequence[Title] = ()
+    titles: Sequence[DrawnTitle] = ()
 
 
-def write_drawing(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None:
+def write_drawing(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes) -> None:
     """Write lines and areas.
 
     Args:
@@ -95,7 +95,7 @@ def _placed(p_map: Array, frame: MapFrame) -> Array:
     return frame.to_crs(p_map) if frame.to_crs else p_map
 
 
-def _write_dxf(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None:
+def _write_dxf(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes) -> None:
     import ezdxf.filemanagement
     import ezdxf.units
 
@@ -115,13 +115,13 @@ def _write_dxf(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None
     drawing.saveas(path)
 
 
-def _add_layer(drawing: Drawing, layer: Layer) -> None:
+def _add_layer(drawing: Drawing, layer: DrawingLayer) -> None:
     made = drawing.layers.add(layer.name, color=layer.color)
     made.dxf.lineweight = layer.lineweight
     made.dxf.linetype = layer.linetype
 
 
-def _add_shape(space: Modelspace, shape: Shape, frame: MapFrame) -> None:
+def _add_shape(space: Modelspace, shape: DrawnShape, frame: MapFrame) -> None:
     rings = [_placed(ring, frame) for ring in (shape.p_map, *shape.holes)]
     z_m = float(rings[0][:, 2].mean())
     facts: dict[str, object] = {"layer": shape.layer.name}
@@ -135,7 +135,7 @@ def _add_shape(space: Modelspace, shape: Shape, frame: MapFrame) -> None:
         hatch.paths.add_polyline_path(ring[:, :2], is_closed=True, flags=16 if k else 1)
 
 
-def _write_geojson(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> None:
+def _write_geojson(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes) -> None:
     features = [
         {
             "type": "Feature",
@@ -152,7 +152,7 @@ def _write_geojson(shapes: Sequence[Shape], path: Path, notes: DrawingNotes) -> 
     path.write_text(json.dumps(record), "utf-8")
 
 
-def _geometry(shape: Shape, frame: MapFrame) -> dict[str, object]:
+def _geometry(shape: DrawnShape, frame: MapFrame) -> dict[str, object]:
     """Coordinates to 0.1 mm."""
     rings = [np.round(_placed(ring, frame), 4).tolist() for ring in (shape.p_map, *shape.holes)]
     if not shape.closed:

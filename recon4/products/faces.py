@@ -49,7 +49,7 @@ class Face:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Line:
+class _FittedLine:
     p: Array
     n: Array
     rms_m: float
@@ -135,7 +135,7 @@ def _grow(
     cells: WallCells, seed: int, *, free: NDArray[np.bool_], unowned: NDArray[np.bool_]
 ) -> Face | None:
     """The face through a cell; None if there is none."""
-    line = _Line(cells.p[seed], cells.n[seed], 0.0)
+    line = _FittedLine(cells.p[seed], cells.n[seed], 0.0)
     taken = np.empty(0, np.intp)
     for tolerance in np.geomspace(FACES.wide_m, FACES.narrow_m, FACES.rounds):
         rows = _run(cells, line, free, seed=seed, tolerance_m=float(tolerance))
@@ -155,7 +155,7 @@ def _grow(
 
 
 def _run(
-    cells: WallCells, line: _Line, free: NDArray[np.bool_], *, seed: int, tolerance_m: float
+    cells: WallCells, line: _FittedLine, free: NDArray[np.bool_], *, seed: int, tolerance_m: float
 ) -> Rows:
     """Cells on a line without a long gap from the seed on."""
     offset = cells.p - line.p
@@ -165,13 +165,13 @@ def _run(
         return rows
     s = offset[rows] @ [line.n[1], -line.n[0]]
     order = np.argsort(s)
-    part = np.concatenate([[0], np.cumsum(np.diff(s[order]) > FACES.gap_m)])
+    part = np.concatenate([[0], np.cumsum(np.diff(s[order]) > FACES.bridged_m)])
     at = float((cells.p[seed] - line.p) @ [line.n[1], -line.n[0]])
     mine = part[min(int(np.searchsorted(s[order], at)), len(rows) - 1)]
     return rows[order[part == mine]]
 
 
-def _fitted(cells: WallCells, rows: Rows) -> _Line:
+def _fitted(cells: WallCells, rows: Rows) -> _FittedLine:
     """Weighted least squares of a line through cells."""
     p, w = cells.p[rows], cells.weight[rows]
     middle = np.average(p, axis=0, weights=w)
@@ -183,7 +183,7 @@ def _fitted(cells: WallCells, rows: Rows) -> _Line:
         n = np.linalg.eigh(d.T @ d)[1][:, 0]
         n = n if n @ toward > 0.0 else -n
     rms = float(np.sqrt(np.average(((p - middle) @ n) ** 2, weights=w)))
-    return _Line(middle, n, rms)
+    return _FittedLine(middle, n, rms)
 
 
 def _fill(s: Array) -> float:

@@ -91,7 +91,7 @@ def plan_of(cells: WallCells, rays: Rays, storey: Storey) -> FloorPlan:
     """Fit the plan of a storey to its upright surfaces."""
     faces = fit_faces(cells)
     columns, faces = _columns(faces)
-    opened = [openings_of(face, cells, rays, storey) for face in faces]
+    opened = [openings_of(face, cells, rays, storey=storey) for face in faces]
     sections = _sections(faces, opened)
     walls = [line for face, holes in zip(faces, opened, strict=True) for line in _cut(face, holes)]
     walls += [line for k in range(len(faces)) for line in _jambs(faces, opened, k)]
@@ -159,7 +159,7 @@ def _columns(faces: list[Face]) -> tuple[list[Polygon], list[Face]]:
 
 
 def _met(faces: list[Face]) -> list[list[Face]]:
-    """Groups of faces that share corners."""
+    """Groups of faces with common corners."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree

@@ -60,7 +60,7 @@ def sample_rays(tiles: TileSet) -> Rays:
     return Rays(np.concatenate(origins), np.concatenate(hits))
 
 
-def openings_of(face: Face, cells: WallCells, rays: Rays, storey: Storey) -> list[FaceOpening]:
+def openings_of(face: Face, cells: WallCells, rays: Rays, *, storey: Storey) -> list[FaceOpening]:
     """Doors, windows and hidden stretches of a face.
 
     Where the cut has no wall, either furniture hides it or it is open. It is open if rays went
@@ -90,7 +90,7 @@ def _closed(solid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Without narrow gaps, and without single columns of surface."""
     from scipy.ndimage import binary_closing, binary_opening
 
-    width = max(3, round(OPENINGS.gap_m / OPENINGS.bin_m))
+    width = max(3, round(OPENINGS.bridged_m / OPENINGS.bin_m))
     padded = np.pad(solid, width, constant_values=True)
     padded = binary_closing(padded, np.ones(width, bool))
     out: NDArray[np.bool_] = binary_opening(padded, np.ones(3, bool))[width:-width]

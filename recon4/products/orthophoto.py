@@ -12,7 +12,7 @@ from recon4.errors import ConfigError
 from recon4.mapping.tiles import TileSet
 from recon4.products.storeys import Storey
 from recon4.products.tuning import ORTHOPHOTOS
-from recon4.slices.geotiff import Raster
+from recon4.slices.geotiff import GeoRaster
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.slice_image import RasterGrid
 from recon4.slices.slice_plane import SlicePlane
@@ -22,7 +22,7 @@ from recon4.slices.slice_plane import SlicePlane
 class Orthophoto:
     """A gray image of the surfaces nearest to the viewer."""
 
-    raster: Raster
+    raster: GeoRaster
     """uint8 (H, W, 2): gray, and 255 where something was seen."""
     gray: tuple[float, float]
     """Normalized intensities that are black and white."""
@@ -53,7 +53,7 @@ def orthophoto(tiles: TileSet, plane: SlicePlane, *, pixel_m: float) -> Orthopho
     """
     name = "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
     grid = RasterGrid(_extent(tiles, plane, pixel_m), pixel_m)
-    front = _Front.of(grid)
+    front = _NearestSurfaces.of(grid)
     for rows, depth, _ in _pixels(tiles, plane, grid, name=name):
         np.maximum.at(front.depth_m, rows, depth)
     for rows, depth, value in _pixels(tiles, plane, grid, name=name):
@@ -64,7 +64,7 @@ def orthophoto(tiles: TileSet, plane: SlicePlane, *, pixel_m: float) -> Orthopho
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Front:
+class _NearestSurfaces:
     """The surfaces nearest to the viewer, for each pixel."""
 
     depth_m: NDArray[np.float32]
@@ -72,10 +72,10 @@ class _Front:
     count: NDArray[np.uint32] = field(repr=False)
 
     @staticmethod
-    def of(grid: RasterGrid) -> _Front:
+    def of(grid: RasterGrid) -> _NearestSurfaces:
         size = grid.width * grid.height
         depth = np.full(size, -np.inf, np.float32)
-        return _Front(depth, np.zeros(size, np.float32), np.zeros(size, np.uint32))
+        return _NearestSurfaces(depth, np.zeros(size, np.float32), np.zeros(size, np.uint32))
 
 
 def _extent(tiles: TileSet, plane: SlicePlane, pixel_m: float) -> SliceWindow:
@@ -106,7 +106,7 @@ def _pixels(
         yield row * grid.width + column, part.uvd[:, 2].astype(np.float32), value
 
 
-def _image(front: _Front, plane: SlicePlane, grid: RasterGrid) -> Orthophoto:
+def _image(front: _NearestSurfaces, plane: SlicePlane, grid: RasterGrid) -> Orthophoto:
     shape = (grid.height, grid.width)
     seen = front.count > 0
     value = np.divide(front.total, front.count, out=front.total, where=seen)
@@ -119,7 +119,7 @@ def _image(front: _Front, plane: SlicePlane, grid: RasterGrid) -> Orthophoto:
     for first in range(0, grid.height, step):
         pixels[first : first + step] = _filled(gray, seen.reshape(shape), first, step=step)
     part = float(np.mean(pixels[:, :, 1] > 0))
-    return Orthophoto(Raster(pixels, plane, grid), (low, high), part)
+    return Orthophoto(GeoRaster(pixels, plane, grid), (low, high), part)
 
 
 def _filled(

@@ -45,8 +45,7 @@ class Levels:
     @property
     def z_m(self) -> Array:
         """Middle of each level in the map [m], (N,)."""
-        out: Array = (self.level + 0.5) * STOREYS.bin_m
-        return out
+        return np.asarray((self.level + 0.5) * STOREYS.bin_m, dtype=np.float64)
 
     def only(self, rows: NDArray[np.bool_]) -> Levels:
         """Some of them."""

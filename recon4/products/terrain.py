@@ -13,7 +13,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.products.tuning import TERRAIN
-from recon4.slices.geotiff import Raster
+from recon4.slices.geotiff import GeoRaster
 from recon4.slices.points import SliceWindow
 from recon4.slices.slice_image import RasterGrid
 from recon4.slices.slice_plane import SlicePlane
@@ -48,14 +48,14 @@ class Terrain:
     def centers_m(self) -> tuple[Array, Array]:
         """Coordinates x (W,) and y (H,) of the middles of the cells in the map [m]."""
         step, window = self.grid.pixel_m, self.grid.window
-        x: Array = window.left + (np.arange(self.grid.width) + 0.5) * step
-        y: Array = window.top - (np.arange(self.grid.height) + 0.5) * step
+        x = np.asarray(window.left + (np.arange(self.grid.width) + 0.5) * step, np.float64)
+        y = np.asarray(window.top - (np.arange(self.grid.height) + 0.5) * step, np.float64)
         return x, y
 
-    def raster(self, up_m: float = 0.0) -> Raster:
+    def raster(self, up_m: float = 0.0) -> GeoRaster:
         """Heights as they are written, shifted up to those of a CRS [m]."""
         pixels = np.where(self.seen, self.height_m + np.float32(up_m), np.float32(TERRAIN.nodata))
-        return Raster(pixels.astype(np.float32), self.plane, self.grid, TERRAIN.nodata)
+        return GeoRaster(pixels.astype(np.float32), self.plane, self.grid, TERRAIN.nodata)
 
 
 def terrain(tiles: TileSet, kind: TerrainKind, *, cell_m: float) -> Terrain:
@@ -111,7 +111,7 @@ def _cells(
 
 def _is_ground(lowest: Array, cell_m: float) -> NDArray[np.bool_]:
     """Progressive morphological filter: cells that no opening lowers by more than its limit."""
-    from scipy.ndimage import distance_transform_edt, grey_opening
+    from scipy.ndimage import distance_transform_edt, maximum_filter, minimum_filter
 
     known = np.isfinite(lowest)
     if not known.any():
@@ -120,7 +120,7 @@ def _is_ground(lowest: Array, cell_m: float) -> NDArray[np.bool_]:
     surface = lowest[tuple(nearest)]
     ground, width, before = known.copy(), 3, 1
     while width * cell_m <= TERRAIN.widest_m:
-        opened = grey_opening(surface, size=(width, width))
+        opened = maximum_filter(minimum_filter(surface, width), width)
         limit = TERRAIN.step_m + TERRAIN.slope * (width - before) * cell_m / 2.0
         ground &= surface - opened <= limit
         surface, before, width = opened, width, 2 * width - 1

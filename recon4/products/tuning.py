@@ -49,7 +49,7 @@ class WallCellTuning:
     """Largest vertical part of the normal of an upright surface."""
     bits: int = 64
     bit_m: float = 0.05
-    """Heights above the floor at which there is a surface: so many steps of this height [m]."""
+    """Heights above the floor at which there is a surface: this many steps of this height [m]."""
     clear_m: float = 0.1
     """Below and above the floor: baseboards [m]."""
     below_ceiling_m: float = 0.33
@@ -73,7 +73,7 @@ class FaceTuning:
     narrow_m: float = 0.012
     """Distance of cells from a line at the first and at the last fit [m]."""
     rounds: int = 6
-    gap_m: float = 0.35
+    bridged_m: float = 0.35
     """Longest stretch without a wall up to the ceiling inside of one face [m]."""
     straight_m: float = 0.5
     """A shorter face has the direction of its normals [m]."""
@@ -110,7 +110,7 @@ class OpeningTuning:
     """Heights of the cut over the floor [m]: through doors and windows."""
     solid: float = 0.25
     """Least part of the cut at which there is a wall."""
-    gap_m: float = 0.2
+    bridged_m: float = 0.2
     """Narrower gaps are of the cells, not of the wall [m]."""
     min_width_m: float = 0.4
     max_width_m: float = 6.0
@@ -136,7 +136,7 @@ OPENINGS = OpeningTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PlanTuning:
+class FloorPlanTuning:
     """What is drawn of a storey."""
 
     thickness_m: tuple[float, float] = (0.04, 0.65)
@@ -153,7 +153,7 @@ class PlanTuning:
     """Smallest piece of furniture."""
 
 
-PLANS = PlanTuning()
+PLANS = FloorPlanTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -190,7 +190,7 @@ class TerrainTuning:
     slope: float = 0.3
     """Steepest slope of the ground, rise over run."""
     step_m: float = 0.12
-    """Smallest object that is told from the ground [m]."""
+    """Smallest object that is not taken for ground [m]."""
     surface_m: float = 0.10
     """Points this far above the lowest one of a cell are of its ground [m]."""
     nodata: float = -9999.0
@@ -211,13 +211,13 @@ TERRAIN = TerrainTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PictureTuning:
-    """Pictures of products."""
+class ProductPreviewTuning:
+    """Previews of products."""
 
     side_px: int = 1400
-    """Longest side of a picture."""
+    """Longest side of a preview."""
     margin_px: int = 12
     """White border of a drawing."""
 
 
-PICTURES = PictureTuning()
+PREVIEWS = ProductPreviewTuning()

@@ -115,9 +115,9 @@ def _fitted_base(terrain: Terrain, border: NDArray[np.bool_]) -> tuple[Array, fl
         )
     x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
     A, z = np.column_stack([x, y, np.ones(len(x))]), terrain.height_m[rows].astype(np.float64)
-    plane: Array
-    plane, _, rank, _ = np.linalg.lstsq(A, z, rcond=None)
+    fitted, _, rank, _ = np.linalg.lstsq(A, z, rcond=None)
     if rank < 3:
         raise ConfigError("volume: the ground along the border lies on a line")
+    plane = np.asarray(fitted, np.float64)
     residual = z - A @ plane
     return plane, float(np.sqrt(residual @ residual / max(1, len(z) - 3) / len(z)))

@@ -11,11 +11,11 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.mapping.tiles import TileSet
-from recon4.products.drawing import DRAWINGS, DrawingNotes, Shape, Title, write_drawing
+from recon4.products.drawing import DRAWINGS, DrawingNotes, DrawnShape, DrawnTitle, write_drawing
 from recon4.products.storeys import Levels, Storey, find_storeys, level_surfaces, storey_named
 from recon4.products.terrain import Terrain, TerrainKind, terrain
 from recon4.review.stamp import Stamp, stamp_file
-from recon4.slices.geotiff import Raster, write_raster, write_world_file
+from recon4.slices.geotiff import GeoRaster, write_raster, write_world_file
 from recon4.slices.map_crs import MapFrame
 from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import atomic_file
@@ -26,7 +26,7 @@ ENDINGS: dict[ProductKind, tuple[str, ...]] = {
     "orthophoto": (".tif", ".png"),
     "terrain": (".tif", *DRAWINGS, ".png"),
 }
-"""Kind of a product -> endings of its files; a ``.png`` is a picture to look at."""
+"""Kind of a product -> endings of its files; a ``.png`` is a preview to look at."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,7 +73,7 @@ class ProductSource:
 
 
 def write_product(
-    kind: ProductKind, source: ProductSource, path: Path, options: ProductOptions
+    kind: ProductKind, source: ProductSource, path: Path, *, options: ProductOptions
 ) -> str:
     """Write a product of a map in the format of the ending.
 
@@ -164,12 +164,16 @@ def _storeys(tiles: TileSet) -> tuple[tuple[Storey, ...], Levels]:
 
 
 def _draw(
-    shapes: list[Shape], path: Path, source: ProductSource, *, titles: list[Title] | None = None
+    shapes: list[DrawnShape],
+    path: Path,
+    source: ProductSource,
+    *,
+    titles: list[DrawnTitle] | None = None,
 ) -> None:
-    from recon4.products.pictures import picture_of_shapes, save_picture
+    from recon4.products.previews import preview_of_shapes, save_preview
 
     if path.suffix.lower() == ".png":
-        save_picture(picture_of_shapes(shapes), path)
+        save_preview(preview_of_shapes(shapes), path)
         return
     notes = DrawingNotes(frame=source.frame, description=source.description, titles=titles or ())
     with atomic_file(path) as temporary:
@@ -179,13 +183,13 @@ def _draw(
 
 
 def _raster(
-    raster: Raster, path: Path, source: ProductSource, *, relief: Terrain | None = None
+    raster: GeoRaster, path: Path, source: ProductSource, *, relief: Terrain | None = None
 ) -> None:
-    from recon4.products.pictures import picture_of_pixels, picture_of_terrain, save_picture
+    from recon4.products.previews import preview_of_pixels, preview_of_terrain, save_preview
 
     if path.suffix.lower() == ".png":
-        image = picture_of_terrain(relief) if relief else picture_of_pixels(raster.pixels)
-        save_picture(image, path)
+        image = preview_of_terrain(relief) if relief else preview_of_pixels(raster.pixels)
+        save_preview(image, path)
         return
     write_raster(raster, path, frame=source.frame, description=source.description)
     write_world_file(raster, path.with_suffix(".tfw"), frame=source.frame)

@@ -30,7 +30,7 @@ class GeoTag(IntEnum):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Raster:
+class GeoRaster:
     """Pixels in a plane of the map."""
 
     pixels: NDArray[Any]
@@ -62,11 +62,11 @@ def write_geotiff(
         GeoreferenceError: If an affine transformation would be off by half a pixel at a corner.
         StoreError: If the file cannot be written.
     """
-    raster = Raster(rgba, drawn.plane, drawn.paper)
+    raster = GeoRaster(rgba, drawn.plane, drawn.paper)
     write_raster(raster, path, frame=frame, description=description)
 
 
-def write_raster(raster: Raster, path: Path, *, frame: MapFrame, description: str = "") -> None:
+def write_raster(raster: GeoRaster, path: Path, *, frame: MapFrame, description: str = "") -> None:
     """Write a raster as GeoTIFF.
 
     In a horizontal plane of a georeferenced map it has its CRS, and a transformation that is exact
@@ -98,7 +98,7 @@ def write_raster(raster: Raster, path: Path, *, frame: MapFrame, description: st
         image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
 
 
-def write_world_file(raster: Raster, path: Path, *, frame: MapFrame) -> None:
+def write_world_file(raster: GeoRaster, path: Path, *, frame: MapFrame) -> None:
     """Write the transformation of a raster as world file (ESRI): of its upper left pixel.
 
     Args:
@@ -130,7 +130,7 @@ def affine_of(plane: SlicePlane, grid: RasterGrid, frame: MapFrame) -> tuple[Arr
     return J[:2, :2] * scale, place[:2] + J[:2, :2] @ (np.array([u0, v0]) - middle[:2])
 
 
-def _tags(raster: Raster, frame: MapFrame, A: Array, *, corner: Array) -> dict[int, Any]:
+def _tags(raster: GeoRaster, frame: MapFrame, A: Array, *, corner: Array) -> dict[int, Any]:
     """The transformation from pixels, and keys that name the CRS."""
     citation = ""
     if raster.plane.kind == "horizontal" and frame.to_crs is not None:

@@ -150,7 +150,7 @@ def test_the_fill_is_the_wall_between_the_rooms_without_its_door(plan):
 @pytest.mark.parametrize("stamp", [None, SIGNED])
 def test_a_dxf_has_layers_by_meaning_and_coordinates_of_the_crs(rooms, tmp_path, stamp):
     path = tmp_path / "plan.dxf"
-    write_product("plan", ProductSource(rooms, PLACED, stamp), path, ProductOptions())
+    write_product("plan", ProductSource(rooms, PLACED, stamp), path, options=ProductOptions())
 
     drawing = ezdxf.readfile(path)
     assert drawing.audit().errors == []
@@ -170,7 +170,9 @@ def test_a_dxf_has_layers_by_meaning_and_coordinates_of_the_crs(rooms, tmp_path,
 
 def test_geojson_says_what_each_line_is(rooms, tmp_path):
     path = tmp_path / "plan.geojson"
-    write_product("plan", ProductSource(rooms, PLACED, None), path, ProductOptions(storey="0"))
+    write_product(
+        "plan", ProductSource(rooms, PLACED, None), path, options=ProductOptions(storey="0")
+    )
 
     record = json.loads(path.read_text())
     assert record["crs"]["properties"]["name"] == "urn:ogc:def:crs:EPSG::32633"
@@ -183,9 +185,9 @@ def test_geojson_says_what_each_line_is(rooms, tmp_path):
 def test_wrong_storeys_and_names_are_refused_and_nothing_is_written(rooms, tmp_path):
     source = ProductSource(rooms, LOCAL, None)
     with pytest.raises(ConfigError, match="no storey named 4; there are: 0"):
-        write_product("plan", source, tmp_path / "a.dxf", ProductOptions(storey="4"))
+        write_product("plan", source, tmp_path / "a.dxf", options=ProductOptions(storey="4"))
     with pytest.raises(ConfigError, match=r"written as \.dxf \.geojson \.png, got a\.dwg"):
-        write_product("plan", source, tmp_path / "a.dwg", ProductOptions())
+        write_product("plan", source, tmp_path / "a.dwg", options=ProductOptions())
     with pytest.raises(ConfigError, match="pixel_m: expected a number above 0"):
         ProductOptions(pixel_m=0.0)
     assert list(tmp_path.iterdir()) == []

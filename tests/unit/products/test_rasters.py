@@ -37,7 +37,7 @@ def test_an_orthophoto_shows_the_floor_and_lies_where_it_is(tmp_path):
     tiles = two_rooms(tmp_path / "map")
     path = tmp_path / "floor.tif"
     write_product(
-        "orthophoto", ProductSource(tiles, PLACED, None), path, ProductOptions(pixel_m=0.02)
+        "orthophoto", ProductSource(tiles, PLACED, None), path, options=ProductOptions(pixel_m=0.02)
     )
 
     with rasterio.open(path) as read:
@@ -59,7 +59,7 @@ def test_an_elevation_shows_the_wall_from_the_left_to_the_right(tmp_path):
     tiles = two_rooms(tmp_path / "map")
     options = ProductOptions(line=(5.0, 0.1, 0.0, 0.1), depth_m=0.5, pixel_m=0.02)
     source = ProductSource(tiles, LOCAL, None)
-    write_product("orthophoto", source, tmp_path / "wall.tif", options)
+    write_product("orthophoto", source, tmp_path / "wall.tif", options=options)
 
     with rasterio.open(tmp_path / "wall.tif") as read:
         gray, _ = read.read()
@@ -81,7 +81,9 @@ def test_the_ground_is_without_car_and_tree_and_empty_where_nothing_was_seen(gro
 
 def test_heights_are_read_by_gdal_in_the_crs(meadow, tmp_path):
     path = tmp_path / "dtm.tif"
-    write_product("terrain", ProductSource(meadow, PLACED, None), path, ProductOptions(cell_m=0.5))
+    write_product(
+        "terrain", ProductSource(meadow, PLACED, None), path, options=ProductOptions(cell_m=0.5)
+    )
 
     with rasterio.open(path) as read:
         heights = read.read(1, masked=True)
@@ -108,7 +110,7 @@ def test_contours_follow_the_slope(ground):
 def test_contours_are_written_at_their_heights(meadow, tmp_path):
     options = ProductOptions(interval_m=0.5)
     source = ProductSource(meadow, PLACED, None)
-    write_product("terrain", source, tmp_path / "c.geojson", options)
+    write_product("terrain", source, tmp_path / "c.geojson", options=options)
 
     features = json.loads((tmp_path / "c.geojson").read_text())["features"]
     for one in features:

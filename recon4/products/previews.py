@@ -1,4 +1,4 @@
-"""Pictures of products, to be looked at before they are downloaded."""
+"""Previews of products, to be looked at before they are downloaded."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from recon4.geometry.se3 import Array
-from recon4.products.drawing import Shape
+from recon4.products.drawing import DrawnShape
 from recon4.products.terrain import Terrain
-from recon4.products.tuning import PICTURES
+from recon4.products.tuning import PREVIEWS
 from recon4.store.atomic import atomic_file
 
 _COLORS = {
@@ -27,12 +27,12 @@ _COLORS = {
 """Of the parts of a plan, on white paper."""
 
 
-def picture_of_shapes(shapes: Sequence[Shape]) -> Image.Image:
-    """A drawing of a plan, at most `PICTURES.side_px` wide and high."""
+def preview_of_shapes(shapes: Sequence[DrawnShape]) -> Image.Image:
+    """A drawing of a plan, at most `PREVIEWS.side_px` wide and high."""
     every = np.concatenate([shape.p_map[:, :2] for shape in shapes])
     low, high = every.min(axis=0), every.max(axis=0)
-    margin = PICTURES.margin_px
-    scale = (PICTURES.side_px - 2 * margin) / max(float((high - low).max()), 1.0)
+    margin = PREVIEWS.margin_px
+    scale = (PREVIEWS.side_px - 2 * margin) / max(float((high - low).max()), 1.0)
     size = np.ceil((high - low) * scale).astype(int) + 2 * margin
     image = Image.new("RGB", (int(size[0]), int(size[1])), "white")
     draw = ImageDraw.Draw(image)
@@ -54,15 +54,15 @@ def picture_of_shapes(shapes: Sequence[Shape]) -> Image.Image:
     return image
 
 
-def picture_of_pixels(pixels: NDArray[np.uint8]) -> Image.Image:
-    """A gray image with transparency, thinned to `PICTURES.side_px`."""
-    step = -(-max(pixels.shape[:2]) // PICTURES.side_px)
+def preview_of_pixels(pixels: NDArray[np.uint8]) -> Image.Image:
+    """A gray image with transparency, thinned to `PREVIEWS.side_px`."""
+    step = -(-max(pixels.shape[:2]) // PREVIEWS.side_px)
     return Image.fromarray(np.ascontiguousarray(pixels[::step, ::step]))
 
 
-def picture_of_terrain(terrain: Terrain) -> Image.Image:
+def preview_of_terrain(terrain: Terrain) -> Image.Image:
     """Heights from dark to light, with the shade of a light from the north-west."""
-    step = -(-max(terrain.height_m.shape) // PICTURES.side_px)
+    step = -(-max(terrain.height_m.shape) // PREVIEWS.side_px)
     z = terrain.height_m[::step, ::step].astype(np.float64)
     seen = np.isfinite(z)
     low, high = np.percentile(z[seen], [2.0, 98.0]) if seen.any() else (0.0, 1.0)
@@ -73,7 +73,7 @@ def picture_of_terrain(terrain: Terrain) -> Image.Image:
     return Image.fromarray(np.dstack([gray, 255 * seen]).astype(np.uint8))
 
 
-def save_picture(image: Image.Image, path: Path) -> None:
+def save_preview(image: Image.Image, path: Path) -> None:
     """Write an image as PNG.
 
     Raises:
