@@ -31,6 +31,7 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const TURN_MS = 450;
 const ADDRESS_MS = 250;
+const PANEL_PX = 320;
 const NAME_AGAIN_MS = 1500;
 /** What runs: the canvas, the timer of the address, the turn of the camera. */
 const run = { canvas: /** @type {MapCanvas | null} */ (null), address: 0, turn: 0, flown: 0 };
@@ -43,10 +44,21 @@ const camera = () => page.state.camera ?? all("oblique", false);
  * @param {string} name
  * @param {boolean} parallel
  */
-function all(name, parallel) {
+const all = (name, parallel) => fitted(VIEWS[name], parallel);
+
+/**
+ * All of the map beside the panel, seen from there.
+ * @param {{yaw: number, pitch: number}} look
+ * @param {boolean} parallel
+ */
+function fitted(look, parallel) {
   const { index } = page;
   if (!index) throw new Error("the map has not been read");
-  return viewOf(VIEWS[name], { index, screen: screen(), heights: shown.heightsShown(), parallel });
+  const { width, height } = screen();
+  const covered = page.panel && width > 2 * PANEL_PX ? PANEL_PX : 0;
+  const free = { width: width - covered, height };
+  const made = viewOf(look, { index, screen: free, heights: shown.heightsShown(), parallel });
+  return panned(made, screen(), [-covered / 2, 0]);
 }
 
 /** Changes the state, the address, and what depends on them. */
@@ -158,16 +170,9 @@ function view(/** @type {string} */ name, parallel = camera().parallel) {
 
 /** All of the map, seen from where the camera looks. */
 function fit() {
-  const { index } = page;
-  if (!index) return;
   const { parallel } = camera();
   change({ standing: false });
-  flyTo(
-    viewOf(
-      { ...VIEWS.oblique, ...camera() },
-      { index, screen: screen(), heights: shown.heightsShown(), parallel },
-    ),
-  );
+  flyTo(fitted(camera(), parallel));
 }
 
 function walkOn() {

@@ -322,7 +322,7 @@ export class MapCanvas {
     const focal = focalPx(this.screen) * ratio;
     uniforms.parallel.value = camera.parallel;
     uniforms.focal.value = camera.parallel ? focal / camera.distance : focal;
-    uniforms.sizes.value.set(ratio, 14 * ratio);
+    uniforms.sizes.value.set(ratio, 24 * ratio);
     uniforms.mode.value =
       color === "height" ? 0 : color === "class" ? 2 : color === "plain" ? 3 : 1;
     uniforms.ends.value.set(...this.#endsOf(color, ends));

@@ -20,7 +20,7 @@ uniform int planeCount;
 in vec3 place;
 in vec4 about;
 in float value;
-in float apart;          // distance of neighbors if all points were drawn, from 1 mm in octaves
+in float apart;          // distance of neighbors if all points were drawn, in octaves above 1 mm
 flat out vec3 color;
 
 vec3 colorAt(float t) {
@@ -40,7 +40,7 @@ void main() {
       return;
     }
   float away = parallel ? 1.0 : max(-seen.z, 0.01);
-  gl_PointSize = clamp(thinned * 0.001 * exp2(12.0 * apart) * focal / away, sizes.x, sizes.y);
+  gl_PointSize = clamp(thinned * 0.0013 * exp2(12.0 * apart) * focal / away, sizes.x, sizes.y);
   if (mode == 0) color = colorAt((p.z - ends.x) / (ends.y - ends.x));
   else if (mode == 1 && (!known || value > 0.99999)) color = unknown;
   else if (mode == 1) color = colorAt((value - ends.x) / (ends.y - ends.x));

@@ -25,7 +25,7 @@ export const VIEWS = {
 
 /**
  * All of the map, seen from where a named view looks.
- * @param {NamedView} view
+ * @param {Pick<NamedView, "yaw" | "pitch">} look
  * @param {{index: MapIndex, screen: Screen, heights: [number, number], parallel: boolean}} of
  * @returns {Camera}
  */
