@@ -11,7 +11,7 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.products.faces import Face, fit_faces
 from recon4.products.openings import FaceOpening, OpeningKind, Rays, openings_of, sample_rays
-from recon4.products.storeys import Levels, Storey
+from recon4.products.storeys import BuildingStorey, Levels
 from recon4.products.tuning import OPENINGS, PLANS, WALL_CELLS
 from recon4.products.wall_cells import WallCells, wall_cells
 
@@ -41,7 +41,7 @@ class PlanOpening:
 class FloorPlan:
     """A storey from above; all coordinates are those of the map [m]."""
 
-    storey: Storey
+    storey: BuildingStorey
     walls: list[Array]
     """Faces of walls as they are cut, (2, 2) each."""
     sections: list[Polygon]
@@ -75,7 +75,7 @@ class FloorPlan:
         )
 
 
-def draw_plan(tiles: TileSet, storey: Storey, levels: Levels) -> FloorPlan:
+def draw_plan(tiles: TileSet, storey: BuildingStorey, levels: Levels) -> FloorPlan:
     """Fit the plan of a storey to the points of a map.
 
     Args:
@@ -87,7 +87,7 @@ def draw_plan(tiles: TileSet, storey: Storey, levels: Levels) -> FloorPlan:
     return plan_of(cells, sample_rays(tiles), storey)
 
 
-def plan_of(cells: WallCells, rays: Rays, storey: Storey) -> FloorPlan:
+def plan_of(cells: WallCells, rays: Rays, storey: BuildingStorey) -> FloorPlan:
     """Fit the plan of a storey to its upright surfaces."""
     faces = fit_faces(cells)
     columns, faces = _columns(faces)

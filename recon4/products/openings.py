@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.products.faces import Face, columns_of
-from recon4.products.storeys import Storey
+from recon4.products.storeys import BuildingStorey
 from recon4.products.tuning import OPENINGS, WALL_CELLS
 from recon4.products.wall_cells import Masks, WallCells
 
@@ -60,7 +60,9 @@ def sample_rays(tiles: TileSet) -> Rays:
     return Rays(np.concatenate(origins), np.concatenate(hits))
 
 
-def openings_of(face: Face, cells: WallCells, rays: Rays, *, storey: Storey) -> list[FaceOpening]:
+def openings_of(
+    face: Face, cells: WallCells, rays: Rays, *, storey: BuildingStorey
+) -> list[FaceOpening]:
     """Doors, windows and hidden stretches of a face.
 
     Where the cut has no wall, either furniture hides it or it is open. It is open if rays went
@@ -103,7 +105,7 @@ def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
     return list(zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True))
 
 
-def _pierced(face: Face, rays: Rays, storey: Storey) -> NDArray[np.bool_]:
+def _pierced(face: Face, rays: Rays, storey: BuildingStorey) -> NDArray[np.bool_]:
     """Where rays went through a face within the cut, for each `OPENINGS.ray_cell_m` of it."""
     count = int(face.length_m / OPENINGS.ray_cell_m) + 1
     a = (rays.origin[:, :2] - face.start) @ face.n

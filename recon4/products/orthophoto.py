@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.mapping.tiles import TileSet
-from recon4.products.storeys import Storey
+from recon4.products.storeys import BuildingStorey
 from recon4.products.tuning import ORTHOPHOTOS
 from recon4.slices.geotiff import GeoRaster
 from recon4.slices.points import SliceWindow, points_in
@@ -30,7 +30,7 @@ class Orthophoto:
     """Part of the image that was seen."""
 
 
-def storey_slab(storey: Storey) -> SlicePlane:
+def storey_slab(storey: BuildingStorey) -> SlicePlane:
     """What is seen of a storey from above: its floor and what stands on it."""
     below, above = ORTHOPHOTOS.band_m
     top_m = min(storey.floor_m + above, storey.ceiling_m - ORTHOPHOTOS.below_ceiling_m)

@@ -16,7 +16,7 @@ Ints = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
-class Storey:
+class BuildingStorey:
     """A floor that was walked on, and what is above it."""
 
     name: str
@@ -80,7 +80,7 @@ def _of_tile(columns: dict[str, NDArray[np.float32]], origin_m: Array) -> tuple[
     return rows.astype(np.int64), count.astype(np.float64) * STOREYS.cell_m**2
 
 
-def find_storeys(tiles: TileSet, levels: Levels) -> tuple[Storey, ...]:
+def find_storeys(tiles: TileSet, levels: Levels) -> tuple[BuildingStorey, ...]:
     """Storeys of a map from the lowest up; none outdoors.
 
     A floor is a height at which much level surface is seen from above, above which the sensors
@@ -113,7 +113,9 @@ def find_storeys(tiles: TileSet, levels: Levels) -> tuple[Storey, ...]:
     return _named(floors, tiles, levels)
 
 
-def _named(floors: list[tuple[float, float]], tiles: TileSet, levels: Levels) -> tuple[Storey, ...]:
+def _named(
+    floors: list[tuple[float, float]], tiles: TileSet, levels: Levels
+) -> tuple[BuildingStorey, ...]:
     start_m = float(tiles.columns.paths.p_map[0, 0, 2])
     below = [k for k, (z_m, _) in enumerate(floors) if z_m < start_m - STOREYS.body_m[0]]
     zero = below[-1] if below else 0
@@ -121,7 +123,7 @@ def _named(floors: list[tuple[float, float]], tiles: TileSet, levels: Levels) ->
     for k, (z_m, area) in enumerate(floors):
         above = floors[k + 1][0] if k + 1 < len(floors) else np.inf
         ceiling = _ceiling(levels, z_m, above)
-        found.append(Storey(str(k - zero), z_m, ceiling, area))
+        found.append(BuildingStorey(str(k - zero), z_m, ceiling, area))
     return tuple(found)
 
 
@@ -173,7 +175,7 @@ def _ceiling(levels: Levels, floor_m: float, next_m: float) -> float:
     return float((first + int(np.argmax(area)) + 0.5) * STOREYS.bin_m)
 
 
-def storey_named(storeys: tuple[Storey, ...], name: str) -> Storey:
+def storey_named(storeys: tuple[BuildingStorey, ...], name: str) -> BuildingStorey:
     """One storey by its name.
 
     Raises:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import Tile, TileSet
-from recon4.products.storeys import Levels, Storey
+from recon4.products.storeys import BuildingStorey, Levels
 from recon4.products.tuning import STOREYS, WALL_CELLS
 
 Masks = NDArray[np.uint64]
@@ -41,7 +41,7 @@ class WallCells:
         return WallCells(self.p[rows], self.n[rows], self.heights[rows], self.high[rows])
 
 
-def wall_cells(tiles: TileSet, storey: Storey, levels: Levels) -> WallCells:
+def wall_cells(tiles: TileSet, storey: BuildingStorey, levels: Levels) -> WallCells:
     """The upright surfaces of a storey.
 
     Memory is that of the cells, whatever the number of points.
@@ -105,7 +105,7 @@ class _Ceiling:
     """(X, Y)."""
 
     @staticmethod
-    def of(levels: Levels, storey: Storey) -> _Ceiling:
+    def of(levels: Levels, storey: BuildingStorey) -> _Ceiling:
         from scipy.ndimage import distance_transform_edt
 
         low, high = STOREYS.ceiling_m

@@ -12,7 +12,13 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.mapping.tiles import TileSet
 from recon4.products.drawing import DRAWINGS, DrawingNotes, DrawnShape, DrawnTitle, write_drawing
-from recon4.products.storeys import Levels, Storey, find_storeys, level_surfaces, storey_named
+from recon4.products.storeys import (
+    BuildingStorey,
+    Levels,
+    find_storeys,
+    level_surfaces,
+    storey_named,
+)
 from recon4.products.terrain import Terrain, TerrainKind, terrain
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.slices.geotiff import GeoRaster, write_raster, write_world_file
@@ -158,7 +164,7 @@ def up_to_crs(made: Terrain, frame: MapFrame) -> float:
     return float(frame.to_crs(np.array([middle]))[0, 2])
 
 
-def _storeys(tiles: TileSet) -> tuple[tuple[Storey, ...], Levels]:
+def _storeys(tiles: TileSet) -> tuple[tuple[BuildingStorey, ...], Levels]:
     levels = level_surfaces(tiles)
     return find_storeys(tiles, levels), levels
 
