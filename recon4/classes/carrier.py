@@ -11,13 +11,19 @@ from recon4.classes.tuning import VOLUME
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
+from recon4.kernels.seen_through import points_in_body
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
 
 
-def is_near(p_body: Array) -> NDArray[np.bool_]:
-    """Which points may be of the carrier, (N, 3) in the body -> (N,)."""
-    x, y, z = p_body.T
-    flat = x * x + y * y < VOLUME.radius_m**2
-    return np.asarray(flat & (z > VOLUME.low_m) & (z < VOLUME.high_m))
+def near_points(frame: Multiframe, rig: Rig) -> tuple[NDArray[np.int64], Array]:
+    """Points that may be of the carrier: their rows (M,) and they in the body [m], (M, 3)."""
+    rows, p_body = np.empty(len(frame), np.int64), np.empty((len(frame), 3))
+    mounts = rig.T_body_sensor
+    R, t = np.ascontiguousarray(mounts.R), np.ascontiguousarray(mounts.t)
+    limits = np.array([VOLUME.radius_m, VOLUME.low_m, VOLUME.high_m])
+    count = points_in_body(frame.xyz, frame.sensor, R, t, limits, rows, p_body)
+    return rows[:count], p_body[:count]
 
 
 def _shape() -> tuple[int, int, int]:
@@ -72,13 +78,10 @@ class CarrierCubes:
     """And those that touch them, into which he moves, (I, J, K)."""
 
     def of(self, p_body: Array, verdict: NDArray[np.int8]) -> NDArray[np.bool_]:
-        """Which points are of the carrier, (N,)."""
-        found = np.zeros(len(p_body), np.bool_)
-        near = np.flatnonzero(is_near(p_body))
-        cube = _cubes(p_body[near])
+        """Which near points are of the carrier, (N, 3) and (N,) -> (N,)."""
+        cube = _cubes(p_body)
         inner, around = self.inner.ravel()[cube], self.around.ravel()[cube]
-        found[near] = inner | (around & (verdict[near] != VERDICT.met))
-        return found
+        return np.asarray(inner | (around & (verdict != VERDICT.met)))
 
 
 def _cubes(p_body: Array) -> NDArray[np.intp]:

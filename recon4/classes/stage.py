@@ -10,17 +10,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.classes.carrier import CarrierCubes, CarrierVolume, is_near
-from recon4.classes.tuning import SIGHT, SPREAD, VOLUME
-from recon4.classes.views import RegularViews, in_body
+from recon4.classes.carrier import CarrierCubes, CarrierVolume, near_points
+from recon4.classes.tuning import KNOWN_PLACES, SIGHT, SPREAD, VIEWS, VOLUME
+from recon4.classes.views import RegularViews
 from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
-from recon4.kernels.seen_through import RangeViews, find_seen_through, spread_to_neighbors
+from recon4.kernels.seen_through import Cubes, RangeViews, find_seen_through, spread_to_neighbors
 from recon4.mapping.build import in_order
 from recon4.mapping.mirrors import Mirror, Sight
 from recon4.mapping.tuning import MAP_BUILD
@@ -29,7 +30,7 @@ from recon4.model.classes import CLASSES, PointClass
 from recon4.model.figures import ClassFigures
 from recon4.model.frames import RecordedFrames
 from recon4.model.multiframe import Multiframe
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.store.classes import ClassWriter
 
@@ -85,27 +86,42 @@ def classify(
     known = _Compared(frames, trajectory, _learn_carrier(frames, trajectory, watch), mirrors)
     views = RegularViews(frames, trajectory)
 
-    def work(given: tuple[Multiframe, RangeViews | None]) -> NDArray[np.uint8]:
-        return _classes(*given, known=known)
+    def work(given: tuple[NDArray[np.intp], RangeViews | None]) -> list[NDArray[np.uint8]]:
+        rows, others = given
+        places = KnownPlaces()
+        return [_classes(frames[k], others, known=known, places=places) for k in rows.tolist()]
 
     # Images of scans are made here, in order, so that the threads only read them.
-    given = ((frame := frames[k], views.near(frame.t_mid_ns)) for k in range(len(frames)))
+    given = ((rows, views.near(_middle_ns(frames.t_mid_ns[rows]))) for rows in _spans(frames))
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        made = in_order(pool, work, given)
+        made = chain.from_iterable(in_order(pool, work, given))
         yield from track(made, watch, what="classify points", unit="frames", total=len(frames))
+
+
+def _spans(frames: RecordedFrames) -> list[NDArray[np.intp]]:
+    """Rows of the multiframes that are compared with the same scans: what these say of a place."""
+    span = (frames.t_mid_ns - frames.t_mid_ns[:1]) // VIEWS.span_ns
+    return np.split(np.arange(len(span)), np.flatnonzero(np.diff(span)) + 1) if len(span) else []
+
+
+def _middle_ns(t_ns: Times) -> int:
+    return int(t_ns[0] + t_ns[-1]) // 2
 
 
 def _learn_carrier(
     frames: RecordedFrames, trajectory: Trajectory, progress: Progress
 ) -> CarrierCubes:
-    views, volume = RegularViews(frames, trajectory), CarrierVolume()
-    rows = range(0, len(frames), 1 + len(frames) // VOLUME.scans)
-    for k in track(rows, progress, what="find the carrier", unit="frames", total=len(rows)):
+    views = RegularViews(frames, trajectory, every_ns=VOLUME.views_every_ns)
+    volume, rig = CarrierVolume(), frames.rig
+    scans = range(0, len(frames), 1 + len(frames) // VOLUME.scans)
+    for k in track(scans, progress, what="find the carrier", unit="frames", total=len(scans)):
         frame = frames[k]
-        near = frame.take(np.flatnonzero(is_near(in_body(frame.xyz, frame.sensor, frames.rig))))
-        p_map = place(near, trajectory, frames.rig)
-        p_body = in_body(near.xyz, near.sensor, frames.rig)
-        volume.learn(p_body, _verdicts(near, p_map, views.near(frame.t_mid_ns)))
+        rows, p_body = near_points(frame, rig)
+        near = frame.take(rows)
+        p_map = place(near, trajectory, rig)
+        others = views.near(frame.t_mid_ns)
+        verdict = _verdicts(near, p_map, others, trajectory=trajectory, places=KnownPlaces())
+        volume.learn(p_body, verdict)
     return volume.filled()
 
 
@@ -119,24 +135,42 @@ class _Compared:
     mirrors: Sequence[Mirror]
 
 
-def _classes(frame: Multiframe, views: RangeViews | None, *, known: _Compared) -> NDArray[np.uint8]:
+class KnownPlaces:
+    """What scans say of places, as it is found out."""
+
+    def __init__(self) -> None:
+        self.held = np.zeros(1 << KNOWN_PLACES.bits, np.int64)
+        moving, met = np.empty((2, *KNOWN_PLACES.cubes), np.int16)
+        self.cubes = Cubes(moving, met, np.empty(KNOWN_PLACES.cubes[:2], np.float32))
+
+
+def _classes(
+    frame: Multiframe, views: RangeViews | None, *, known: _Compared, places: KnownPlaces
+) -> NDArray[np.uint8]:
     rig = known.frames.rig
     placed = place_with_origins(frame, known.trajectory, rig)
-    p_body = in_body(frame.xyz, frame.sensor, rig)
-    verdict = _verdicts(frame, placed.xyz_m, views)
-    moving = np.zeros(len(frame), np.bool_)
-    count = np.zeros(SPREAD.shape, np.int16)
-    spread_to_neighbors(p_body, verdict, SPREAD.cube_m, SPREAD.few, count, moving)
+    verdict = _verdicts(frame, placed.xyz_m, views, trajectory=known.trajectory, places=places)
     classes = np.full(len(frame), PointClass.UNCLASSIFIED, np.uint8)
-    classes[moving] = PointClass.MOVING
+    classes[verdict == VERDICT.seen_through] = PointClass.MOVING
     for mirror in known.mirrors:
         classes[mirror.reflects(Sight(placed.xyz_m, placed.origin_m))] = PointClass.REFLECTION
-    classes[known.carrier.of(p_body, verdict)] = PointClass.CARRIER
+    near, p_body = near_points(frame, rig)
+    classes[near[known.carrier.of(p_body, verdict[near])]] = PointClass.CARRIER
     return classes
 
 
-def _verdicts(frame: Multiframe, p_map: Array, views: RangeViews | None) -> NDArray[np.int8]:
+def _verdicts(
+    frame: Multiframe,
+    p_map: Array,
+    views: RangeViews | None,
+    *,
+    trajectory: Trajectory,
+    places: KnownPlaces,
+) -> NDArray[np.int8]:
     verdict = np.full(len(frame), VERDICT.unknown, np.int8)
-    if views is not None:
-        find_seen_through(p_map, frame.ring, frame.sensor, views, SIGHT, verdict)
+    if views is None:
+        return verdict
+    find_seen_through(p_map, frame.sensor, views, SIGHT, places.held, verdict)
+    body_m = trajectory.at(np.array([frame.t_mid_ns]), slack_ns=frame.duration_ns).t[0]
+    spread_to_neighbors(p_map, body_m, SPREAD, places.cubes, verdict)
     return verdict

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from recon4.kernels.seen_through import SightRules
+from recon4.kernels.seen_through import SightRules, SpreadRules
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -13,14 +13,20 @@ class ViewTuning:
 
     every_ns: int = 500_000_000
     """Time between two of them [ns]."""
-    apart_ns: int = 1_000_000_000
+    span_ns: int = 1_000_000_000
+    """All points of so long a time are compared with the same ones [ns]."""
+    apart_ns: int = 1_500_000_000
     reach_ns: int = 10_500_000_000
     """They are at least and at most this far away in time [ns]: after a second a person has left
     his place, and trajectories drift."""
     best_ns: int = 5_000_000_000
     """Those nearest to this far away are asked first [ns]: a car has left its place, too."""
-    kept_ns: int = 11_500_000_000
-    """Images this near in time are in memory: threads may be a second apart [ns]."""
+    thinned: int = 2
+    far_ns: int = 20_500_000_000
+    """Whether the thing in a place left it, one of this many is asked, and up to this far away:
+    what stands for a while and drives off [ns]."""
+    kept_ns: int = 4_000_000_000
+    """Images are in memory for so much longer: threads may be that far apart [ns]."""
     rows_deg: float = 2.0
     """Height of a cell of their images [°]; more where the rings of a LiDAR are farther apart."""
     columns: int = 4
@@ -36,26 +42,29 @@ SIGHT = SightRules(
     same_per_m=0.01,
     nearest_m=0.3,
     farthest_m=30.0,
-    enough=2,
+    enough=3,
     surely_met=3,
-    least_ratio=0.34,
-    apart_m=0.15,
-    every=3,
+    gone=3,
+    least_ratio=1.0,
+    place_m=0.15,
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpreadTuning:
-    """Points near to moving ones that no other scan sees: feet, hands, the rims of a body."""
+class KnownPlaceTuning:
+    """What is known of places while the points of a second are compared."""
 
-    cube_m: float = 0.2
-    few: int = 3
-    """They move, too, if this many moving ones are in the cubes of this size around [m]."""
-    shape: tuple[int, int, int] = (100, 100, 40)
-    """Cubes around the body along its axes: 10 m to all sides, 4 m up and down."""
+    bits: int = 18
+    """Logarithm of the number of places that have room."""
+    cubes: tuple[int, int, int] = (100, 100, 40)
+    """Cubes of `SpreadRules.cube_m` around the body: 10 m to all sides, 4 m up and down."""
 
 
-SPREAD = SpreadTuning()
+KNOWN_PLACES = KnownPlaceTuning()
+
+SPREAD = SpreadRules(
+    cube_m=0.2, few=3, most=2.0, stands=4.0, floor_m=0.1, feet_m=0.4, legs_m=1.5, above=5
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +78,9 @@ class CarrierVolumeTuning:
     high_m: float = 0.8
     """And so far below and above it [m]."""
     scans: int = 100
-    """It is learned from this many scans of the walk."""
+    """It is learned from this many scans of the walk …"""
+    views_every_ns: int = 1_000_000_000
+    """… which are compared with others this far apart [ns]."""
     occupied: float = 0.1
     """A cube is of the carrier if at least this part of the scans has points in it, three at least,
     and other scans see through more of them than they meet."""

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.classes.tuning import VIEWS
-from recon4.geometry.se3 import Array
-from recon4.kernels.free_space import NO_SURFACE, nearest_ranges
+from recon4.kernels.free_space import NO_SURFACE, Sights, nearest_ranges
 from recon4.kernels.seen_through import RangeViews
 from recon4.mapping.undistort import place
 from recon4.model.frames import RecordedFrames
@@ -19,21 +18,27 @@ from recon4.model.trajectory import Times, Trajectory
 class RegularViews:
     """Scans at regular times; those near to the multiframe in work are in memory, some forty."""
 
-    def __init__(self, frames: RecordedFrames, trajectory: Trajectory) -> None:
+    def __init__(
+        self, frames: RecordedFrames, trajectory: Trajectory, *, every_ns: int = VIEWS.every_ns
+    ) -> None:
         """Nothing is read yet.
 
         Args:
             frames: The multiframes.
             trajectory: ``T_map_body``, dense.
+            every_ns: Time between two scans [ns].
         """
         self._frames, self._trajectory = frames, trajectory
-        slots = (frames.t_mid_ns - frames.t_mid_ns[:1]) // VIEWS.every_ns
+        slots = (frames.t_mid_ns - frames.t_mid_ns[:1]) // every_ns
         self._rows = np.unique(slots, return_index=True)[1]
         self._t_ns: Times = frames.t_mid_ns[self._rows]
-        sensors, room = len(frames.rig.sensors), 2 * VIEWS.kept_ns // VIEWS.every_ns + 2
-        room = min(room, len(self._rows))
+        is_far = np.arange(len(self._rows)) % VIEWS.thinned == 0
+        self._reach_ns: Times = np.where(is_far, VIEWS.far_ns, VIEWS.reach_ns)
+        sensors, most_ns = len(frames.rig.sensors), 2 * VIEWS.far_ns + VIEWS.kept_ns
+        room = min(most_ns // every_ns + 2, len(self._rows))
         self._R, self._t = np.empty((room, sensors, 3, 3)), np.empty((room, sensors, 3))
         self._images = np.empty((room, sensors, *image_shape(frames.rig)), np.float32)
+        self._slopes = np.empty((room, sensors, 2))
         self._free = list(range(room))
         self._place: dict[int, int] = {}
 
@@ -46,19 +51,23 @@ class RegularViews:
             t_ns: Not before that of the last call [ns].
         """
         away_ns = np.abs(self._t_ns - t_ns)
-        near = np.flatnonzero((away_ns >= VIEWS.apart_ns) & (away_ns <= VIEWS.reach_ns))
-        near = near[np.argsort(np.abs(away_ns[near] - VIEWS.best_ns), kind="stable")]
-        for old in [k for k in self._place if away_ns[k] > VIEWS.kept_ns]:
+        near = np.flatnonzero((away_ns >= VIEWS.apart_ns) & (away_ns <= self._reach_ns))
+        if not len(near):
+            return None
+        for old in [k for k in self._place if away_ns[k] > self._reach_ns[k] + VIEWS.kept_ns]:
             self._free.append(self._place.pop(old))
         for k in near.tolist():
             if k not in self._place:
                 self._place[k] = self._free.pop()
                 self._fill(self._place[k], int(self._rows[k]))
-        if not len(near):
-            return None
-        return RangeViews(
-            np.array([self._place[k] for k in near.tolist()]), self._R, self._t, self._images
-        )
+        place = np.zeros(len(self._t_ns), np.int64)
+        place[near] = [self._place[k] for k in near.tolist()]
+        asked = near[away_ns[near] <= VIEWS.reach_ns]
+        asked = asked[np.argsort(np.abs(away_ns[asked] - VIEWS.best_ns), kind="stable")]
+        far = near[near % VIEWS.thinned == 0]
+        before, after = far[self._t_ns[far] < t_ns], far[self._t_ns[far] > t_ns]
+        orders = place[asked], place[before], place[after[::-1]]
+        return RangeViews(*orders, Sights(self._R, self._t, self._images), self._slopes)
 
     def _fill(self, place_of_it: int, row: int) -> None:
         frame, rig = self._frames[row], self._frames.rig
@@ -71,6 +80,7 @@ class RegularViews:
         for sensor, image in enumerate(images):
             T = T_map_sensor[sensor]
             nearest_ranges(p_map[frame.sensor == sensor], T.R, T.t, image)
+            self._slopes[place_of_it, sensor] = _slopes(image)
 
 
 def image_shape(rig: Rig) -> tuple[int, int]:
@@ -80,10 +90,11 @@ def image_shape(rig: Rig) -> tuple[int, int]:
     return rows, 2 * rows * VIEWS.columns
 
 
-def in_body(frame_xyz: NDArray[np.float32], sensor: NDArray[np.uint8], rig: Rig) -> Array:
-    """Points of sensors in the body [m], each at its time, (N, 3)."""
-    body = np.empty((len(sensor), 3))
-    for number, one in enumerate(rig.sensors):
-        mine = sensor == number
-        body[mine] = one.T_body_sensor @ frame_xyz[mine].astype(np.float64)
-    return body
+def _slopes(image: NDArray[np.float32]) -> tuple[float, float]:
+    """Least and largest slope, z through x and y, of an image's rows with returns and around."""
+    seen = np.flatnonzero(np.isfinite(image).any(axis=1))
+    if not len(seen):
+        return np.inf, -np.inf
+    edges = np.clip([seen[0] - 1, seen[-1] + 2], 1, len(image) - 1)
+    low, high = np.tan(np.pi * (edges / len(image) - 0.5)).tolist()
+    return (low if seen[0] > 1 else -np.inf), (high if seen[-1] < len(image) - 2 else np.inf)

@@ -26,15 +26,34 @@ class Verdicts(NamedTuple):
 VERDICT = Verdicts()
 
 
+class Sights(NamedTuple):
+    """Scans of S sensors as images of ranges. Kernels index it: a part of an array is dear."""
+
+    R: NDArray[np.float64]
+    """Rotations of the sensors in the map, (M, S, 3, 3)."""
+    t: NDArray[np.float64]
+    """Their places [m], (M, S, 3)."""
+    images: NDArray[np.float32]
+    """Of `nearest_ranges`, (M, S, rows, columns) [m]."""
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
-def cell_of(
-    p: NDArray[np.float64], R: NDArray[np.float64], t: NDArray[np.float64], shape: tuple[int, int]
-) -> tuple[int, int, float]:
-    """Row (elevation), column (azimuth) and range of a point in the image of a sensor at R, t."""
-    dx, dy, dz = p[0] - t[0], p[1] - t[1], p[2] - t[2]
-    x = R[0, 0] * dx + R[1, 0] * dy + R[2, 0] * dz
-    y = R[0, 1] * dx + R[1, 1] * dy + R[2, 1] * dz
-    z = R[0, 2] * dx + R[1, 2] * dy + R[2, 2] * dz
+def to_sensor(
+    p: tuple[float, float, float], sights: Sights, v: int, s: int
+) -> tuple[float, float, float]:
+    """A point in the frame of a sensor of a scan."""
+    R, t = sights.R, sights.t
+    dx, dy, dz = p[0] - t[v, s, 0], p[1] - t[v, s, 1], p[2] - t[v, s, 2]
+    return (
+        R[v, s, 0, 0] * dx + R[v, s, 1, 0] * dy + R[v, s, 2, 0] * dz,
+        R[v, s, 0, 1] * dx + R[v, s, 1, 1] * dy + R[v, s, 2, 1] * dz,
+        R[v, s, 0, 2] * dx + R[v, s, 1, 2] * dy + R[v, s, 2, 2] * dz,
+    )
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def cell_towards(x: float, y: float, z: float, shape: tuple[int, int]) -> tuple[int, int, float]:
+    """Row (elevation), column (azimuth) and range of a point in the image of its sensor."""
     flat = math.sqrt(x * x + y * y)
     row = int((math.atan2(z, flat) / math.pi + 0.5) * shape[0])
     column = int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * shape[1])
@@ -59,14 +78,22 @@ def nearest_ranges(
             (rows, columns).
     """
     for n in range(len(points)):
-        row, column, range_m = cell_of(points[n], R, t, image.shape)
+        dx, dy, dz = points[n, 0] - t[0], points[n, 1] - t[1], points[n, 2] - t[2]
+        x = R[0, 0] * dx + R[1, 0] * dy + R[2, 0] * dz
+        y = R[0, 1] * dx + R[1, 1] * dy + R[2, 1] * dz
+        z = R[0, 2] * dx + R[1, 2] * dy + R[2, 2] * dz
+        row, column, range_m = cell_towards(x, y, z, image.shape)
         if range_m < image[row, column]:
             image[row, column] = range_m
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def sight(
-    image: NDArray[np.float32], row: int, column: int, range_m: float, limits: tuple[float, float]
+    images: NDArray[np.float32],
+    image: tuple[int, int],
+    cell: tuple[int, int],
+    range_m: float,
+    limits: tuple[float, float],
 ) -> int:
     """One of `VERDICT`, by how far everything lies behind and how near a surface is [m].
 
@@ -74,9 +101,10 @@ def sight(
     returns on all four sides: the lowest beam passes above the ground before the feet.
     """
     # Most points are where they were: their own cell says so.
-    if abs(image[row, column] - range_m) < limits[1]:
+    (v, s), (row, column) = image, cell
+    if abs(images[v, s, row, column] - range_m) < limits[1]:
         return VERDICT.met
-    rows, columns = image.shape
+    rows, columns = images.shape[2:]
     nearest_m = np.inf
     below = above = left = right = False
     for i in range(max(row - 1, 0), min(row + 2, rows)):
@@ -86,7 +114,7 @@ def sight(
                 j += columns
             elif j >= columns:
                 j -= columns
-            seen_m = image[i, j]
+            seen_m = images[v, s, i, j]
             if seen_m == np.inf:
                 continue
             if abs(seen_m - range_m) < limits[1]:
@@ -122,17 +150,18 @@ def find_moving_points(
             others scans agree, (6,).
         moving: Filled, (N,).
     """
-    shape = images.shape[2:]
+    shape, sights = images.shape[2:], Sights(R, t, images)
     for n in range(len(points)):
+        p = points[n, 0], points[n, 1], points[n, 2]
         passes = meets = 0
         for v in range(len(images)):
             vote = 0
             for s in range(images.shape[1]):
-                row, column, range_m = cell_of(points[n], R[v, s], t[v, s], shape)
+                row, column, range_m = cell_towards(*to_sensor(p, sights, v, s), shape)
                 if range_m < rules[2] or range_m > rules[3]:
                     continue
                 margin_m = rules[0] + rules[1] * range_m
-                seen = sight(images[v, s], row, column, range_m, (margin_m, margin_m))
+                seen = sight(images, (v, s), (row, column), range_m, (margin_m, margin_m))
                 if seen < 0:
                     vote = -1
                     break

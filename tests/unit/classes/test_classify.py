@@ -7,7 +7,7 @@ from recon4.classes.stage import classify, write_classes
 from recon4.errors import StoreError
 from recon4.model.classes import PointClass, is_delivered
 from recon4.store.classes import StoredClasses
-from tests.unit.classes.scanned_scenes import ROOM, box, cylinder, pane, scanned
+from tests.unit.classes.scanned_scenes import HEIGHT_M, ROOM, box, cylinder, pane, scanned
 
 STANDS = int(PointClass.UNCLASSIFIED)
 
@@ -76,6 +76,28 @@ def test_who_stands_the_whole_walk_is_not_moving():
     classes, names = found(box("room", *ROOM), person)
 
     assert kept(classes, names, "person") > 0.99
+
+
+def test_a_car_that_stands_until_it_drives_off_is_moving():
+    car = cylinder("car", lambda t_s: (6.0, 1.5 + 3.0 * max(float(np.min(t_s)) - 6.0, 0.0)), 0.4)
+
+    classes, names = found(box("room", (-3.0, -3.0, 0.0), (9.0, 12.0, 3.0)), car, seconds=14.0)
+
+    assert (classes[names == "car"] == PointClass.MOVING).mean() > 0.9
+    assert kept(classes, names, "room") > 0.998
+
+
+def test_the_feet_of_who_walks_are_moving_and_the_floor_under_them_stands():
+    person = cylinder("person", lambda t_s: (4.0, -2.5 + 0.4 * t_s), 0.25)
+    walk, _ = scanned(box("room", *ROOM), person)
+
+    classes, names = found(box("room", *ROOM), person)
+
+    z_m = HEIGHT_M + np.concatenate([frame.xyz[:, 2] for frame in walk.frames])
+    feet = (names == "person") & (z_m > 0.15) & (z_m < 0.4)
+    assert feet.sum() > 20
+    assert (classes[feet] == PointClass.MOVING).mean() > 0.9
+    assert kept(classes, names, "room") > 0.998
 
 
 def test_the_classes_of_a_walk_are_stored_by_multiframe(tmp_path):
