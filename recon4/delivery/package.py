@@ -220,7 +220,9 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
     points = f"{len(map_.export.tiles):,}".replace(",", " ")
     lines = [texts("readme.title", title=visible(str(summary.get("name", "")))), ""]
     lines.append(texts("readme.state", state=map_.state.text))
-    lines.append(texts("readme.crs", crs=visible(str(summary.get("crs") or "–"))))
+    lines.append(
+        texts("readme.crs", crs=visible(str(summary.get("crs") or texts("front.crs_local"))))
+    )
     lines += ["", texts("readme.what"), ""]
     for one in sorted(path.name for path in folder.iterdir()):
         kind = kinds.get(one, {"map": "cloud"}.get(one.partition(".")[0], one.partition(".")[0]))
