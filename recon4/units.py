@@ -18,3 +18,5 @@ STANDARD_GRAVITY_M_S2 = 9.80665
 EARTH_RADIUS_M = 6_371_000.0
 """Mean radius."""
 MM_PER_INCH = 25.4
+FOOT_M = 0.3048
+"""International foot; that of the US survey differs by 2 ppm."""

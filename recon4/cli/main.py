@@ -21,6 +21,7 @@ from recon4.cli.backup import backups
 from recon4.cli.batch import batches
 from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
+from recon4.cli.control import control
 from recon4.cli.delivery import delivery, is_delivery, show_checked
 from recon4.cli.evaluation import evaluation
 from recon4.cli.exports import exports
@@ -54,7 +55,17 @@ app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
 for _part in (server, live, simulation, slices, backups, space):
     app.add_typer(_part)
-for _part in (calibration, evaluation, exports, delivery, findings, batches, machine, products):
+for _part in (
+    calibration,
+    control,
+    evaluation,
+    exports,
+    delivery,
+    findings,
+    batches,
+    machine,
+    products,
+):
     app.add_typer(_part)
 
 _INTERRUPTED = 130

@@ -162,3 +162,23 @@ class MeshFileLimits:
 
 
 MESH_FILES = MeshFileLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AccuracyClassTuning:
+    """Classes of the accuracy of a map at its check points."""
+
+    tested_points: int = 30
+    """Fewer check points estimate an accuracy, they do not test it (ASPRS Edition 2, 7.12)."""
+    walk_limits_m: tuple[float, float, float, float] = (0.14, 0.12, 0.28, 0.24)
+    """Mean horizontal and height, largest horizontal and height (V §3.3) [m]."""
+    loa_m: tuple[tuple[str, float], ...] = (
+        ("LOA20", 0.05),
+        ("LOA30", 0.015),
+        ("LOA40", 0.005),
+        ("LOA50", 0.001),
+    )
+    """Largest error at 95 % of the levels of USIBD [m]; LOA10 is the rest."""
+
+
+ACCURACY_CLASSES = AccuracyClassTuning()

@@ -16,6 +16,7 @@ from recon4.findings.summary_notes import SaidFinding, findings_in
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, to_geodetic
 from recon4.georeference.crs_file import read_crs
+from recon4.georeference.site_grid import SiteGrid
 from recon4.model.trajectory import Trajectory
 from recon4.review.state import read_summary
 from recon4.store.arrays import load_trajectory
@@ -23,6 +24,8 @@ from recon4.store.atomic import write_text
 from recon4.store.project import read_artifacts
 
 ENDINGS = (".csv", ".geojson")
+MapSystem = CrsTransform | SiteGrid
+"""Where a map has its coordinates."""
 _STAGES = ("level", "map_2d")
 """Whose trajectory the map has, of each kind of walk."""
 _COLUMNS = ("kind", "level", "title", "start_s", "end_s", "sensor", "direction", "text", "remedy")
@@ -78,7 +81,7 @@ def _line(finding: SaidFinding, walk: Trajectory | None) -> Array:
     )
 
 
-def _table(findings: list[SaidFinding], lines: list[Array], place: CrsTransform | None) -> str:
+def _table(findings: list[SaidFinding], lines: list[Array], place: MapSystem | None) -> str:
     """One row a finding, with both ends of its stretch in the CRS of the map or its local frame."""
     out = io.StringIO()
     frame = f"easting, northing, height in {place.crs}" if place else "x, y, z in the map frame"
@@ -97,13 +100,13 @@ def _table(findings: list[SaidFinding], lines: list[Array], place: CrsTransform 
     return out.getvalue()
 
 
-def _geometries(findings: list[SaidFinding], lines: list[Array], place: CrsTransform | None) -> str:
+def _geometries(findings: list[SaidFinding], lines: list[Array], place: MapSystem | None) -> str:
     """A feature a finding: its stretch of the walk, a point, or no geometry."""
-    frame = (
-        "WGS 84: longitude, latitude [deg], ellipsoidal height [m]"
-        if place
-        else "map frame: x, y, z [m]; the map is not georeferenced"
-    )
+    frame = "map frame: x, y, z [m]; the map is not georeferenced"
+    if isinstance(place, CrsTransform):
+        frame = "WGS 84: longitude, latitude [deg], ellipsoidal height [m]"
+    elif place is not None:
+        frame = "grid of the site: easting, northing, height [m]"
     features = [
         {
             "type": "Feature",
@@ -116,11 +119,13 @@ def _geometries(findings: list[SaidFinding], lines: list[Array], place: CrsTrans
     return json.dumps(whole, ensure_ascii=False, indent=1) + "\n"
 
 
-def _geometry(line: Array, place: CrsTransform | None) -> dict[str, object] | None:
+def _geometry(line: Array, place: MapSystem | None) -> dict[str, object] | None:
     if not len(line):
         return None
     p = line
-    if place:
+    if isinstance(place, SiteGrid):
+        p = place.to_crs(line)
+    elif place is not None:
         lat_rad, lon_rad, height_m = to_geodetic(place.origin, line)
         p = np.stack([np.rad2deg(lon_rad), np.rad2deg(lat_rad), height_m], axis=1)
     positions = [[round(x, 9), round(y, 9), round(z, 3)] for x, y, z in p.tolist()]

@@ -107,6 +107,46 @@ class CrsTransform:
             raise GeoreferenceError(f"{self.crs} does not cover this place")
         return p_crs
 
+    def to_map(self, p_crs: Array) -> Array:
+        """The inverse of `to_crs` [m], (N, 3) -> (N, 3).
+
+        Raises:
+            GeoreferenceError: If a point lies outside the area of the system.
+        """
+        back = self._transformer.transform
+        east, north, up = np.asarray(p_crs, dtype=np.float64).T
+        if self.has_heights:
+            lon, lat, height = back(east, north, up, direction="INVERSE", radians=True)
+        else:
+            lon, lat = back(east, north, direction="INVERSE", radians=True)
+            height = up
+        p_map = to_enu(self.origin, lat, lon, ellipsoidal_height_m=height)
+        if not np.isfinite(p_map).all():
+            raise GeoreferenceError(f"{self.crs} does not cover these coordinates")
+        return p_map
+
+
+def origin_near(crs: str, p_crs: Array) -> GeodeticOrigin:
+    """An origin for a map at a place in a CRS, easting, northing, height [m], (3,).
+
+    Which operation leads to WGS 84 is chosen by `CrsTransform`; any origin near the place will do.
+
+    Raises:
+        GeoreferenceError: If there is no such system, or the place is not in it.
+    """
+    from pyproj import Transformer
+
+    back = Transformer.from_crs(_system(crs), "EPSG:4326", always_xy=True)
+    lon, lat = back.transform(float(p_crs[0]), float(p_crs[1]))
+    if not np.isfinite([lon, lat]).all():
+        raise GeoreferenceError(
+            f"easting {p_crs[0]:.3f}, northing {p_crs[1]:.3f} is not in {crs}: expected coordinates"
+            " of that system"
+        )
+    # Rounded: the origin is a choice, not a measurement.
+    lon, lat = round(float(lon), 6), round(float(lat), 6)
+    return GeodeticOrigin(float(np.deg2rad(lat)), float(np.deg2rad(lon)), round(float(p_crs[2]), 1))
+
 
 def _topocentric(origin: GeodeticOrigin) -> Any:
     from pyproj import Transformer

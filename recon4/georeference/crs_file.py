@@ -8,7 +8,9 @@ import numpy as np
 
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.georeference.site_grid import SiteGrid
 from recon4.model.local_frame import LocalReason
+from recon4.model.site_control import SITE_GRID
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 
@@ -21,15 +23,16 @@ _WHY = {
 """An earlier version wrote sentences."""
 
 
-def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
+def read_crs(artifact: Path, crs: str = "") -> CrsTransform | SiteGrid | None:
     """Read the CRS from the artifact of the stage ``level``; None if not georeferenced.
 
     Args:
         artifact: Folder of the stage.
-        crs: Code of another CRS; empty = the one chosen by the settings.
+        crs: Code of another CRS; empty = the one chosen by the settings or the control points.
 
     Raises:
-        GeoreferenceError: If another CRS is requested and the map is not georeferenced.
+        GeoreferenceError: If another CRS is requested and the map is not georeferenced, or in the
+            grid of a site.
         StoreError: If ``georeference.json`` is missing or damaged.
     """
     path = artifact / "georeference.json"
@@ -42,6 +45,14 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
                     f"the map cannot be put into {crs}: {_WHY.get(reason, reason)}"
                 )
             return None
+        if record["crs"]["name"] == SITE_GRID:
+            if crs:
+                raise GeoreferenceError(
+                    f"the map cannot be put into {crs}: its control points are in a grid of the "
+                    "site; give them in that system"
+                )
+            east, north, up = map(float, record["crs"]["origin_m"])
+            return SiteGrid((east, north, up))
         origin = record["georeference"]["origin"]
         lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
         return CrsTransform(

@@ -61,7 +61,7 @@ class GeoreferenceRecord:
     """A georeferenced map in ``georeference.json``; the fields are its keys."""
 
     georeferenced: bool = True
-    frame: str = "x east, y north, z up; WGS 84, ellipsoidal height"
+    frame: str
     origin: OriginRecord
     fixes: int
     """Number of fixes in the recording."""
@@ -101,6 +101,8 @@ class GeoreferenceResult:
     """Rows of edges rejected because they contradict the GNSS priors."""
     positions: PositionPriors | None = None
     """The fixes used, as the graph has them."""
+    frame: str = "x east, y north, z up; WGS 84, ellipsoidal height"
+    """Axes of the map."""
 
     @property
     def rmse_m(self) -> Array:
@@ -115,6 +117,7 @@ class GeoreferenceResult:
             assert self.local is not None
             return self.local
         return GeoreferenceRecord(
+            frame=self.frame,
             origin=OriginRecord(
                 lat_deg=float(np.rad2deg(self.origin.lat_rad)),
                 lon_deg=float(np.rad2deg(self.origin.lon_rad)),
@@ -283,7 +286,7 @@ def _solve(
     graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssTuning
 ) -> tuple[PoseGraph, NDArray[np.bool_]]:
     """Solve with the fixes inside the gate, then again without the outliers."""
-    used, tilt = near, _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
+    used, tilt = near, tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
     for _ in range(2):
         priors = (_positions(gnss_priors.take(used), settings), tilt)
         solution = optimize(graph, kernel="cauchy", fixed=(), priors=priors)
@@ -308,7 +311,7 @@ def _contradicting(
         e for e in graph.edges if e.decided_by != AUTOMATIC or abs(e.j - e.i) < ROBUST.loop_nodes
     )
     walk, used = _solve(graph.with_edges(short), gnss_priors, near, settings=settings)
-    tilt = _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
+    tilt = tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
     priors: tuple[Priors, ...] = (_positions(gnss_priors.take(used), settings), tilt)
     graph = graph.with_poses(walk.T_map_body)
     robust = optimize_gnc(graph, fixed=(), priors=priors)
@@ -322,7 +325,7 @@ def _positions(gnss_priors: GnssPriors, settings: GnssTuning) -> PositionPriors:
     return PositionPriors(chosen.node, chosen.p_enu, chosen.p_node_antenna, sd_m)
 
 
-def _tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:
+def tilt_priors(graph: PoseGraph, *, sd_rad: float) -> PosePriors:
     """Priors that keep the tilt of the map: all nodes together count as one measurement.
 
     Without them the roll of a straight track about itself would be unobservable.

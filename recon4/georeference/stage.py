@@ -13,10 +13,13 @@ from recon4.georeference.antenna_audit import (
     audit_antenna,
     turn_by_antenna,
 )
-from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.georeference.control_adjustment import ToAdjust
+from recon4.georeference.control_stage import ControlRecord, OnControl, put_on_control
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin, to_geodetic
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
+from recon4.georeference.site_grid import SiteGrid
 from recon4.georeference.tuning import LEVEL_STAGE, GnssTuning
 from recon4.mapping.mirrors import Mirror, Sight, find_mirrors, save_mirrors
 from recon4.mapping.undistort import place_with_origins
@@ -27,6 +30,7 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.rejected_fixes import disputed_m, rejected_runs
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
+from recon4.model.site_control import SiteControl
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.files import save_graph
@@ -77,6 +81,8 @@ class LeveledMap:
     """Covariances of the poses of the nodes; None = not stated."""
     mirrors: tuple[Mirror, ...] = ()
     """Walls that show the room before them."""
+    control: ControlRecord | None = None
+    """What the control points say; None = none were given."""
 
     def save(self, out: Path) -> LevelFigures:
         """Write ``trajectory.npz``, the files of the graph, ``georeference.json``,
@@ -92,6 +98,8 @@ class LeveledMap:
             "georeference": self.georeference.record(),
             "crs": self.crs or {},
         }
+        if self.control is not None:
+            record["control"] = self.control
         write_json(out / "georeference.json", to_plain(record))
         return LevelFigures(
             leveled_by=self.leveling.source,
@@ -117,14 +125,14 @@ class RefinedWalk:
     """The verified one."""
     known: KnownErrors = NOTHING_KNOWN
     """What they found to be wrong."""
+    control: SiteControl | None = None
+    """Control points; None = none were given."""
 
 
 def level_and_georeference(
     frames: FrameStore, walk: RefinedWalk, *, settings: LevelReads, progress: Progress
 ) -> LeveledMap:
-    """Level a finished trajectory and, if there are GNSS positions, georeference it.
-
-    Edges that were confirmed only by edges rejected here become unverified.
+    """Level a finished trajectory; GNSS positions or control points give it its place.
 
     Args:
         frames: The multiframes with IMU and GNSS.
@@ -144,13 +152,19 @@ def level_and_georeference(
         nodes, dense, fixes, rig=frames.rig, settings=tuned(GnssTuning, settings.gnss)
     )
     antenna = _audit_antenna(fixes, dense, placed, rig=frames.rig)
-    dense = apply_corrections(
-        dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
-    )
-    crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else None
-    judged = placed.graph
-    if placed.rejected:
-        judged = confirmed_again(judged, settings=settings.verification)
+    control = None
+    if walk.control is None:
+        dense = apply_corrections(
+            dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
+        )
+        crs = _describe_crs(placed.origin, settings.gnss.crs) if placed.origin else None
+    else:
+        before = _uncertainty(frames, placed.graph, placed, antenna=antenna, known=walk.known)
+        leveled = _Leveled(dense, placed, leveling, before)
+        on = _on_control(leveled, walk.control, settings=settings)
+        dense, placed, control = on.trajectory, _placed_by(on, placed), on.record
+        crs = _record_of(on.system)
+    judged = _judged_again(placed, settings)
     progress.advance()
     uncertainty = _uncertainty(frames, judged, placed, antenna=antenna, known=walk.known)
     return LeveledMap(
@@ -162,7 +176,56 @@ def level_and_georeference(
         antenna,
         uncertainty,
         mirrors=_mirrors(frames, dense),
+        control=control,
     )
+
+
+def _judged_again(placed: GeoreferenceResult, settings: LevelReads) -> PoseGraph:
+    """Edges that were confirmed only by rejected ones become unverified."""
+    if not placed.rejected:
+        return placed.graph
+    return confirmed_again(placed.graph, settings=settings.verification)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Leveled:
+    """A map before it is put on control points."""
+
+    dense: Trajectory
+    """Leveled, without GNSS."""
+    placed: GeoreferenceResult
+    leveling: Leveling
+    uncertainty: PoseUncertainty | None
+
+
+def _on_control(given: _Leveled, control: SiteControl, *, settings: LevelReads) -> OnControl:
+    placed = given.placed
+    on_earth = placed.origin is not None
+    to_adjust = ToAdjust(
+        trajectory=given.dense,
+        graph=placed.graph,
+        leveled=given.leveling.source != "none",
+        tilt_sd_rad=tuned(GnssTuning, settings.gnss).tilt_sd_rad,
+        positions=placed.positions,
+        on_earth=on_earth and bool(control.crs),
+        start=placed.graph.T_map_body if on_earth else None,
+        keep_edges=bool(placed.rejected),
+        uncertainty=given.uncertainty,
+    )
+    return put_on_control(to_adjust, control, origin=placed.origin)
+
+
+def _placed_by(on: OnControl, placed: GeoreferenceResult) -> GeoreferenceResult:
+    """The georeference after the control points have moved the map."""
+    found = replace(placed, graph=on.adjusted.graph, positions=on.adjusted.positions)
+    if isinstance(on.system, CrsTransform):
+        return replace(found, origin=on.system.origin, local=None)
+    if placed.origin is None:
+        return found
+    p_enu = on.adjusted.T_site_map.inverse() @ np.zeros((1, 3))
+    lat, lon, height = (float(v[0]) for v in to_geodetic(placed.origin, p_enu))
+    frame = "x, y of the site grid, z up; its origin on WGS 84 by GNSS"
+    return replace(found, origin=GeodeticOrigin(lat, lon, height), frame=frame)
 
 
 def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[Mirror, ...]:
@@ -186,6 +249,8 @@ def _uncertainty(
     runs = rejected_runs(placed.t_ns, placed.used, placed.residual_m)
     disputed = disputed_m(runs, fixes=len(placed.t_ns))
     model = replace(CALIBRATED, gnss_m=float(np.hypot(CALIBRATED.gnss_m, disputed)))
+    if not len(placed.t_ns):
+        model = replace(model, gnss_m=0.0)  # control points alone place the map
     if antenna is not None and antenna_doubts(antenna):
         known_m = float(np.linalg.norm(antenna.arm_m)) + LEVEL_STAGE.walk_m_s * abs(antenna.clock_s)
         nodes = Trajectory(graph.t_ns, graph.T_map_body)
@@ -232,7 +297,10 @@ def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Le
 
 
 def _describe_crs(origin: GeodeticOrigin, name: str) -> CrsRecord:
-    crs = CrsTransform(origin, name)
+    return _record_of(CrsTransform(origin, name))
+
+
+def _record_of(crs: CrsTransform | SiteGrid) -> CrsRecord:
     return CrsRecord(
         name=crs.crs,
         wkt=crs.wkt,

@@ -17,7 +17,7 @@ from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Relations
 from recon4.pose_graph.checks import check_relations
-from recon4.pose_graph.priors import Kernel, PosePriors, Priors
+from recon4.pose_graph.priors import Kernel, PosePriors, Priors, TargetPriors
 from recon4.pose_graph.tuning_solve import SOLVE
 
 
@@ -51,6 +51,8 @@ class FactorProblem:
             _check_prior(prior, nodes=len(T_map_body))
             if isinstance(prior, PosePriors):
                 always += _pose_factors(prior)
+            elif isinstance(prior, TargetPriors):
+                always += _target_factors(prior)
             else:
                 rows = zip(prior.node, prior.p_map, prior.p_body, prior.sd_m, strict=True)
                 positions += [(int(node), *row) for node, *row in rows]
@@ -133,6 +135,8 @@ def _check_prior(prior: Priors, *, nodes: int) -> None:
         raise GraphError(f"a prior names a node outside 0 to {nodes - 1}")
     if isinstance(prior, PosePriors):
         numbers = [prior.T_map_body.R, prior.T_map_body.t, prior.information]
+    elif isinstance(prior, TargetPriors):
+        numbers = [prior.p_map, prior.p_body, prior.information]
     else:
         numbers = [prior.p_map, prior.p_body, prior.sd_m]
         if np.any(prior.sd_m <= 0.0):
@@ -147,6 +151,14 @@ def _pose_factors(prior: PosePriors) -> list[Any]:
             int(node), _pose(prior.T_map_body, row), gtsam.noiseModel.Gaussian.Information(weight)
         )
         for row, (node, weight) in enumerate(zip(prior.node, prior.information, strict=True))
+    ]
+
+
+def _target_factors(prior: TargetPriors) -> list[Any]:
+    rows = zip(prior.node, prior.p_map, prior.p_body, prior.information, strict=True)
+    return [
+        gtsam.GPSFactorArm(int(node), p_map, p_body, gtsam.noiseModel.Gaussian.Information(weight))
+        for node, p_map, p_body, weight in rows
     ]
 
 

@@ -37,4 +37,18 @@ class PositionPriors:
     """Standard deviations along the axes of the map [m], (M, 3)."""
 
 
-Priors = PosePriors | PositionPriors
+@dataclass(frozen=True, slots=True, eq=False)
+class TargetPriors:
+    """Surveyed targets that nodes saw; no kernel limits their influence."""
+
+    node: Rows
+    """Rows of the nodes, (M,)."""
+    p_map: Array
+    """Surveyed positions in the map [m], (M, 3)."""
+    p_body: Array
+    """The target in the body of the node [m], (M, 3)."""
+    information: Array
+    """Inverse covariance in axes of the map [1/m²], positive definite, (M, 3, 3)."""
+
+
+Priors = PosePriors | PositionPriors | TargetPriors

@@ -18,6 +18,7 @@ from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import AUTOMATIC
+from recon4.model.site_control import SiteControl
 from recon4.store.hashing import hash_json
 
 Pair = tuple[int, int]
@@ -45,6 +46,9 @@ class DecisionKind(StrEnum):
     """A finished map was approved; changes no decision."""
     ACKNOWLEDGE = "acknowledge"
     """A finding of a map was acknowledged; changes no decision."""
+    CONTROL = "control"
+    """Control points place the map; those of an earlier row no longer do. None of them: the map is
+    placed as without."""
 
 
 MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
@@ -114,6 +118,8 @@ class DecisionBody(TypedDict):
     """Fields of `ApprovalFacts`."""
     finding: NotRequired[Mapping[str, object]]
     """Fields of `SeenFinding`; only there in an acknowledgment."""
+    control: NotRequired[Mapping[str, object]]
+    """Fields of `SiteControl`; only there in a row about control points."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +139,8 @@ class Decision:
     """Of `APPROVE`."""
     finding: SeenFinding | None = None
     """Of `ACKNOWLEDGE`."""
+    control: SiteControl | None = None
+    """Of `CONTROL`."""
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
@@ -150,6 +158,8 @@ class Decision:
         acknowledges = self.kind is DecisionKind.ACKNOWLEDGE
         if acknowledges != (self.finding is not None) or (acknowledges and not self.why.strip()):
             raise ConfigError("an acknowledgment needs a finding and a note, no other decision one")
+        if (self.kind is DecisionKind.CONTROL) != (self.control is not None):
+            raise ConfigError(f"a decision to {self.kind} with or without control points")
 
     def body(self) -> DecisionBody:
         """What the journal stores beside its columns."""
@@ -160,6 +170,8 @@ class Decision:
         }
         if self.finding:
             body["finding"] = to_plain(self.finding)
+        if self.control:
+            body["control"] = to_plain(self.control)
         return body
 
     @staticmethod
@@ -180,6 +192,7 @@ class Decision:
                 measurement=_measurement(record) if record else None,
                 facts=msgspec.convert(body["facts"], ApprovalFacts | None),
                 finding=msgspec.convert(body.get("finding"), SeenFinding | None),
+                control=msgspec.convert(body.get("control"), SiteControl | None),
             )
         except (KeyError, TypeError, ValueError, msgspec.ValidationError) as error:
             raise StoreError(f"the journal has a row that is no decision: {error}") from error
@@ -210,17 +223,34 @@ class Decided:
     """Number of decisions that can be undone."""
     redoable: int = 0
     """Number of decisions that can be redone."""
+    control: SiteControl | None = None
+    """What places the map; None = no control points."""
 
     @property
     def key(self) -> str:
         """SHA-256 of the decisions in force, independent of when they were made."""
+        return joined_key(self.pairs_key, self.control_key)
+
+    @property
+    def pairs_key(self) -> str:
+        """SHA-256 of those about pairs."""
         return hash_json(to_plain(self.standing))
 
+    @property
+    def control_key(self) -> str | None:
+        """SHA-256 of the control points; None = there are none."""
+        return hash_json(to_plain(self.control)) if self.control else None
+
     def __bool__(self) -> bool:
-        return bool(self.standing)
+        return bool(self.standing) or self.control is not None
 
 
 NOTHING_DECIDED = Decided()
+
+
+def joined_key(pairs_key: str, control_key: str | None) -> str:
+    """`Decided.key` of its two parts; without control points that of the pairs."""
+    return pairs_key if control_key is None else hash_json([pairs_key, control_key])
 
 
 def fold(decisions: Iterable[Decision]) -> Decided:
@@ -243,10 +273,14 @@ def fold(decisions: Iterable[Decision]) -> Decided:
             done.append(decision)
             undone.clear()
     standing: dict[Pair, Standing] = {}
+    control: SiteControl | None = None
     for decision in done:
-        _stand(standing, decision)
+        if decision.control is not None:
+            control = decision.control if decision.control.targets else None
+        else:
+            _stand(standing, decision)
     ordered = tuple(standing[pair] for pair in sorted(standing))
-    return Decided(ordered, len(done), len(undone))
+    return Decided(ordered, len(done), len(undone), control)
 
 
 def _stand(standing: dict[Pair, Standing], decision: Decision) -> None:

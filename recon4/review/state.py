@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
-from recon4.review.decisions import NOTHING_DECIDED
+from recon4.review.decisions import NOTHING_DECIDED, joined_key
 from recon4.review.tuning import SUMMARIES
 from recon4.store.earlier_names import SUMMARY, current_names
 from recon4.store.json_files import read_object
@@ -42,7 +42,13 @@ def decisions_in_map(root: Path) -> str | None:
     summary = read_summary(root)
     if summary is None:
         return None
-    review = artifact_keys(summary).get("review")
-    if review is None:
-        return NOTHING_DECIDED.key
-    return read_manifest(root / "artifacts" / review)["recipe"]["inputs"]["decisions"]
+    keys = artifact_keys(summary)
+    pairs = _input(root, keys.get("review"), "decisions") or NOTHING_DECIDED.key
+    return joined_key(pairs, _input(root, keys.get("level"), "control"))
+
+
+def _input(root: Path, key: str | None, name: str) -> str | None:
+    """Key of an input of an artifact; None = it has no such input, or there is no artifact."""
+    if key is None:
+        return None
+    return read_manifest(root / "artifacts" / key)["recipe"]["inputs"].get(name)

@@ -34,7 +34,7 @@ def to_trajectory(run: Run) -> None:
     """The final trajectory: refined, leveled, georeferenced."""
     inputs = run.measurements | {"odometry": "odometry", "graph": run.graph}
     run.stage(REFINE, **inputs)
-    run.stage(LEVEL, **inputs, refined="refine", audit=run.rig_audit)
+    run.stage(LEVEL, **inputs, **run.control, refined="refine", audit=run.rig_audit)
 
 
 def from_review(run: Run) -> None:

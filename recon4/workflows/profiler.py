@@ -30,7 +30,7 @@ def from_review(run: Run) -> None:
     """Every line scan is moved; then the map, as of LiDARs."""
     inputs = {"frames": "frames", "odometry": "odometry", "graph": run.graph}
     run.stage(LINE_REFINE, **inputs)
-    run.stage(LEVEL, **inputs, refined="refine", audit=None)
+    run.stage(LEVEL, **inputs, **run.control, refined="refine", audit=None)
     points = {"frames": "frames", "odometry": "odometry", "level": "level"}
     run.stage(INTENSITY, **points)
     run.stage(CLASSES, **points)

@@ -24,6 +24,7 @@ from recon4.model.finding_kinds import AUDIT_VERSION
 from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
+from recon4.model.site_control import SiteControl
 from recon4.review.decisions import Standing
 from recon4.settings.reads import (
     AuditReads,
@@ -183,7 +184,7 @@ def _level(
     refined: Path,
     graph: Path,
     calibration: Path | None = None,
-    **doubts: Path | None,
+    **others: Path | SiteControl | None,
 ) -> LevelFigures:
     from recon4.georeference.stage import RefinedWalk, level_and_georeference
     from recon4.pose_graph.files import load_graph
@@ -191,12 +192,15 @@ def _level(
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
 
+    control = others.pop("control", None)
+    doubts = {name: one for name, one in others.items() if not isinstance(one, SiteControl)}
     leveled = level_and_georeference(
         open_frames(frames, calibration),
         RefinedWalk(
             trajectory=load_trajectory(refined / "trajectory.npz"),
             graph=load_graph(graph),
             known=load_known_errors(**doubts),
+            control=control if isinstance(control, SiteControl) else None,
         ),
         settings=context.settings,
         progress=context.progress,

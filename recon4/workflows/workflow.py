@@ -42,8 +42,8 @@ class Run:
         Without decisions there is no stage ``review``, so that undoing all of them finds the
         artifacts of before again.
         """
-        if self.decided:
-            decisions = Input(self.decided.key, self.decided.standing)
+        if self.decided.standing:
+            decisions = Input(self.decided.pairs_key, self.decided.standing)
             self.stage(REVIEW, graph=VERIFICATION.name, decisions=decisions)
         else:
             self.runner.skip(REVIEW)
@@ -51,7 +51,17 @@ class Run:
     @property
     def graph(self) -> str:
         """Stage with the final graph before leveling."""
-        return REVIEW.name if self.decided else VERIFICATION.name
+        return REVIEW.name if self.decided.standing else VERIFICATION.name
+
+    @property
+    def control(self) -> dict[str, Input]:
+        """Input of the stage that places the map: control points, if there are any."""
+        found = self.decided.control
+        if found is None:
+            return {}
+        key = self.decided.control_key
+        assert key is not None
+        return {"control": Input(key, found)}
 
     @property
     def calibration(self) -> CalibrationFigures | None:

@@ -129,6 +129,9 @@ MAY_IMPORT = {
     "recon4/products": STAGE
     | {f"recon4.{room}" for room in ("mapping", "products", "slices")}
     | {"recon4.review.stamp"},
+    "recon4/slices/site_control.py": STAGE
+    | {"recon4.georeference", "recon4.slices"}
+    | {f"recon4.pose_graph.{name}" for name in ("files", "uncertainty_files")},
     "recon4/report": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"}
     | {"recon4.findings"},
@@ -158,6 +161,7 @@ NOBODY_IMPORTS = {
     "recon4.pipeline": {
         "recon4/api/running.py",
         "recon4/cli/main.py",
+        "recon4/cli/control.py",
         "recon4/cli/findings.py",
         "recon4/workflows/calibration_methods.py",
         "app/recon4_app/cli/serve.py",

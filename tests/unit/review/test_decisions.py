@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from recon4.errors import ConfigError, StoreError
+from recon4.model.site_control import SeenTarget, SiteControl
 from recon4.review.decisions import (
     ABOUT_MAPS,
     NOTHING_DECIDED,
@@ -42,11 +43,31 @@ SEEN = SeenFinding(
 )
 
 
+def control_points(*names):
+    return SiteControl(
+        targets=tuple(
+            SeenTarget(
+                id=name,
+                xyz_m=(1.0, 2.0, 3.0),
+                role="control",
+                sd_m=(0.01, 0.01),
+                t_ns=(5,),
+                p_body_m=((0.1, 0.2, 0.3),),
+                directions_body=(((1.0, 0.0, 0.0),),),
+            )
+            for name in names
+        ),
+        crs="",
+    )
+
+
 def decide(kind, pair=(2, 7), who="Eva", **more):
     if kind in (DecisionKind.UNDO, DecisionKind.REDO, DecisionKind.APPROVE):
         return Decision(kind=kind, who=who, **more)
     if kind is DecisionKind.ACKNOWLEDGE:
         return Decision(kind=kind, who=who, **{"why": "seen on site", "finding": SEEN, **more})
+    if kind is DecisionKind.CONTROL:
+        return Decision(kind=kind, who=who, **{"control": control_points("A"), **more})
     if kind in (DecisionKind.REPLACE, DecisionKind.ADD):
         more.setdefault("measurement", MEASURED)
     return Decision(kind=kind, who=who, pair=pair, **more)
@@ -198,6 +219,26 @@ def test_a_pose_as_numbers_reads_back():
     T = pose_of(HERE)
 
     assert numbers_of(T) == pytest.approx(HERE)
+
+
+def test_the_last_control_points_place_the_map_and_none_of_them_places_it_as_without():
+    first, second = (decide(DecisionKind.CONTROL, control=control_points(n)) for n in "AB")
+    rows = [decide(DecisionKind.REJECT), first, second]
+    assert fold(rows).control == control_points("B")
+    assert fold([*rows, decide(DecisionKind.UNDO)]).control == control_points("A")
+    removed = fold([*rows, decide(DecisionKind.CONTROL, control=control_points())])
+    assert removed.control is None
+    assert removed.key == fold([decide(DecisionKind.REJECT)]).key != fold(rows).key
+    assert len({fold(rows).key, fold(rows[:2]).key}) == 2
+    assert fold(rows).pairs_key == removed.key
+
+
+def test_control_points_are_read_back_as_they_were_written():
+    one = decide(DecisionKind.CONTROL)
+    body = json.loads(json.dumps(one.body()))
+    assert Decision.of("control", "Eva", "", pair=None, body=body) == one
+    with pytest.raises(ConfigError, match="control points"):
+        decide(DecisionKind.CONTROL, control=None)
 
 
 @settings(max_examples=10, deadline=None)

@@ -1,0 +1,164 @@
+"""The command ``recon4 control``: judge control points, and put a map on them."""
+
+from __future__ import annotations
+
+from getpass import getuser
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from recon4.cli.confinement import confine_command
+from recon4.cli.terminal import write
+from recon4.errors import ConfigError, GeoreferenceError
+
+if TYPE_CHECKING:
+    from recon4.model.site_control import SiteControl
+    from recon4.slices.control_points import ControlPoint
+    from recon4.slices.measured_points import MeasuredPosition
+    from recon4.slices.site_control import ControlTrial
+
+control = typer.Typer()
+
+
+@control.command("control")
+def control_points(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    survey: Annotated[
+        Path | None,
+        typer.Argument(help="Surveyed points: id, east, north, height, role (control or check)."),
+    ] = None,
+    *,
+    picks: Annotated[
+        Path | None,
+        typer.Option(
+            help="Where they are in the map: id, x, y, z. Default: as picked on the page Slices."
+        ),
+    ] = None,
+    crs: Annotated[
+        str, typer.Option(help="EPSG code of the survey. Default: a grid of the site alone.")
+    ] = "",
+    apply: Annotated[
+        bool,
+        typer.Option(
+            "--apply", help="Put the map on the points; without SURVEY take it off them again."
+        ),
+    ] = False,
+) -> None:
+    """Judge control and check points; with --apply put the map into their coordinates.
+
+    Exit code 1 if a blunder is suspected; the map is then not put on the points.
+    """
+    confine_command(write=[project])
+    from recon4.model.site_control import SiteControl
+
+    if survey is None:
+        if not apply or picks or crs:
+            raise ConfigError("SURVEY: expected a file with surveyed points")
+        _make_again(project, SiteControl(targets=(), crs=""))
+        return
+    trial = _try(project, _points(survey), picks, crs=crs)
+    write(_tables(_record(trial)))
+    if trial.unseen:
+        write(f"not measured in the map: {', '.join(trial.unseen)}")
+    _refuse(trial)
+    if apply:
+        _make_again(project, trial.control)
+
+
+def _record(trial: ControlTrial) -> dict[str, object]:
+    """A trial as ``georeference.json`` would have it."""
+    from recon4.model.plain import to_plain
+
+    return {"control": to_plain(trial.record)}
+
+
+def _tables(record: dict[str, object]) -> str:
+    from recon4.evaluation.site_control import control_in, outcome_text
+
+    outcome = control_in(record)
+    assert outcome is not None
+    return outcome_text(outcome)
+
+
+def _points(survey: Path) -> tuple[ControlPoint, ...]:
+    from recon4.recording.tables.coordinates import raise_question
+    from recon4.slices.control_points import read_control
+    from recon4.slices.tuning_files import CONTROL_FILES
+    from recon4.untrusted.bounded import read_bytes_limited
+
+    found = read_control(read_bytes_limited(survey, CONTROL_FILES.max_bytes), name=survey.name)
+    raise_question(found.table, survey.name)
+    for line in found.skipped:
+        write(f"{survey.name} {line}: left out")
+    return found.points
+
+
+def _try(
+    project: Path,
+    points: tuple[ControlPoint, ...],
+    picks: Path | None,
+    *,
+    crs: str,
+) -> ControlTrial:
+    from recon4.slices.site_control import try_control
+    from recon4.store.project import read_artifacts
+
+    artifacts = read_artifacts(project)
+    measured = _picked(picks) if picks else _picked_on_page(project, artifacts["map"].name)
+    return try_control(points, measured, artifacts, crs=crs)
+
+
+def _picked(picks: Path) -> dict[str, MeasuredPosition]:
+    import numpy as np
+
+    from recon4.evaluation.markers import read_markers
+    from recon4.slices.measured_points import MeasuredPosition
+
+    found = {}
+    for marker in read_markers(picks, partial=True):
+        along = np.eye(3)[np.isfinite(marker.xyz_m)]
+        if len(along) < 3:
+            raise ConfigError(
+                f"{picks.name}: {marker.name}: expected x, y and z of the place in the map"
+            )
+        found[marker.name] = MeasuredPosition(marker.xyz_m, along)
+    return found
+
+
+def _picked_on_page(project: Path, key: str) -> dict[str, MeasuredPosition]:
+    from recon4.slices.stored_picks import stored_picks
+
+    found = stored_picks(project, key)
+    if not found:
+        raise ConfigError("no point was picked in this map on the page Slices: give --picks")
+    return found
+
+
+def _refuse(trial: ControlTrial) -> None:
+    from recon4.slices.site_control import forbidding
+
+    found = forbidding(trial)
+    if found:
+        raise GeoreferenceError(
+            f"the map is not put on these points: {' '.join(one.text for one in found)}"
+        )
+
+
+def _make_again(project: Path, decided: SiteControl) -> None:
+    """Note the decision in the journal and make the map again."""
+    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.pipeline import remake
+    from recon4.review.decisions import Decision, DecisionKind
+    from recon4.review.journal import append
+    from recon4.store.json_files import read_object
+    from recon4.store.project import read_artifacts
+    from recon4.untrusted.limits import LIMITS
+
+    append(project, Decision(kind=DecisionKind.CONTROL, who=getuser(), control=decided))
+    with watcher() as progress:
+        summary = remake(project, progress=progress)
+    write(describe_summary(summary))
+    if decided.targets:
+        path = read_artifacts(project)["level"] / "georeference.json"
+        write(_tables(read_object(path, max_bytes=LIMITS.findings_bytes)))

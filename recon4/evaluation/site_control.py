@@ -1,0 +1,231 @@
+"""Control and check points of a finished map: residuals, and what may be said of its accuracy."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import msgspec
+
+from recon4.errors import StoreError
+from recon4.evaluation.table import text_table
+from recon4.evaluation.tuning import ACCURACY_CLASSES
+
+Offset = tuple[float | None, float | None, float | None]
+
+
+class PointTest(msgspec.Struct, frozen=True):
+    """What the other control points say of one; None = nothing controls it, or not measured."""
+
+    redundancy: tuple[float, ...]
+    w: float
+    limit: float
+    single_handed: bool
+    least_found_h_m: float | None = None
+    least_found_v_m: float | None = None
+
+
+class ControlRow(msgspec.Struct, frozen=True):
+    """A point with its residuals, map minus survey: east, north, up [m]; None = not measured."""
+
+    id: str
+    role: str
+    sd_m: tuple[float, float]
+    rigid_m: Offset
+    adjusted_m: Offset
+    test: PointTest | None = None
+
+
+class ControlOutcome(msgspec.Struct, frozen=True):
+    """``control`` of ``georeference.json``."""
+
+    crs: str
+    freedom: int
+    scale: float
+    points: tuple[ControlRow, ...]
+    scale_sd: float | None = None
+    sd0: float | None = None
+    blunders: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class RoleAccuracy:
+    """Residuals of the points of one role [m]; None = measured at no point."""
+
+    role: str
+    points: int
+    rmse_h_m: float | None
+    """Root mean square of the horizontal length."""
+    rmse_v_m: float | None
+    rmse_3d_m: float | None
+    mean_h_m: float | None
+    mean_v_m: float | None
+    max_h_m: float | None
+    max_v_m: float | None
+    survey_h_m: float
+    """Horizontal error of the survey and the pick themselves, by length."""
+    survey_v_m: float
+
+
+def control_in(record: Mapping[str, object]) -> ControlOutcome | None:
+    """Read ``control`` of a parsed ``georeference.json``; None = there were no control points.
+
+    Raises:
+        StoreError: If it is damaged.
+    """
+    if "control" not in record:
+        return None
+    try:
+        return msgspec.convert(record["control"], ControlOutcome)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"georeference.json: control cannot be read: {error}") from error
+
+
+def accuracy_of(outcome: ControlOutcome, role: str, *, rigid: bool = False) -> RoleAccuracy:
+    """Statistics of the points of one role.
+
+    Args:
+        outcome: Of the map.
+        role: ``control`` or ``check``.
+        rigid: Of the rigid fit, in place of the adjustment.
+    """
+    own = [one for one in outcome.points if one.role == role]
+    off = [one.rigid_m if rigid else one.adjusted_m for one in own]
+    flat = [math.hypot(e, n) for e, n, _ in off if e is not None and n is not None]
+    up = [abs(u) for _, _, u in off if u is not None]
+    space = [
+        math.hypot(e, n, u) for e, n, u in off if e is not None and n is not None and u is not None
+    ]
+    return RoleAccuracy(
+        role=role,
+        points=len(own),
+        rmse_h_m=_rms(flat),
+        rmse_v_m=_rms(up),
+        rmse_3d_m=_rms(space),
+        mean_h_m=_mean(flat),
+        mean_v_m=_mean(up),
+        max_h_m=max(flat, default=None),
+        max_v_m=max(up, default=None),
+        survey_h_m=math.sqrt(2.0) * (_rms([one.sd_m[0] for one in own]) or 0.0),
+        survey_v_m=_rms([one.sd_m[1] for one in own]) or 0.0,
+    )
+
+
+def statements(outcome: ControlOutcome) -> list[str]:
+    """What may be said of the accuracy: ASPRS Edition 2 (2023), the limits of V, USIBD LOA (2016).
+
+    The error of the survey is part of it (ASPRS Edition 2, 7.11). A map counts as tested from 30
+    check points on; with fewer its accuracy is estimated.
+    """
+    found = accuracy_of(outcome, "check")
+    if not found.points:
+        return ["No check point: nothing independent says how accurate the map is."]
+    tested = found.points >= ACCURACY_CLASSES.tested_points
+    word = "tested" if tested else "estimated"
+    lines = []
+    for name, axis, rmse_m, survey_m in (
+        ("horizontal", "H", found.rmse_h_m, found.survey_h_m),
+        ("vertical", "V", found.rmse_v_m, found.survey_v_m),
+    ):
+        if rmse_m is not None:
+            total_cm = 100.0 * math.hypot(rmse_m, survey_m)
+            lines.append(
+                f"{word.capitalize()} {name} positional accuracy: RMSE_{axis} = {total_cm:.1f} cm "
+                f"at {found.points} check points, with the survey's own {100 * survey_m:.1f} cm "
+                "(ASPRS Positional Accuracy Standards, Edition 2)."
+            )
+    if not tested:
+        lines.append(
+            f"Not tested: {found.points} of {ACCURACY_CLASSES.tested_points} check points."
+        )
+    return [*lines, _walk_limits(found), *_level_of_accuracy(found)]
+
+
+def outcome_text(outcome: ControlOutcome) -> str:
+    """Residuals and tests as tables for a terminal, in centimeters."""
+    rows = [
+        (
+            f"{one.id} ({one.role})",
+            *map(_cm, one.adjusted_m),
+            _cm(_length(one.adjusted_m[:2])),
+            _cm(_length(one.adjusted_m)),
+            *_test_cells(one.test),
+        )
+        for one in outcome.points
+    ]
+    head = ("Point", "dE cm", "dN cm", "dH cm", "2-D cm", "3-D cm")
+    tests = ("redundancy", "MDE H cm", "MDE V cm", "w (limit)", "")
+    figures = [
+        (
+            f"{found.role}, {found.points}",
+            *map(_cm, (found.rmse_h_m, found.rmse_v_m, found.rmse_3d_m)),
+            *map(_cm, (found.max_h_m, found.max_v_m)),
+        )
+        for found in (accuracy_of(outcome, role) for role in ("control", "check"))
+        if found.points
+    ]
+    sd = "" if outcome.scale_sd is None else f" ± {1e6 * outcome.scale_sd:.0f}"
+    return "\n".join(
+        [
+            text_table((*head, *tests), rows),
+            text_table(
+                ("Role, points", "RMSE H cm", "RMSE V cm", "RMSE 3-D cm", "max H", "max V"), figures
+            ),
+            f"{outcome.crs}; {outcome.freedom} degrees of freedom; scale of the survey "
+            f"{1e6 * (outcome.scale - 1.0):+.0f}{sd} ppm, not applied",
+            *statements(outcome),
+            *(f"Suspected: {text}" for text in outcome.blunders),
+        ]
+    )
+
+
+def _test_cells(test: PointTest | None) -> tuple[str, ...]:
+    if test is None:
+        return ("", "", "", "", "")
+    r = "/".join(f"{value:.2f}" for value in test.redundancy)
+    found = (_cm(test.least_found_h_m), _cm(test.least_found_v_m))
+    said = "single-handed" if test.single_handed else "BLUNDER" if test.w > test.limit else ""
+    return (r, *found, f"{test.w:.1f} ({test.limit:.1f})", said)
+
+
+def _walk_limits(found: RoleAccuracy) -> str:
+    """Limits of V §3.3: mean 14 cm and 12 cm, largest 28 cm and 24 cm."""
+    given = (found.mean_h_m, found.mean_v_m, found.max_h_m, found.max_v_m)
+    limits = ACCURACY_CLASSES.walk_limits_m
+    known = [(one, limit) for one, limit in zip(given, limits, strict=True) if one is not None]
+    holds = all(one <= limit for one, limit in known)
+    shown = ", ".join(f"{100 * one:.1f} of {100 * limit:.0f}" for one, limit in known)
+    return (
+        f"{'Within' if holds else 'Outside'} the usual limits, mean and largest residual "
+        f"horizontal and in height: {shown} cm."
+    )
+
+
+def _level_of_accuracy(found: RoleAccuracy) -> Sequence[str]:
+    if found.rmse_3d_m is None:
+        return ()
+    total_m = math.hypot(found.rmse_3d_m, found.survey_h_m, found.survey_v_m)
+    most_m = 2.0 * total_m
+    level = "LOA10"
+    for name, limit_m in ACCURACY_CLASSES.loa_m:
+        if most_m <= limit_m:
+            level = name
+    return (f"USIBD level of accuracy (2 σ = {100 * most_m:.1f} cm): {level}.",)
+
+
+def _length(offset: Sequence[float | None]) -> float | None:
+    known = [one for one in offset if one is not None]
+    return math.hypot(*known) if len(known) == len(offset) else None
+
+
+def _rms(values: Sequence[float]) -> float | None:
+    return math.sqrt(sum(v * v for v in values) / len(values)) if values else None
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return sum(values) / len(values) if values else None
+
+
+def _cm(value_m: float | None) -> str:
+    return "–" if value_m is None else f"{100.0 * value_m:.1f}"

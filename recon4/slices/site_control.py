@@ -1,0 +1,173 @@
+"""Control points of a survey that were measured in a map, as an input of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import ConfigError, GeoreferenceError
+from recon4.geometry.se3 import Array
+from recon4.georeference.control_adjustment import measured_targets
+from recon4.georeference.control_blunders import Blunder, named_blunders
+from recon4.georeference.control_sightings import PickedTarget, sightings
+from recon4.georeference.control_stage import (
+    ControlRecord,
+    control_record,
+    offsets,
+    suspected_checks,
+    system_of,
+)
+from recon4.georeference.crs_file import read_crs
+from recon4.model.site_control import SeenTarget, SiteControl
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import load_graph
+from recon4.pose_graph.uncertainty_files import load_uncertainty
+from recon4.slices.control_points import ControlPoint
+from recon4.slices.measured_points import MeasuredPosition
+from recon4.store.arrays import load_trajectory
+from recon4.store.frames import open_frames
+from recon4.store.json_files import read_object
+from recon4.untrusted.limits import LIMITS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlAccuracy:
+    """How exact points are, survey and pick together."""
+
+    horizontal_m: float = 0.01
+    """Standard deviation of easting and of northing [m]."""
+    height_m: float = 0.01
+    """Of the height [m]."""
+
+    def __post_init__(self) -> None:
+        for name in self.__dataclass_fields__:
+            if not 0.0 < getattr(self, name) <= 10.0:
+                raise ConfigError(f"{name}: expected more than 0 and at most 10 m")
+
+
+@dataclass(frozen=True, slots=True)
+class ControlTrial:
+    """What control points would do to a map."""
+
+    control: SiteControl
+    record: ControlRecord
+    """After the rigid fit; its adjusted residuals are the same."""
+    blunders: tuple[Blunder, ...]
+    """Suspected blunders; those of control points forbid to place the map."""
+    unseen: tuple[str, ...]
+    """Surveyed points that were not measured in the map."""
+
+
+def site_control(
+    points: Sequence[ControlPoint],
+    measured: Mapping[str, MeasuredPosition],
+    artifacts: Mapping[str, Path],
+    *,
+    crs: str = "",
+    accuracy: ControlAccuracy = ControlAccuracy(),
+) -> SiteControl:
+    """Find who saw the points that were measured in a map.
+
+    Args:
+        points: The survey.
+        measured: Id -> place in the map frame.
+        artifacts: Of the run that made the map.
+        crs: EPSG code or codes of the survey; empty = a grid of the site.
+        accuracy: Of all points.
+
+    Raises:
+        GeoreferenceError: If a measured point is not in the map: no node has points near it.
+        StoreError: If an artifact cannot be read.
+    """
+    known = [one for one in points if one.id in measured]
+    picked = {
+        one.id: PickedTarget(measured[one.id].xyz_m, measured[one.id].along, one.radius_m)
+        for one in known
+    }
+    trajectory = load_trajectory(artifacts["level"] / "trajectory.npz")
+    store = open_frames(artifacts["frames"], artifacts.get("calibration"), artifacts["odometry"])
+    found = sightings(picked, store, load_graph(artifacts["level"]), trajectory=trajectory)
+    absent = [name for name, one in found.items() if not len(one.t_ns)]
+    if absent:
+        raise GeoreferenceError(
+            f"not in the map: {', '.join(absent[:10])}; no scan has points within 25 cm of where "
+            f"{'they were' if len(absent) > 1 else 'it was'} picked"
+        )
+    targets = tuple(
+        SeenTarget(
+            id=one.id,
+            xyz_m=one.xyz_m,
+            role=one.role,
+            sd_m=(accuracy.horizontal_m, accuracy.height_m),
+            t_ns=tuple(found[one.id].t_ns.tolist()),
+            p_body_m=_tuples(found[one.id].p_body),
+            directions_body=tuple(map(_tuples, found[one.id].directions_body)),
+        )
+        for one in known
+    )
+    return SiteControl(targets=targets, crs=crs)
+
+
+def try_control(
+    points: Sequence[ControlPoint],
+    measured: Mapping[str, MeasuredPosition],
+    artifacts: Mapping[str, Path],
+    *,
+    crs: str = "",
+    accuracy: ControlAccuracy = ControlAccuracy(),
+) -> ControlTrial:
+    """Lay the map on control points by a rigid fit, and test them; nothing is changed.
+
+    Args:
+        points: The survey.
+        measured: Id -> place in the map frame.
+        artifacts: Of the run that made the map.
+        crs: As in `site_control`.
+        accuracy: Of all points.
+
+    Raises:
+        GeoreferenceError: If the points place no map.
+        StoreError: If an artifact cannot be read.
+    """
+    control = site_control(points, measured, artifacts, crs=crs, accuracy=accuracy)
+    level = artifacts["level"]
+    trajectory, uncertainty = load_trajectory(level / "trajectory.npz"), load_uncertainty(level)
+    own = read_crs(level)
+    origin = getattr(own, "origin", None) if crs else None
+    system = system_of(control, origin)
+    p_site = system.to_map(np.array([one.xyz_m for one in control.targets]).reshape(-1, 3))
+    ours = np.array([one.role == "control" for one in control.targets], dtype=np.bool_)
+    placing = [one for one in control.targets if one.role == "control"]
+    found = measured_targets(placing, p_site[ours], trajectory, uncertainty=uncertainty)
+    fit, blunders = named_blunders(found, leveled=_is_leveled(level))
+    laid = Trajectory(trajectory.t_ns, fit.T_map_site.inverse() @ trajectory.T_a_b)
+    off = offsets(control.targets, p_site, laid)
+    blunders = blunders or suspected_checks(control.targets, off)
+    record = control_record(
+        control.targets,
+        fit,
+        (off, off),
+        crs=system.crs,
+        blunders=[one.text for one in blunders],
+    )
+    unseen = tuple(one.id for one in points if one.id not in measured)
+    return ControlTrial(control, record, blunders, unseen)
+
+
+def forbidding(trial: ControlTrial) -> tuple[Blunder, ...]:
+    """Blunders of control points: a map is not put on points that contradict each other."""
+    control = {one.id for one in trial.control.targets if one.role == "control"}
+    return tuple(one for one in trial.blunders if not one.points or control & {*one.points})
+
+
+def _is_leveled(level: Path) -> bool:
+    record = read_object(level / "georeference.json", max_bytes=LIMITS.findings_bytes)
+    stated = record.get("levelling")
+    return isinstance(stated, dict) and stated.get("source") != "none"
+
+
+def _tuples(rows: Array) -> tuple[tuple[float, float, float], ...]:
+    return tuple((x, y, z) for x, y, z in rows.tolist())

@@ -1,0 +1,126 @@
+"""A drifting walk is bent to its control points; check points judge it."""
+
+import json
+
+import numpy as np
+import pytest
+
+from recon4.errors import GeoreferenceError
+from recon4.geometry.se3 import SE3, Array
+from recon4.georeference.control_adjustment import ToAdjust, place_of
+from recon4.georeference.control_stage import OnControl, put_on_control
+from recon4.georeference.crs import CrsTransform
+from recon4.model.plain import to_plain
+from recon4.model.site_control import SITE_GRID, SeenTarget, SiteControl
+from recon4.model.trajectory import Trajectory
+from tests.unit.georeference.test_gnss import PLACE, slam, track
+
+PICK_SD_M = 0.003
+SITE = SE3.from_rpy(0.0, 0.0, -0.7, t=[601_234.5, 1_160_321.2, 241.3])
+"""T_site_enu."""
+
+
+def walk() -> tuple[Trajectory, ToAdjust]:
+    true = track(120.0)
+    graph, dense = slam(true, np.random.default_rng(1))
+    return true, ToAdjust(trajectory=dense, graph=graph, leveled=True, tilt_sd_rad=0.005)
+
+
+def seen(
+    true: Trajectory, name: str, second: int, *, role: str, place: Array, xyz: Array
+) -> SeenTarget:
+    """A target beside the path, picked where the nodes of three seconds saw it."""
+    rng = np.random.default_rng(second)
+    t_ns = true.t_ns[[10 * second - 10, 10 * second, 10 * second + 10]]
+    p_body = true.at(t_ns).inverse() @ np.tile(place, (3, 1)) + PICK_SD_M * rng.normal(size=3)
+    return SeenTarget(
+        id=name,
+        xyz_m=tuple(xyz.tolist()),
+        role=role,
+        sd_m=(0.005, 0.005),
+        t_ns=tuple(t_ns.tolist()),
+        p_body_m=tuple(map(tuple, p_body.tolist())),
+        directions_body=tuple(tuple(map(tuple, R.T.tolist())) for R in true.at(t_ns).R),
+    )
+
+
+def control(true: Trajectory, *, crs: str = "", blunder: str = "") -> SiteControl:
+    targets = []
+    for k, second in enumerate(range(6, 116, 5)):
+        role = "control" if k % 3 == 0 else "check"
+        place = true.at(true.t_ns[[10 * second]]).t[0] + [2.0 * (-1) ** k, 3.0, 0.5]
+        name = f"{role[:2]}{k}"
+        xyz = SITE @ place[None] if not crs else CrsTransform(PLACE, crs).to_crs(place[None])
+        off = [1.0, 0.0, 0.0] if name == blunder else [0.0, 0.0, 0.0]
+        targets.append(seen(true, name, second, role=role, place=place, xyz=xyz[0] + off))
+    return SiteControl(targets=tuple(targets), crs=crs)
+
+
+def worst_m(found: OnControl, role: str, which: str = "adjusted_m") -> float:
+    off = [getattr(one, which) for one in found.record.points if one.role == role]
+    return float(np.linalg.norm(np.array(off), axis=1).max())
+
+
+def test_a_drifting_walk_is_bent_to_its_control_points_and_check_points_agree() -> None:
+    true, given = walk()
+    found = put_on_control(given, control(true), origin=None)
+    assert worst_m(found, "check", "rigid_m") > 0.04
+    assert worst_m(found, "control") < 0.015
+    assert worst_m(found, "check") < 0.03
+    assert found.record.crs == SITE_GRID
+    assert found.record.blunders == ()
+
+
+def test_the_map_has_small_numbers_and_its_grid_the_coordinates_of_the_site() -> None:
+    true, given = walk()
+    points = control(true)
+    found = put_on_control(given, points, origin=None)
+    assert np.abs(found.trajectory.T_a_b.t).max() < 500.0
+    at = found.system.to_crs(place_of(points.targets[0], found.trajectory)[None])[0]
+    assert at == pytest.approx(points.targets[0].xyz_m, abs=0.015)
+
+
+def test_a_code_puts_the_map_on_earth() -> None:
+    true, given = walk()
+    found = put_on_control(given, control(true, crs="EPSG:32633"), origin=None)
+    assert isinstance(found.system, CrsTransform)
+    assert found.system.crs == "EPSG:32633"
+    assert worst_m(found, "check") < 0.03
+    # The projection's scale of 0.9996 is in the system, not in the map.
+    local = put_on_control(given, control(true), origin=None)
+    assert found.record.scale == pytest.approx(local.record.scale, abs=5e-5)
+
+
+def test_a_code_of_another_place_is_refused() -> None:
+    true, given = walk()
+    points = control(true)
+    with pytest.raises(GeoreferenceError, match="EPSG:32633"):
+        far = [one.__class__(**_fields(one) | {"xyz_m": (9e9, 9e9, 0.0)}) for one in points.targets]
+        put_on_control(given, SiteControl(targets=tuple(far), crs="EPSG:32633"), origin=None)
+
+
+def test_check_points_move_nothing() -> None:
+    true, given = walk()
+    points = control(true)
+    alone = SiteControl(targets=tuple(t for t in points.targets if t.role == "control"), crs="")
+    a, b = (put_on_control(given, one, origin=None) for one in (points, alone))
+    assert np.array_equal(a.trajectory.T_a_b.t, b.trajectory.T_a_b.t)
+
+
+def test_a_point_that_is_a_meter_off_is_named_in_the_record() -> None:
+    true, given = walk()
+    found = put_on_control(given, control(true, blunder="co6"), origin=None)
+    assert [text.split()[0] for text in found.record.blunders] == ["co6"]
+
+
+def test_the_record_is_plain_json() -> None:
+    true, given = walk()
+    found = put_on_control(given, control(true), origin=None)
+    record = json.loads(json.dumps(to_plain(found.record), allow_nan=False))
+    (first, second) = record["points"][:2]
+    assert first["test"]["redundancy"][0] > 0.0
+    assert second["test"] is None
+
+
+def _fields(one: SeenTarget) -> dict[str, object]:
+    return {name: getattr(one, name) for name in SeenTarget.__dataclass_fields__}

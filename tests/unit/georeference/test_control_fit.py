@@ -1,0 +1,187 @@
+"""Rigid fit to control points, and what is found wrong with a survey."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.errors import GeoreferenceError
+from recon4.geometry.se3 import SE3, so3_exp
+from recon4.georeference.control_blunders import (
+    BlunderKind,
+    check_outliers,
+    common_offset,
+    named_blunders,
+)
+from recon4.georeference.control_fit import MeasuredTarget, fit_control, snoop
+
+PLACES = np.array(
+    [
+        [0.0, 0.0, 0.0],
+        [22.0, 1.0, 1.4],
+        [20.0, 15.0, 0.3],
+        [-1.0, 13.0, 2.2],
+        [11.0, 7.0, 0.1],
+        [6.0, 14.0, 1.0],
+    ]
+)
+SITE = np.array([1_021_340.0, 598_210.0, 231.0])
+T_SITE_MAP = SE3.from_rpy(0.0, 0.0, 1.1, t=SITE)
+SD_M = 0.003
+
+
+def targets(
+    p_map: np.ndarray = PLACES, *, T_site_map: SE3 = T_SITE_MAP, seed: int = 3
+) -> list[MeasuredTarget]:
+    noise = SD_M * np.random.default_rng(seed).normal(size=p_map.shape)
+    return [
+        MeasuredTarget(f"C{k + 1}", p_site, p, np.eye(3), SD_M**2 * np.eye(3))
+        for k, (p_site, p) in enumerate(zip(T_site_map @ p_map, p_map + noise, strict=True))
+    ]
+
+
+def surveyed(found: list[MeasuredTarget], p_site: np.ndarray) -> list[MeasuredTarget]:
+    return [
+        MeasuredTarget(one.id, p, one.p_map, one.along, one.cov)
+        for one, p in zip(found, p_site, strict=True)
+    ]
+
+
+def sites(found: list[MeasuredTarget]) -> np.ndarray:
+    return np.array([one.p_site for one in found])
+
+
+def test_a_leveled_map_is_turned_about_the_vertical_only() -> None:
+    fit = fit_control(targets(PLACES[:3] * [1.0, 1.0, 0.0] * 0.1), leveled=True)
+    assert fit.freedom == 4
+    assert np.allclose(fit.T_map_site.R[2], [0.0, 0.0, 1.0])
+
+
+def test_points_that_know_the_tilt_better_than_leveling_give_six_degrees_of_freedom() -> None:
+    R_tilt = so3_exp(np.array([0.004, -0.003, 0.0]))
+    tilted = SE3(T_SITE_MAP.R @ R_tilt, SITE)
+    fit = fit_control(targets(T_site_map=tilted), leveled=True)
+    assert fit.freedom == 6
+    assert np.abs(fit.T_map_site.inverse().R - tilted.R).max() < 5e-4
+    assert fit.rmse_m < 2 * SD_M
+
+
+def test_scale_is_reported_and_not_applied() -> None:
+    found = targets()
+    fit = fit_control(surveyed(found, SITE + (sites(found) - SITE) * 1.002), leveled=True)
+    assert fit.scale == pytest.approx(1.002, abs=4 * fit.scale_sd)
+    assert np.linalg.det(fit.T_map_site.R) == pytest.approx(1.0)
+
+
+def test_redundancy_numbers_sum_to_the_degrees_of_freedom() -> None:
+    fit = fit_control(targets(), leveled=True)
+    assert sum(sum(test.redundancy) for test in fit.tests) == pytest.approx(18 - fit.freedom)
+    far = fit.tests[0]
+    r = far.redundancy[2]
+    assert far.least_found_v_m == pytest.approx(4.13 * SD_M * max(fit.sd0, 1.0) / r**0.5, rel=0.15)
+
+
+def test_one_point_that_is_a_meter_off_is_found_and_named() -> None:
+    found = targets()
+    p_site = sites(found)
+    p_site[2] += [0.6, -0.8, 0.0]
+    _, blunders = named_blunders(surveyed(found, p_site), leveled=True)
+    (one,) = blunders
+    assert (one.kind, one.points) == (BlunderKind.POINT, ("C3",))
+    assert one.offset_m == pytest.approx((0.6, -0.8, 0.0), abs=0.02)
+    assert "C3 is 0.997 m" in one.text
+
+
+def test_two_points_off_are_both_found() -> None:
+    found = targets()
+    p_site = sites(found)
+    p_site[1, 0] += 0.1
+    p_site[4, 0] -= 0.5
+    fit, failed = snoop(surveyed(found, p_site), leveled=True)
+    assert failed == ["C5", "C2"]
+    assert fit.rmse_m < 2 * SD_M
+
+
+def test_exact_points_are_not_accused() -> None:
+    for seed in range(20):
+        assert named_blunders(targets(seed=seed), leveled=True)[1] == ()
+
+
+def test_exchanged_names_are_found() -> None:
+    found = targets()
+    p_site = sites(found)
+    p_site[[1, 3]] = p_site[[3, 1]]
+    fit, (one,) = named_blunders(surveyed(found, p_site), leveled=True)
+    assert (one.kind, one.points) == (BlunderKind.NAMES, ("C2", "C4"))
+    assert fit.rmse_m < 2 * SD_M
+
+
+def test_exchanged_axes_are_found() -> None:
+    found = targets()
+    _, (one,) = named_blunders(surveyed(found, sites(found)[:, [1, 0, 2]]), leveled=True)
+    assert one.kind is BlunderKind.AXES
+
+
+@pytest.mark.parametrize("axes", [[0, 1, 2], [1, 0, 2]])
+def test_feet_are_found(axes: list[int]) -> None:
+    found = targets()
+    _, (one,) = named_blunders(surveyed(found, sites(found)[:, axes] / 0.3048), leveled=True)
+    assert one.kind is BlunderKind.FEET
+
+
+def test_a_common_offset_of_the_check_points_is_named() -> None:
+    off = np.array([0.0, 0.0, 0.165]) + 0.004 * np.random.default_rng(1).normal(size=(5, 3))
+    found = common_offset("ABCDE", off, sd_m=0.005)
+    assert found is not None
+    assert found.offset_m == pytest.approx((0.0, 0.0, 0.165), abs=0.01)
+    assert common_offset("ABCDE", off - off.mean(axis=0), sd_m=0.005) is None
+
+
+def test_a_check_point_that_is_a_meter_off_is_named() -> None:
+    off = 0.004 * np.random.default_rng(1).normal(size=(5, 3))
+    assert check_outliers("ABCDE", off) == ()
+    off[3] += [0.0, 1.0, 0.0]
+    (one,) = check_outliers("ABCDE", off)
+    assert one.points == ("D",)
+    assert one.offset_m == pytest.approx((0.0, 1.0, 0.0), abs=0.02)
+
+
+def test_a_point_that_no_other_controls_is_said() -> None:
+    one = targets()
+    floor = [replace(found, along=np.eye(3)[:2]) for found in one[1:3]]
+    fit = fit_control([one[0], *floor], leveled=True)
+    assert [test.single_handed for test in fit.tests] == [True, False, False]
+    assert np.isinf(fit.tests[0].least_found_v_m)
+    assert np.isfinite(fit.tests[0].least_found_h_m)
+    assert np.isnan(fit.tests[1].least_found_v_m)
+
+
+@pytest.mark.parametrize(
+    ("points", "words"),
+    [
+        (targets()[:2], "at least 3 control points .* got 2 .C1, C2."),
+        ([], "got 0"),
+        (
+            [*targets()[:3], *targets(PLACES[:1], seed=9)],
+            "C1 and C1 are in one place in the survey",
+        ),
+    ],
+)
+def test_too_few_points_and_two_in_one_place_are_refused(
+    points: list[MeasuredTarget], words: str
+) -> None:
+    with pytest.raises(GeoreferenceError, match=words):
+        fit_control(points, leveled=True)
+
+
+def test_points_above_each_other_do_not_say_where_north_is() -> None:
+    column = np.array([[1.0, 2.0, 0.0], [1.0, 2.0, 1.0], [1.0, 2.001, 2.5]])
+    with pytest.raises(GeoreferenceError, match="where north is"):
+        fit_control(targets(column), leveled=True)
+
+
+def test_points_on_a_line_do_not_level_a_map() -> None:
+    line = np.array([[0.0, 0.0, 0.0], [10.0, 0.0, 0.0], [25.0, 0.0, 0.0]])
+    assert fit_control(targets(line), leveled=True).freedom == 4
+    with pytest.raises(GeoreferenceError, match="on one line"):
+        fit_control(targets(line), leveled=False)
