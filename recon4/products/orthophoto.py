@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,9 @@ def storey_slab(storey: BuildingStorey) -> SlicePlane:
     return SlicePlane.horizontal((top_m + bottom_m) / 2.0, thickness_m=top_m - bottom_m)
 
 
-def orthophoto(tiles: TileSet, plane: SlicePlane, *, pixel_m: float) -> Orthophoto:
+def orthophoto(
+    tiles: TileSet, plane: SlicePlane, *, pixel_m: float, length_m: float | None = None
+) -> Orthophoto:
     """Draw the surfaces of a slab that are nearest to the viewer, who looks against its normal.
 
     The points are read twice; memory is that of the image.
@@ -47,12 +49,16 @@ def orthophoto(tiles: TileSet, plane: SlicePlane, *, pixel_m: float) -> Orthopho
         tiles: The map.
         plane: The slab; a vertical one is an elevation, as seen with its first point on the left.
         pixel_m: Edge of a pixel [m].
+        length_m: Of an elevation: that of its line [m]; None = all of the slab.
 
     Raises:
         ConfigError: If the slab is empty or the image too large.
     """
     name = "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
-    grid = RasterGrid(_extent(tiles, plane, pixel_m), pixel_m)
+    window = _extent(tiles, plane, pixel_m)
+    if length_m is not None:
+        window = replace(window, left=0.0, right=length_m)
+    grid = RasterGrid(window, pixel_m)
     front = _NearestSurfaces.of(grid)
     for rows, depth, _ in _pixels(tiles, plane, grid, name=name):
         np.maximum.at(front.depth_m, rows, depth)
@@ -109,6 +115,8 @@ def _pixels(
 def _image(front: _NearestSurfaces, plane: SlicePlane, grid: RasterGrid) -> Orthophoto:
     shape = (grid.height, grid.width)
     seen = front.count > 0
+    if not seen.any():
+        raise ConfigError(f"orthophoto: the map has no points along the line of {plane.name}")
     value = np.divide(front.total, front.count, out=front.total, where=seen)
     sample = value[seen][:: max(1, int(seen.sum()) // ORTHOPHOTOS.sample)]
     low, high = (float(x) for x in np.percentile(sample, ORTHOPHOTOS.percentiles))

@@ -77,7 +77,7 @@ def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> 
     )
     return Volume(
         float(cell * off[off > 0].sum()),
-        float(-cell * off[off < 0].sum()),
+        float(cell * np.abs(off[off < 0]).sum()),
         float(sd),
         area,
         float(cell * (inside & ~terrain.seen).sum()),

@@ -126,10 +126,11 @@ def _write_orthophoto(source: ProductSource, path: Path, options: ProductOptions
     if options.line:
         a, b = options.line[:2], options.line[2:]
         plane = SlicePlane.vertical(a, b, thickness_m=options.depth_m)
+        length_m: float | None = math.dist(a, b)
     else:
         storeys, _ = _storeys(source.tiles)
-        plane = storey_slab(storey_named(storeys, options.storey or "0"))
-    made = orthophoto(source.tiles, plane, pixel_m=options.pixel_m)
+        plane, length_m = storey_slab(storey_named(storeys, options.storey or "0")), None
+    made = orthophoto(source.tiles, plane, pixel_m=options.pixel_m, length_m=length_m)
     _raster(made.raster, path, source)
     height, width = made.raster.pixels.shape[:2]
     return f"{width} x {height} pixels of {options.pixel_m} m, {100 * made.seen:.0f} % seen"

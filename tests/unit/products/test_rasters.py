@@ -63,6 +63,8 @@ def test_an_elevation_shows_the_wall_from_the_left_to_the_right(tmp_path):
 
     with rasterio.open(tmp_path / "wall.tif") as read:
         gray, _ = read.read()
+        assert read.bounds.left == pytest.approx(0.0)
+        assert read.bounds.right == pytest.approx(5.0)  # not the eastern room
         pane = read.index(2.3, -0.1)  # u of the window: 5 - 3.4 to 5 - 2.0
         plaster = read.index(4.0, -0.1)
     assert gray[plaster] > gray[pane] + 50
