@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
+from recon4.evaluation.site_control import control_in, statements
 from recon4.evaluation.table import number
 from recon4.findings.wording import word_of
 from recon4.model.finding_kinds import FindingKind
@@ -40,8 +41,25 @@ def placed_rows(georeference: Mapping[str, Any]) -> Rows:
     if "edges_rejected" in inner:
         out.append(("loop closures rejected by GNSS priors", str(len(inner.pop("edges_rejected")))))
     out += _rows(inner, "") + _rows(georeference.get("crs") or {}, "CRS: ")
-    rest = {k: v for k, v in georeference.items() if k not in {"levelling", "georeference", "crs"}}
+    out += _control_rows(georeference)
+    shown = {"levelling", "georeference", "crs", "control"}
+    rest = {k: v for k, v in georeference.items() if k not in shown}
     return out + _rows(rest, "")
+
+
+def _control_rows(georeference: Mapping[str, Any]) -> Rows:
+    """Residuals of control and check points, and what may be said of the accuracy."""
+    outcome = control_in(georeference)
+    if outcome is None:
+        return []
+    out: Rows = []
+    for one in outcome.points:
+        east, north, up = ("–" if d is None else f"{100 * d:+.1f}" for d in one.adjusted_m)
+        alone = "; no other point controls it" if one.test and one.test.single_handed else ""
+        text = f"{east} east, {north} north, {up} up [cm], map minus survey{alone}"
+        out.append((f"{one.role} point {one.id}", text))
+    out += [("accuracy at check points", text) for text in statements(outcome)]
+    return out + [("suspected blunder", text) for text in outcome.blunders]
 
 
 def imported_rows(report: Mapping[str, Any]) -> Rows:
