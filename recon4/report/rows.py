@@ -47,7 +47,7 @@ def placed_rows(georeference: Mapping[str, Any]) -> Rows:
     return out + _rows(rest, "")
 
 
-def _control_rows(georeference: Mapping[str, Any]) -> Rows:
+def _control_rows(georeference: Mapping[str, object]) -> Rows:
     """Residuals of control and check points, and what may be said of the accuracy."""
     outcome = control_in(georeference)
     if outcome is None:
