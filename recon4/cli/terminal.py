@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from recon4.workflows.summary import RunSummary
 
 _LINE_EVERY_S = 5.0
-_WHAT_WIDTH = 28
-"""Of the name of a piece of work in a line of progress."""
 _MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
 """Of findings, by their level."""
 
@@ -149,7 +147,7 @@ def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: f
     share = (
         f"{100 * done // total:3d} %  {_count(done, unit)}/{_count(total, unit)}" if total else ""
     )
-    parts = [f"{what:<{_WHAT_WIDTH}}", share or _count(done, unit), unit if unit != "B" else ""]
+    parts = [_padded(what), share or _count(done, unit), unit if unit != "B" else ""]
     if done and seconds > 0.0:
         rate = done / seconds
         parts.append(f"{_count(rate, unit)}/s" if unit == "B" else f"{rate:.1f} {unit}/s")
@@ -160,7 +158,11 @@ def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: f
 
 def is_progress(line: str) -> bool:
     """Whether a line of `PlainLines` counts how far a piece of work is, and says nothing else."""
-    return re.match(rf".{{{_WHAT_WIDTH},}}?  +\d", line) is not None
+    return re.match(rf".{{{len(_padded(''))},}}?  +\d", line) is not None
+
+
+def _padded(what: str) -> str:
+    return f"{what:<28}"
 
 
 def describe_event(event: Event) -> str:
