@@ -133,7 +133,10 @@ def _exchanged_pair(
     for i, j in combinations(sorted(order), 2):
         p_site = np.array([one.p_site for one in targets])
         p_site[[i, j]] = p_site[[j, i]]
-        tried = fit_control(with_sites(targets, p_site), leveled=leveled)
+        try:
+            tried = fit_control(with_sites(targets, p_site), leveled=leveled)
+        except GeoreferenceError:
+            continue
         names = (targets[i].id, targets[j].id)
         if _explains(tried, best[0] if best else fit, targets, than=fit):
             best = (tried, Blunder(kind=BlunderKind.NAMES, points=names))

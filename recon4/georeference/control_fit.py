@@ -91,7 +91,7 @@ def fit_control(targets: Sequence[MeasuredTarget], *, leveled: bool) -> ControlF
     """Lay a map on control points.
 
     A leveled map is turned about the vertical only, unless the points determine the tilt to
-    `CONTROL_FIT.tilt_sd_rad`.
+    `CONTROL_FIT.tilt_sd_rad` and it is one that leveling may have left.
 
     Args:
         targets: Control points, found in the map.
@@ -103,7 +103,10 @@ def fit_control(targets: Sequence[MeasuredTarget], *, leveled: bool) -> ControlF
     """
     _check(targets)
     whole = _RigidFit.of(targets, freedom=6, start=None)
-    if whole.tilt_sd_rad > (CONTROL_FIT.tilt_sd_rad if leveled else CONTROL_FIT.turn_sd_rad):
+    # Flat points of a survey with exchanged axes fit a map that lies on its back.
+    on_its_back = leveled and whole.tilt_rad > CONTROL_FIT.most_tilt_rad
+    limit_rad = CONTROL_FIT.tilt_sd_rad if leveled else CONTROL_FIT.turn_sd_rad
+    if on_its_back or whole.tilt_sd_rad > limit_rad:
         if not leveled:
             raise GeoreferenceError(
                 f"control points {_names(targets)} lie on one line: a map that is not leveled needs"
@@ -184,6 +187,11 @@ class _RigidFit:
     def tilt_sd_rad(self) -> float:
         """Standard deviation of the worse tilt."""
         return 0.0 if self.freedom == 4 else float(np.sqrt(np.diag(self.cov)[:2].max()))
+
+    @property
+    def tilt_rad(self) -> float:
+        """Angle between the verticals of map and site."""
+        return float(np.arccos(np.clip(self.T_map_site.R[2, 2], -1.0, 1.0)))
 
     @property
     def heading_sd_rad(self) -> float:

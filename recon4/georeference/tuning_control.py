@@ -20,6 +20,8 @@ class ControlFitTuning:
     tilt_sd_rad: float = 0.001
     """A leveled map is tilted only by points that determine the tilt better; leveling by an IMU is
     within 1 mrad to 5 mrad (`GnssTuning.tilt_sd_rad`)."""
+    most_tilt_rad: float = 0.05
+    """A leveled map that points tilt more is not tilted: something is wrong with them."""
     turn_sd_rad: float = 0.02
     """Points that determine a turn worse lie in one place or on one line."""
     significance: float = 0.001

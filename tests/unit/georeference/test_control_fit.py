@@ -122,6 +122,15 @@ def test_exchanged_axes_are_found() -> None:
     assert one.kind is BlunderKind.AXES
 
 
+def test_exchanged_axes_of_a_flat_site_do_not_turn_a_leveled_map_on_its_back() -> None:
+    found = targets(PLACES * [1.0, 1.0, 0.0])
+    exchanged = surveyed(found, sites(found)[:, [1, 0, 2]])
+    fit, (one,) = named_blunders(exchanged, leveled=True)
+    assert one.kind is BlunderKind.AXES
+    assert fit.T_map_site.R[2, 2] > 0.99
+    assert fit_control(exchanged, leveled=True).freedom == 4
+
+
 @pytest.mark.parametrize("axes", [[0, 1, 2], [1, 0, 2]])
 def test_feet_are_found(axes: list[int]) -> None:
     found = targets()
