@@ -135,7 +135,7 @@ def adjust(given: ToAdjust, targets: Sequence[SeenTarget], p_site: Array) -> Adj
         moved = at_rest(moved, dense)
     moved = moved.with_poses(T_site_map @ moved.T_map_body)
     priors: list[Priors] = [
-        _target_priors(targets, p_site, moved, dense=dense, R_site_map=T_site_map.R)
+        _target_priors(targets, measured, moved, dense=dense, R_site_map=T_site_map.R)
     ]
     if given.leveled:
         priors.append(tilt_priors(moved, sd_rad=given.tilt_sd_rad))
@@ -195,22 +195,23 @@ def at_rest(graph: PoseGraph, trajectory: Trajectory) -> PoseGraph:
 
 def _target_priors(
     targets: Sequence[SeenTarget],
-    p_site: Array,
+    measured: Sequence[MeasuredTarget],
     graph: PoseGraph,
     *,
     dense: Trajectory,
     R_site_map: Array,
 ) -> TargetPriors:
     node, p_map, p_body, information = list[Rows](), list[Array](), list[Array](), list[Array]()
-    for target, p in zip(targets, p_site, strict=True):
+    for target, one in zip(targets, measured, strict=True):
         t_ns = np.array(target.t_ns)
         rows = np.abs(graph.t_ns[None, :] - t_ns[:, None]).argmin(axis=1)
         # From the body at that time into that of its node; only motion between them is used.
         T_node_body = dense.at(graph.t_ns[rows]).inverse() @ dense.at(t_ns)
         node.append(rows)
         p_body.append(T_node_body @ np.array(target.p_body_m))
-        p_map.append(np.tile(p, (len(rows), 1)))
-        along = directions_of(target, dense) @ R_site_map.T
+        p_map.append(np.tile(one.p_site, (len(rows), 1)))
+        # Not those of the dense trajectory: GNSS may have turned the map since.
+        along = one.along @ R_site_map.T
         weight = _information(along, target) / len(rows)
         information.append(np.tile(weight, (len(rows), 1, 1)))
     return TargetPriors(

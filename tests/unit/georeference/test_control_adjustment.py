@@ -1,6 +1,7 @@
 """A drifting walk is bent to its control points; check points judge it."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -97,6 +98,33 @@ def test_a_code_of_another_place_is_refused() -> None:
     with pytest.raises(GeoreferenceError, match="EPSG:32633"):
         far = [one.__class__(**_fields(one) | {"xyz_m": (9e9, 9e9, 0.0)}) for one in points.targets]
         put_on_control(given, SiteControl(targets=tuple(far), crs="EPSG:32633"), origin=None)
+
+
+def test_points_on_walls_pull_across_their_wall_also_where_gnss_has_turned_the_map() -> None:
+    true, given = walk()
+    turn = SE3.from_rpy(0.0, 0.0, 1.3, t=[10.0, -4.0, 2.0])
+    turned = replace(given, start=turn @ given.trajectory.at(given.graph.t_ns))
+    targets = [
+        on_wall(true, one) if k % 6 == 3 else one for k, one in enumerate(control(true).targets)
+    ]
+    assert sum(len(one.directions_body[0]) == 1 for one in targets) >= 3
+    given_walls = SiteControl(targets=tuple(targets), crs="")
+    before = put_on_control(given, given_walls, origin=None)
+    after = put_on_control(turned, given_walls, origin=None)
+    assert worst_m(before, "check") < 0.1
+    moved = after.trajectory.T_a_b.t - before.trajectory.T_a_b.t
+    assert np.abs(moved).max() < 1e-4
+
+
+def on_wall(true: Trajectory, target: SeenTarget) -> SeenTarget:
+    """A point of a wall across x; the survey has another point of that wall."""
+    R = true.at(np.array(target.t_ns)).R
+    along = SITE.R @ [0.0, 0.5, 0.0]
+    return replace(
+        target,
+        directions_body=tuple((tuple(one[0].tolist()),) for one in R),
+        xyz_m=tuple((np.array(target.xyz_m) + along).tolist()),
+    )
 
 
 def test_check_points_move_nothing() -> None:
