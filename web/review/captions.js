@@ -22,6 +22,7 @@ export const KINDS = {
   redo: "redid",
   approve: "approved the map",
   acknowledge: "acknowledged a finding",
+  control: "changed the control points",
 };
 
 /**

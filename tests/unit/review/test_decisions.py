@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -23,6 +25,7 @@ from recon4.review.decisions import (
     pose_of,
 )
 
+CAPTIONS = Path(__file__).parents[3] / "web" / "review" / "captions.js"
 HERE = (0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0)
 MEASURED = Measurement(
     T_i_j=HERE,
@@ -275,3 +278,8 @@ def test_a_thousand_operations_and_undoing_all_of_them_is_the_beginning(seed):
 
 def _fields(record):
     return {name: getattr(record, name) for name in record.__slots__}
+
+
+def test_the_page_of_the_review_has_words_for_every_kind_of_row():
+    block = CAPTIONS.read_text("utf-8").partition("export const KINDS = {")[2].partition("};")[0]
+    assert {*re.findall(r"^  (\w+):", block, re.MULTILINE)} == {*DecisionKind}
