@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from recon4.errors import GeoreferenceError
 from recon4.export.names import check_name
 from recon4.geometry.se3 import Array
+from recon4.model.site_control import SITE_GRID
 from recon4.slices.map_crs import MapFrame, jacobian
 from recon4.slices.slice_image import RasterGrid, SliceImage
 from recon4.slices.slice_plane import SlicePlane
@@ -70,7 +71,8 @@ def write_raster(raster: GeoRaster, path: Path, *, frame: MapFrame, description:
     """Write a raster as GeoTIFF.
 
     In a horizontal plane of a georeferenced map it has its CRS, and a transformation that is exact
-    at its center. Others have the coordinates of the plane (u, v in meters) and no CRS.
+    at its center; in the grid of a site its coordinates and no CRS. Others have the coordinates of
+    the plane (u, v in meters) and no CRS.
 
     Args:
         raster: The pixels.
@@ -133,11 +135,13 @@ def affine_of(plane: SlicePlane, grid: RasterGrid, frame: MapFrame) -> tuple[Arr
 def _tags(raster: GeoRaster, frame: MapFrame, A: Array, *, corner: Array) -> dict[int, Any]:
     """The transformation from pixels, and keys that name the CRS."""
     citation = ""
-    if raster.plane.kind == "horizontal" and frame.to_crs is not None:
+    horizontal = raster.plane.kind == "horizontal"
+    if horizontal and frame.to_crs is not None and frame.crs != SITE_GRID:
         code = _epsg(frame)
         keys = [(1024, 0, 1, 1), (1025, 0, 1, 1), (3072, 0, 1, code), (3076, 0, 1, 9001)]
     else:
-        citation = f"recon4 slice {raster.plane.name}, {frame.text}|"
+        of = SITE_GRID if horizontal and frame.crs == SITE_GRID else frame.text
+        citation = f"recon4 slice {raster.plane.name}, {of}|"
         keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, GeoTag.ASCII, len(citation), 0)]
         keys.append((3076, 0, 1, 9001))
     matrix = [A[0, 0], A[0, 1], 0, corner[0], A[1, 0], A[1, 1], 0, corner[1],

@@ -17,6 +17,7 @@ from recon4.api.maps import OpenedMap
 from recon4.api.slices import SliceLook, write_planes
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.georeference.site_grid import SiteGrid
 from recon4.recording.formats.scratch import sweep_scratch
 from recon4.slices import export
 from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
@@ -182,6 +183,19 @@ def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
     assert xs.mean() == pytest.approx(expected[:, 0].mean(), abs=0.01)
     assert ys.mean() == pytest.approx(expected[:, 1].mean(), abs=0.05)
     assert np.ptp(ys) == pytest.approx(np.ptp(expected[:, 1]), abs=0.05)
+
+
+def test_a_geotiff_in_the_grid_of_a_site_has_its_coordinates(tiles, tmp_path):
+    grid = SiteGrid((601_200.0, 1_160_300.0, 200.0))
+    frame = MapFrame(grid.crs, grid.wkt, grid.to_crs)
+    drawn = draw(tiles, CUT, RasterGrid(SliceWindow(0.0, -1.0, 3.0, 5.0), 0.02))
+
+    write_geotiff(drawn, tmp_path / "s.tif", frame=frame, rgba=drawn.rgba(drawn.span, "light"))
+
+    with rasterio.open(tmp_path / "s.tif") as file:
+        assert file.transform @ (0, 0) == pytest.approx((601_200.0, 1_160_305.0), abs=1e-6)
+        assert file.transform @ (150, 300) == pytest.approx((601_203.0, 1_160_299.0), abs=1e-6)
+        assert file.crs is None or file.crs.to_epsg() is None
 
 
 def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
