@@ -155,6 +155,7 @@ def _make_again(project: Path, decided: SiteControl) -> None:
     from recon4.store.project import read_artifacts
     from recon4.untrusted.limits import LIMITS
 
+    _ = read_artifacts(project)["level"]  # without one nothing is noted
     append(project, Decision(kind=DecisionKind.CONTROL, who=getuser(), control=decided))
     with watcher() as progress:
         summary = remake(project, progress=progress)
