@@ -55,6 +55,10 @@ class RoleAccuracy:
 
     role: str
     points: int
+    measured_h: int
+    """Points that were measured horizontally, in east and north."""
+    measured_v: int
+    """Points that were measured in height."""
     rmse_h_m: float | None
     """Root mean square of the horizontal length."""
     rmse_v_m: float | None
@@ -100,6 +104,8 @@ def accuracy_of(outcome: ControlOutcome, role: str, *, rigid: bool = False) -> R
     return RoleAccuracy(
         role=role,
         points=len(own),
+        measured_h=len(flat),
+        measured_v=len(up),
         rmse_h_m=_rms(flat),
         rmse_v_m=_rms(up),
         rmse_3d_m=_rms(space),
@@ -121,25 +127,26 @@ def statements(outcome: ControlOutcome) -> list[str]:
     found = accuracy_of(outcome, "check")
     if not found.points:
         return ["No check point: nothing independent says how accurate the map is."]
-    tested = found.points >= ACCURACY_CLASSES.tested_points
-    word = "tested" if tested else "estimated"
-    lines = []
-    for name, axis, rmse_m, survey_m in (
-        ("horizontal", "H", found.rmse_h_m, found.survey_h_m),
-        ("vertical", "V", found.rmse_v_m, found.survey_v_m),
+    lines, few = list[str](), list[str]()
+    for name, axis, points, rmse_m, survey_m in (
+        ("horizontal", "H", found.measured_h, found.rmse_h_m, found.survey_h_m),
+        ("vertical", "V", found.measured_v, found.rmse_v_m, found.survey_v_m),
     ):
+        if points < ACCURACY_CLASSES.tested_points:
+            few.append(f"{name} {points}")
         if rmse_m is not None:
+            word = "Tested" if points >= ACCURACY_CLASSES.tested_points else "Estimated"
             total_cm = 100.0 * math.hypot(rmse_m, survey_m)
             lines.append(
-                f"{word.capitalize()} {name} positional accuracy: RMSE_{axis} = {total_cm:.1f} cm "
-                f"at {found.points} check points, with the survey's own {100 * survey_m:.1f} cm "
+                f"{word} {name} positional accuracy: RMSE_{axis} = {total_cm:.1f} cm "
+                f"at {points} check points, with the survey's own {100 * survey_m:.1f} cm "
                 "(ASPRS Positional Accuracy Standards, Edition 2)."
             )
-    if not tested:
+    if few:
         lines.append(
-            f"Not tested: {found.points} of {ACCURACY_CLASSES.tested_points} check points."
+            f"Not tested: {' and '.join(few)} of {ACCURACY_CLASSES.tested_points} check points."
         )
-    return [*lines, _walk_limits(found), *_level_of_accuracy(found)]
+    return [*lines, *_walk_limits(found), *_level_of_accuracy(found)]
 
 
 def outcome_text(outcome: ControlOutcome) -> str:
@@ -185,20 +192,22 @@ def _test_cells(test: PointTest | None) -> tuple[str, ...]:
         return ("", "", "", "", "")
     r = "/".join(f"{value:.2f}" for value in test.redundancy)
     found = (_cm(test.least_found_h_m), _cm(test.least_found_v_m))
-    said = "single-handed" if test.single_handed else "BLUNDER" if test.w > test.limit else ""
+    said = "BLUNDER" if test.w > test.limit else "single-handed" if test.single_handed else ""
     return (r, *found, f"{test.w:.1f} ({test.limit:.1f})", said)
 
 
-def _walk_limits(found: RoleAccuracy) -> str:
+def _walk_limits(found: RoleAccuracy) -> Sequence[str]:
     """Limits of V §3.3: mean 14 cm and 12 cm, largest 28 cm and 24 cm."""
     given = (found.mean_h_m, found.mean_v_m, found.max_h_m, found.max_v_m)
     limits = ACCURACY_CLASSES.walk_limits_m
     known = [(one, limit) for one, limit in zip(given, limits, strict=True) if one is not None]
+    if not known:
+        return ()
     holds = all(one <= limit for one, limit in known)
     shown = ", ".join(f"{100 * one:.1f} of {100 * limit:.0f}" for one, limit in known)
     return (
         f"{'Within' if holds else 'Outside'} the usual limits, mean and largest residual "
-        f"horizontal and in height: {shown} cm."
+        f"horizontal and in height: {shown} cm.",
     )
 
 
