@@ -113,8 +113,14 @@ class CrsTransform:
         Raises:
             GeoreferenceError: If a point lies outside the area of the system.
         """
+        p_crs = np.asarray(p_crs, dtype=np.float64)
+        # PROJ inverts the datum shift of a horizontal system to a millimeter only.
+        off = p_crs - self.to_crs(self._nearly_to_map(p_crs))
+        return self._nearly_to_map(p_crs + off)
+
+    def _nearly_to_map(self, p_crs: Array) -> Array:
         back = self._transformer.transform
-        east, north, up = np.asarray(p_crs, dtype=np.float64).T
+        east, north, up = p_crs.T
         if self.has_heights:
             lon, lat, height = back(east, north, up, direction="INVERSE", radians=True)
         else:

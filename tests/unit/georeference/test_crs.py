@@ -65,6 +65,14 @@ def test_krovak_uses_the_operation_of_the_country_not_the_first_in_the_list() ->
     assert "S-JTSK" in transform.wkt
 
 
+@pytest.mark.parametrize("crs", ["EPSG:32633", "EPSG:5514"])
+def test_surveyed_coordinates_come_back_as_they_were_given(crs: str) -> None:
+    transform = CrsTransform(BRNO, crs)
+    p = np.random.default_rng(2).uniform(-500, 500, (20, 3))
+
+    np.testing.assert_allclose(transform.to_map(transform.to_crs(p)), p, atol=1e-6)
+
+
 def test_a_height_system_without_its_grid_is_refused_by_name() -> None:
     if any((Path(folder) / "cz_cuzk_CR-2005.tif").exists() for folder in data_folders()):
         transform = CrsTransform(BRNO, "EPSG:5514+8357")
