@@ -47,7 +47,7 @@ def control_points(
 ) -> None:
     """Judge control and check points; with --apply put the map into their coordinates.
 
-    Exit code 1 if a blunder is suspected; the map is then not put on the points.
+    Exit code 1 if a blunder of control points is suspected; the map is then not put on them.
     """
     confine_command(write=[project])
     from recon4.model.site_control import SiteControl

@@ -116,6 +116,25 @@ def test_exchanged_names_are_found() -> None:
     assert fit.rmse_m < 2 * SD_M
 
 
+def test_an_exchange_that_places_no_map_is_not_tried_further() -> None:
+    p_map = np.array(
+        [[8.35, 12.02, 0.1], [11.56, 2.58, 0.3], [6.84, 5.03, 1.2], [16.67, 14.71, 0.0],
+         [14.55, 8.37, 1.3]]
+    )  # fmt: skip
+    east, up = np.eye(3)[[0]], np.eye(3)[[2]]
+    offsets = np.array([[8.0, 5.0, 0.0], *[[5.0, 5.0, 0.0]] * 4])
+    found = [
+        MeasuredTarget(f"P{k}", p + off, p, along, 1e-5 * np.eye(3))
+        for k, (p, off, along) in enumerate(
+            zip(p_map, offsets, [np.eye(3), up, up, east, up], strict=True)
+        )
+    ]
+    swapped = sites(found)[[0, 1, 3, 2, 4]]
+    with pytest.raises(GeoreferenceError):
+        fit_control(surveyed(found, swapped), leveled=True)
+    assert named_blunders(found, leveled=True)[0].freedom == 4
+
+
 def test_exchanged_axes_are_found() -> None:
     found = targets()
     _, (one,) = named_blunders(surveyed(found, sites(found)[:, [1, 0, 2]]), leveled=True)
