@@ -43,6 +43,12 @@ def test_the_version_is_printed(capsys):
     assert capsys.readouterr().out == f"recon4 {recon4.__version__}\n"
 
 
+def test_control_points_are_noted_in_no_folder_without_a_map(tmp_path, capsys):
+    assert main(["control", str(tmp_path), "--apply"]) == 1
+    assert str(tmp_path) in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
 def test_no_command_shows_the_help_and_is_wrong_usage(capsys):
     assert main([]) == 2
     assert "doctor" in capsys.readouterr().out
