@@ -63,15 +63,42 @@ def storeys(p_map: Array, normal: NDArray[Any] | None, walk_m: Array) -> list[St
         normal: Its normals, towards the sensors, (N, 3); None = the map has none.
         walk_m: Positions of the sensors [m], (W, 3).
     """
-    heights = np.sort(walk_m[:, 2]) if len(walk_m) else np.empty(0)
-    cuts = np.flatnonzero(np.diff(heights) > FIRST_VIEW.storey_gap_m) + 1
-    groups = [one for one in np.split(heights, cuts) if len(one)]
-    least = FIRST_VIEW.storey_percent / 100.0 * len(heights)
-    found = [_storey(p_map[:, 2], normal, one) for one in groups if len(one) >= least]
+    heights = np.sort(walk_m[:, 2])
+    top_m = float(heights[-1]) if len(heights) else 0.0
+    found = [_storey(p_map[:, 2], normal, one, top_m=top_m) for one in _levels(heights)]
     return [one for one in found if one is not None]
 
 
-def _storey(z_m: Array, normal: NDArray[Any] | None, walk_z: Array) -> Storey | None:
+def _levels(heights: Array) -> list[Array]:
+    """The parts of a walk that stay at one height, from below; stairs and slopes are none.
+
+    Args:
+        heights: Of the walk, in order [m], (W,).
+    """
+    least = FIRST_VIEW.storey_percent / 100.0 * len(heights)
+    found: list[tuple[float, Array]] = []
+    centers = np.unique(np.round(heights / FIRST_VIEW.bin_m)) * FIRST_VIEW.bin_m
+    on, near = (
+        _count_within(heights, centers, away)
+        for away in (FIRST_VIEW.level_m, FIRST_VIEW.storey_gap_m / 2.0)
+    )
+    for k in np.argsort(-on, kind="stable"):
+        if on[k] < least or on[k] < FIRST_VIEW.level_ratio * near[k]:
+            continue
+        if all(abs(centers[k] - other) > FIRST_VIEW.storey_gap_m for other, _ in found):
+            rows = np.abs(heights - centers[k]) <= FIRST_VIEW.level_m
+            found.append((float(centers[k]), heights[rows]))
+    return [part for _, part in sorted(found, key=lambda one: one[0])]
+
+
+def _count_within(heights: Array, centers: Array, away_m: float) -> NDArray[np.int64]:
+    last = np.searchsorted(heights, centers + away_m, side="right")
+    return np.asarray(last - np.searchsorted(heights, centers - away_m), dtype=np.int64)
+
+
+def _storey(
+    z_m: Array, normal: NDArray[Any] | None, walk_z: Array, *, top_m: float
+) -> Storey | None:
     walk = float(np.median(walk_z))
     near, far = FIRST_VIEW.carried_m
     up = np.ones(len(z_m)) if normal is None else normal[:, 2].astype(np.float64)
@@ -83,7 +110,8 @@ def _storey(z_m: Array, normal: NDArray[Any] | None, walk_z: Array) -> Storey | 
     level = FIRST_VIEW.bin_m * (bins.min() + int(np.argmax(counts)) + 0.5)
     above = (z_m > walk) & (z_m < level + 2.0 * far)
     down = np.count_nonzero(above & (np.abs(up) > FIRST_VIEW.upright))
-    has = normal is not None and down > FIRST_VIEW.ceiling_ratio * len(floor)
+    hidden = normal is not None and top_m < level + far
+    has = hidden and down > FIRST_VIEW.ceiling_ratio * len(floor)
     return Storey(floor_m=round(level, 3), walk_m=round(walk, 3), ceiling=bool(has))
 
 

@@ -50,7 +50,7 @@ class Storey(BaseModel):
     walk_m: float
     """Usual height of the sensors [m]."""
     ceiling: bool
-    """Whether there is something above it that looks like a ceiling."""
+    """Whether there is something above it that looks like a ceiling, and no walk."""
 
 
 class MapIndex(BaseModel):

@@ -39,9 +39,13 @@ class FirstViewTuning:
     margin: float = 0.02
     """Added to that extent on each side, as a part of it."""
     storey_gap_m: float = 1.5
-    """Heights of the walk that are farther apart are of two storeys [m]."""
+    """Storeys are farther apart than this [m]."""
     storey_percent: float = 3.0
-    """Less of the walk than this is a stair, not a storey [%]."""
+    """Less of the walk than this at one height is a landing, not a storey [%]."""
+    level_m: float = 0.25
+    """A walk that stays this near to one height is on a level [m]."""
+    level_ratio: float = 0.6
+    """Of the walk within half of `storey_gap_m`, as much is on the level; of a slope, a third."""
     carried_m: tuple[float, float] = (0.3, 2.5)
     """The floor is this far below the sensors [m]."""
     bin_m: float = 0.05

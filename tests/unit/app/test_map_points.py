@@ -55,14 +55,35 @@ def test_each_storey_has_its_floor_and_stairs_are_none():
     ceiling = np.column_stack([rng.uniform(0, 9, (4000, 2)), np.full(4000, 6.0)])
     up = np.tile([0.0, 0.0, 1.0], (8000, 1))
     normal = np.vstack([up, -up[:4000]])
-    heights = np.concatenate([np.full(300, 1.3), np.linspace(1.3, 4.5, 10), np.full(300, 4.5)])
+    heights = np.concatenate([np.full(300, 1.3), np.linspace(1.3, 4.5, 40), np.full(300, 4.5)])
     walk = np.column_stack([np.zeros((len(heights), 2)), heights])
-    steep = np.delete(walk, slice(301, 309), axis=0)
 
-    found = storeys(np.vstack([*floors, ceiling]), normal, steep)
+    found = storeys(np.vstack([*floors, ceiling]), normal, walk)
 
     assert [one.floor_m for one in found] == pytest.approx([0.0, 3.2], abs=0.06)
-    assert found[-1].ceiling
+    assert [one.ceiling for one in found] == [False, True]
+
+
+def test_what_was_walked_is_not_hidden_as_above_a_ceiling():
+    rng = np.random.default_rng(5)
+    place = rng.uniform(0, 9, (8000, 2))
+    rooms = np.column_stack([place, np.repeat([0.0, 2.6], 4000)])
+    normal = np.repeat([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], 4000, axis=0)
+    heights = np.concatenate([np.full(600, 1.3), np.linspace(1.3, 4.5, 5), np.full(5, 4.5)])
+    walk = np.column_stack([np.zeros((610, 2)), heights])
+
+    (below,) = storeys(rooms, normal, walk[:600])
+    (attic,) = storeys(rooms, normal, walk)
+
+    assert below.ceiling and not attic.ceiling
+
+
+def test_a_slope_has_no_storeys():
+    walk = np.column_stack([np.zeros((900, 2)), np.linspace(1.3, 13.3, 900)])
+    slope = np.column_stack([np.zeros((900, 2)), np.linspace(0.0, 12.0, 900)])
+
+    assert storeys(slope, np.tile([0.0, 0.0, 1.0], (900, 1)), walk) == []
+    assert storeys(slope, None, np.empty((0, 3))) == []
 
 
 def test_what_has_no_value_is_said(tiles, monkeypatch):
