@@ -178,6 +178,12 @@ def test_a_ray_that_is_none_is_refused(server, changes):
     assert pick(server, **changes).status_code == 422
 
 
+def test_a_map_that_was_made_again_is_not_measured_in(server):
+    answer = pick(server, key="0" * 64)
+
+    assert answer.status_code == 409 and "made again" in answer.json()["detail"]
+
+
 def test_the_walk_has_times_positions_and_nodes(server):
     walk = server.get(f"{BASE}/walk").json()
 

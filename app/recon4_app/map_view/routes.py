@@ -17,7 +17,7 @@ from recon4.untrusted.bounded import read_json_object
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server, parts
 from recon4_app.error_responses import ProblemDetail
-from recon4_app.errors import BadRequest
+from recon4_app.errors import BadRequest, Conflict
 from recon4_app.map_view import map_work
 from recon4_app.map_view.model import (
     ChunkQuery,
@@ -77,12 +77,17 @@ async def read_walk(project_id: str, server: Server, caller: CalledBy) -> MapWal
     return await caller.wait(server.slices.run_interactive(terms, map_work.walk, artifacts))
 
 
-@router.post("/pick", summary="The point of the map that a ray hits")
+@router.post(
+    "/pick",
+    summary="The point of the map that a ray hits",
+    responses={409: {"model": ProblemDetail}},
+)
 async def pick(project_id: str, ask: RayRequest, *, server: Server, caller: CalledBy) -> RayHit:
     """Of all points of the map that the clip planes leave, not only of those on screen."""
-    source = f"map:{ask.key}"
-    artifacts = await run_in_threadpool(server.slices.artifacts, project_id, source)
-    terms = server.slices.terms(project_id, caller.name, source)
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    if Path(artifacts["map"]).name != ask.key:  # its place in the CRS may be another
+        raise Conflict("the map was made again meanwhile: reload the page to measure in it")
+    terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(server.slices.run_interactive(terms, map_work.hit, artifacts, ask))
 
 
