@@ -152,6 +152,69 @@ def test_a_section_leads_to_its_slice(server, page):
 
 
 @looks("desktop light")
+def test_corners_are_those_of_the_clicks_in_their_order(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    first = []
+
+    def overtaken(route):
+        """Answer the first click after the second."""
+        if first:
+            route.fulfill(response=route.fetch())
+            first.pop().continue_()
+        else:
+            first.append(route)
+
+    page.route("**/map/pick", overtaken)
+    page.keyboard.press("m")
+    for x in (0.0, ROOM_M[0]):
+        page.mouse.click(*at(page, x, 2.5))
+
+    expect(page).to_have_url(re.compile(r"m=distance;-?0[.\d]*,[^;]*;1[56][.\d]*,"))
+
+
+@looks("desktop light")
+def test_one_stands_on_the_walk_or_a_floor_and_nowhere_else(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    expect(page.get_by_label("Along the walk")).to_be_visible()
+
+    page.keyboard.press("g")
+    page.mouse.click(*at(page, 10.0, -2.2))
+
+    expect(page.locator("#status .reading")).to_have_text("Click on the walk, or on a floor")
+
+
+@looks("desktop light")
+def test_a_view_ends_the_flight(server, page):
+    opened(page, server)
+    expect(page.get_by_label("Along the walk")).to_be_visible()
+    fly = page.get_by_role("button", name="Fly")
+
+    page.keyboard.press("p")
+    expect(fly).to_have_attribute("aria-pressed", "true")
+    page.keyboard.press("7")
+
+    expect(fly).to_have_attribute("aria-pressed", "false")
+
+
+@looks("desktop light")
+def test_keys_zoom(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+
+    page.keyboard.press("+")
+
+    expect(page).to_have_url(re.compile(r"camera=8,5,1\.5,0,-90,11\.2,1"))
+
+
+@looks("desktop light")
+def test_a_browser_without_webgl_says_so(server, page):
+    page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
+
+    page.goto(f"{server.url}/projects/office/map/")
+
+    expect(page.locator("#message")).to_contain_text("WebGL 2 is missing or switched off")
+
+
+@looks("desktop light")
 def test_a_project_without_points_says_so(server, page):
     page.goto(f"{server.url}/projects/young/map/")
 

@@ -36,6 +36,7 @@ export const KEYS = [
   ["Double click", "Fly to a point"],
   ["Two fingers", "Zoom and move"],
   ["Arrows", "Move"],
+  ["+ -", "Nearer, farther"],
   ["F", "All of the map"],
   ["5 7 1 2 3 4", "Oblique, top, front, back, right, left"],
   ["O", "Perspective or parallel"],
@@ -117,7 +118,7 @@ export function drawStatus(element, { points, rested, scale }) {
   if (!index) return;
   const shown = `${count(points)} of ${count(index.points)} points${rested ? "" : " …"}`;
   render(
-    html`${reading ? html`<p class="reading" role="status">${reading}</p>` : nothing}
+    html`<div role="status">${reading ? html`<p class="reading">${reading}</p>` : nothing}</div>
       <p class="caption">
         <span class="shown">${shown}</span> · <span>${scale}</span> · <span>${index.frame}</span>
         ${project ? html` · <span>${project.approval.text}</span>` : nothing}

@@ -14,6 +14,7 @@ import { add, axesOf, lookedAround, orbited, panned, zoomed } from "./camera.js"
  * @property {(at: number[]) => number[] | null} under the point of the map under a pixel
  * @property {(at: number[]) => void} click
  * @property {(from: number[], to: number[], done: boolean) => void} drag of a tool
+ * @property {() => void} cancel the drag of the tool: a second finger, or the system, ended it
  */
 
 const CLICK_PX = 5;
@@ -27,8 +28,14 @@ export function moveByGestures(element, on) {
   const press = {
     from: [0, 0],
     far: false,
+    tool: false, // whether a tool has been given this drag
+    pinched: false,
     /** @type {number[] | null} */
     grabbed: null,
+  };
+  const cancel = () => {
+    if (press.tool) on.cancel();
+    press.tool = false;
   };
   const wheel = { until: 0, at: /** @type {number[] | null} */ (null) };
 
@@ -53,10 +60,10 @@ export function moveByGestures(element, on) {
   listenToGestures(element, {
     onDown(at, _, count) {
       if (count > 1) {
-        press.far = true;
-        return;
+        Object.assign(press, { far: true, pinched: true });
+        return cancel();
       }
-      Object.assign(press, { from: at, far: false, grabbed: null });
+      Object.assign(press, { from: at, far: false, tool: false, pinched: false, grabbed: null });
       element.focus({ preventScroll: true });
     },
     onDrag(from, to, event) {
@@ -66,8 +73,11 @@ export function moveByGestures(element, on) {
       if (!press.far) press.grabbed = on.under(press.from);
       press.far = true;
       const sideways = event.shiftKey || event.ctrlKey || (event.buttons & 6) !== 0;
-      if (on.dragging() && !sideways) on.drag(press.from, to, false);
-      else if (sideways)
+      if (on.dragging() && press.pinched) return; // the finger that is left of two
+      if (on.dragging() && !sideways) {
+        press.tool = true;
+        on.drag(press.from, to, false);
+      } else if (sideways)
         on.move(panned(on.camera(), on.screen(), [dx, dy], press.grabbed ?? undefined));
       else if (on.standing()) on.move(lookedAround(on.camera(), dx, dy));
       else on.move(orbited(on.camera(), dx, dy));
@@ -78,8 +88,9 @@ export function moveByGestures(element, on) {
       zoom(before.apart / Math.max(after.apart, 1), after.middle);
     },
     onUp(at, event, count) {
-      if (count > 1 || event.type === "pointercancel") return;
-      if (on.dragging() && press.far) on.drag(press.from, at, true);
+      if (event.type === "pointercancel") return cancel();
+      if (count > 1) return;
+      if (on.dragging() && press.tool) on.drag(press.from, at, true);
       else if (!press.far && event.button === 0) on.click(at);
     },
     onWheel: (deltaY, at) => zoom(Math.exp(Math.max(-1, Math.min(1, deltaY * 0.0015))), at),

@@ -12,6 +12,7 @@ import { VIEWS } from "./views.js";
  * @property {() => unknown} end of any tool
  * @property {() => unknown} finish of a measurement
  * @property {(x: number, y: number) => unknown} step by a part of the image
+ * @property {(times: number) => unknown} zoom nearer (below 1) or farther
  */
 
 /**
@@ -36,6 +37,9 @@ const keysOf = (act, more) => ({
   c: more.color,
   z: more.ceilings,
   w: more.walk,
+  "+": () => more.zoom(0.8),
+  "=": () => more.zoom(0.8), // the key of + without shift
+  "-": () => more.zoom(1.25),
   "?": act.help,
   Escape: more.end,
   Enter: more.finish,

@@ -7,7 +7,7 @@ import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
 import { drawBar, drawHelp, drawStatus } from "./bar.js";
-import { between, panned, pixelM, rayAt } from "./camera.js";
+import { between, panned, pixelM, rayAt, zoomed } from "./camera.js";
 import { moveByGestures } from "./controls.js";
 import { positionAt, standingAt, walking } from "./flight.js";
 import { listenToKeys } from "./keys.js";
@@ -17,7 +17,7 @@ import { overlay } from "./overlay.js";
 import * as shown from "./page.js";
 import { drawPanel } from "./panel.js";
 import { format, parse } from "./state.js";
-import { choose, clicked, dragged, face, finishMeasurement, target } from "./tools.js";
+import { choose, clicked, dragged, face, finish, target } from "./tools.js";
 import { VIEWS, savedViews, saveViews, viewOf } from "./views.js";
 
 /**
@@ -65,6 +65,7 @@ function fitted(look, parallel) {
 function change(/** @type {Partial<MapState>} */ next) {
   const color = shown.colorShown();
   Object.assign(page.state, next);
+  if (next.camera) say(byId("message"), ""); // what was refused is asked again
   if (next.cutCeiling && page.index) page.state.clip.heights = shown.usualHeights(page.index);
   if (run.canvas && shown.colorShown() !== color)
     run.canvas.tiles.color(storedOf(shown.colorShown())).catch(showProblem);
@@ -88,6 +89,7 @@ const move = (/** @type {Camera} */ next) => {
 
 /** Moves the camera there, at once if the system asks for less motion. */
 function flyTo(/** @type {Camera} */ goal) {
+  page.flight.on = false;
   cancelAnimationFrame(run.turn);
   const [from, began] = [camera(), performance.now()];
   const step = () => {
@@ -214,8 +216,11 @@ function seek(/** @type {number} */ time) {
 
 async function share() {
   history.replaceState(null, "", `?${format(page.state)}`);
-  await navigator.clipboard.writeText(location.href);
-  page.reading = "The link to this view is copied";
+  // Browsers have a clipboard on https and on this computer only.
+  await navigator.clipboard?.writeText(location.href);
+  page.reading = navigator.clipboard
+    ? "The link to this view is copied"
+    : "The address of this page is the link to this view: copy it there";
   draw();
 }
 
@@ -333,6 +338,10 @@ function listen() {
     under,
     click: (at) => clicked(at, stage).catch(showProblem),
     drag: (from, to, done) => dragged(from, to, { ...stage, done }),
+    cancel: () => {
+      page.drag = null;
+      draw();
+    },
   });
   place().addEventListener("dblclick", (event) => {
     if (page.tool === "") target([event.offsetX, event.offsetY], stage).catch(showProblem);
@@ -344,7 +353,8 @@ function listen() {
     walk: toggleWalk,
     end,
     step,
-    finish: () => page.tool === "measure" && finishMeasurement(stage),
+    finish: () => finish(stage).catch(showProblem),
+    zoom: (times) => move(zoomed(camera(), times)),
   });
   addEventListener("popstate", () => open(location.search));
 }

@@ -48,6 +48,15 @@ const REST_MS = 160;
 const WARM_UP = 2; // first frames, in which shaders are compiled
 const SHARPEST = 2; // pixels of the canvas per pixel of the page
 
+function rendererOf(/** @type {HTMLCanvasElement} */ canvas) {
+  const context = canvas.getContext("webgl2", { antialias: false });
+  if (context) return new WebGLRenderer({ canvas, context, antialias: false, alpha: false });
+  throw new Error(
+    "This browser cannot draw in 3-D: WebGL 2 is missing or switched off. " +
+      "The page Slices shows the map without it.",
+  );
+}
+
 export class MapCanvas {
   #canvas;
   #renderer;
@@ -85,7 +94,7 @@ export class MapCanvas {
   constructor(canvas, index, reader) {
     this.#canvas = canvas;
     this.#index = index;
-    this.#renderer = new WebGLRenderer({ canvas, antialias: false, alpha: false });
+    this.#renderer = rendererOf(canvas);
     this.#renderer.autoClear = false;
     Object.assign(this.#camera, { matrixWorldAutoUpdate: false, matrixAutoUpdate: false });
     for (const scene of [this.#scene, this.#lines, this.#screenScene])

@@ -4,7 +4,7 @@ import { parse } from "./state.js";
 import { planesOf } from "./clip.js";
 
 /**
- * @import {HitPoint, MapIndex, MapWalk, ProjectView, Storey} from "../shared/http_types"
+ * @import {MapIndex, MapWalk, ProjectView, Storey} from "../shared/http_types"
  * @import {ColorBy} from "./state.js"
  * @import {SavedView} from "./views.js"
  * @typedef {"" | "measure" | "box" | "section" | "stand"} Tool
@@ -29,8 +29,6 @@ export const page = {
   draft: [],
   /** @type {number[][] | null} */
   drag: null,
-  /** @type {HitPoint | null} */
-  picked: null,
   reading: "",
   panel: innerWidth > 800,
   /** @type {SavedView[]} */

@@ -43,6 +43,9 @@ export class MapTiles {
   #reading = new Set();
   /** @type {{counts: number[], camera: Camera} | null} */
   #wanted = null;
+  /** @type {Camera | null} */
+  #refused = null; // until it moves: a server that refuses is not asked on and on
+  #begun = false; // parts follow the sample: read beside it, they would overlap it
   /** @type {Stored | ""} */
   #values = "";
   total = 0;
@@ -77,17 +80,22 @@ export class MapTiles {
   /** Reads the sample of the whole map. */
   async readSample(/** @type {Stored | ""} */ values) {
     this.#values = values;
-    const [places, steps] = await Promise.all([
-      this.#reader.sample("xyz"),
-      values ? this.#reader.sample(values) : null,
-    ]);
-    let [at, from] = [0, 0];
-    this.#index.tiles.forEach(({ sample }, k) => {
-      if (!sample) return;
-      this.#add(k, { start: 0, stop: sample }, places.slice(at, (at += 10 * sample)));
-      if (steps) this.#fill(this.#chunks[k][0], values, steps.slice(from, (from += 2 * sample)));
-    });
+    try {
+      const [places, steps] = await Promise.all([
+        this.#reader.sample("xyz"),
+        values ? this.#reader.sample(values) : null,
+      ]);
+      let [at, from] = [0, 0];
+      this.#index.tiles.forEach(({ sample }, k) => {
+        if (!sample) return;
+        this.#add(k, { start: 0, stop: sample }, places.slice(at, (at += 10 * sample)));
+        if (steps) this.#fill(this.#chunks[k][0], values, steps.slice(from, (from += 2 * sample)));
+      });
+    } finally {
+      this.#begun = true;
+    }
     this.onNews();
+    this.#readOn();
   }
 
   /**
@@ -96,6 +104,8 @@ export class MapTiles {
    * @param {Camera} camera
    */
   want(counts, camera) {
+    if (camera === this.#refused) return;
+    this.#refused = null;
     this.#wanted = { counts, camera };
     this.#readOn();
   }
@@ -110,7 +120,7 @@ export class MapTiles {
     this.#index.tiles.forEach(({ sample }, k) => {
       if (!sample) return;
       const [first] = this.#chunks[k];
-      if (first) this.#fill(first, values, steps.slice(from, from + 2 * sample));
+      if (first?.stop === sample) this.#fill(first, values, steps.slice(from, from + 2 * sample));
       from += 2 * sample;
     });
     this.onNews();
@@ -189,7 +199,7 @@ export class MapTiles {
   }
 
   #readOn() {
-    if (!this.#wanted) return;
+    if (!this.#wanted || !this.#begun) return;
     const { counts, camera } = this.#wanted;
     for (const k of readingOrder(this.#index.tiles, { counts, have: this.have }, camera)) {
       if (this.#reading.size >= AT_ONCE) return;
@@ -207,6 +217,7 @@ export class MapTiles {
         this.#reader.part("xyz", k, part),
         values ? this.#reader.part(values, k, part) : null,
       ]);
+      if (this.have[k] !== part.start) return; // what it follows was forgotten meanwhile
       this.#add(k, part, places);
       const chunk = this.#chunks[k].at(-1);
       if (steps && chunk) this.#fill(chunk, values, steps);
@@ -232,7 +243,8 @@ export class MapTiles {
     try {
       await read();
     } catch (problem) {
-      this.#wanted = null; // until the camera moves: a server that refuses is not asked on and on
+      this.#refused = this.#wanted?.camera ?? this.#refused;
+      this.#wanted = null;
       this.onProblem(problem);
     } finally {
       this.#reading.delete(k);

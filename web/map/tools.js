@@ -72,11 +72,32 @@ function pointText(/** @type {HitPoint} */ point) {
  * @param {number[]} at
  * @param {Stage} stage
  */
-export async function clicked(at, stage) {
+export function clicked(at, stage) {
   if (page.tool === "stand") return stand(at, stage);
-  const found = await pointAt(at, stage);
+  const answer = pointAt(at, stage);
+  answer.catch(() => {}); // it is awaited in its turn
+  const { tool, measuring } = page;
+  return inTurn(async () => {
+    const found = await answer;
+    if (tool === page.tool && measuring === page.measuring) take(found, stage);
+  });
+}
+
+/** What clicks lead to, in the order of the clicks: answers may overtake each other. */
+const clicks = { last: Promise.resolve() };
+
+function inTurn(/** @type {() => void | Promise<void>} */ next) {
+  const done = clicks.last.then(next);
+  clicks.last = done.catch(() => {});
+  return done;
+}
+
+/**
+ * @param {HitPoint | null} found
+ * @param {Stage} stage
+ */
+function take(found, stage) {
   if (!found) return read("No point of the map here", stage);
-  page.picked = found;
   if (page.tool !== "measure") return read(pointText(found), stage);
   page.draft.push({ p: found.p_map, sd: found.position_sd_m ?? NaN, crs: found.p_crs });
   if (page.draft.length >= KINDS[page.measuring].most) finishMeasurement(stage);
@@ -95,8 +116,14 @@ export async function target(at, stage) {
   stage.flyTo({ ...camera, target: found.p_map, distance: Math.max(camera.distance / 2.5, 1.5) });
 }
 
+/** Ends the measurement when the answers to its clicks have come. */
+export const finish = (/** @type {Stage} */ stage) =>
+  inTurn(() => {
+    if (page.tool === "measure") finishMeasurement(stage);
+  });
+
 /** Ends the measurement that has enough points. */
-export function finishMeasurement(/** @type {Stage} */ stage) {
+function finishMeasurement(/** @type {Stage} */ stage) {
   const { draft, measuring, state } = page;
   if (draft.length < KINDS[measuring].least) return;
   const same = state.measurements.filter(({ kind }) => kind === measuring).length + 1;
@@ -183,7 +210,7 @@ async function stand(at, stage) {
   const { yaw } = stage.camera();
   const near = walk?.t_s.length ? nearestTo(walk, ray) : null;
   const found = await pointAt(at, stage);
-  const depth = found ? dot(minus(found.p_map, ray.origin), ray.direction) : 0;
+  const depth = found ? dot(minus(found.p_map, ray.origin), ray.direction) : BEHIND_M;
   const onWalk = near && (stage.camera().parallel ? near.away * depth < 1 : near.away < STAND_AWAY);
   if (near && onWalk) page.flight.time = near.time;
   const eye = near && onWalk ? near.position : found && [...found.p_map];

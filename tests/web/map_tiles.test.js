@@ -1,0 +1,130 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { moveByGestures } from "../../web/map/controls.js";
+import { MapTiles } from "../../web/map/tiles.js";
+
+// -- what is read of tiles
+
+const TILE = { low_m: [0, 0, 0], high_m: [4, 4, 4], points: 50_000, sample: 500, spacing_m: 0.02 };
+const CAMERA = { target: [2, 2, 2], yaw: 0, pitch: -1, distance: 10, parallel: false };
+const bytes = (stored, count) => new ArrayBuffer((stored === "xyz" ? 10 : 2) * count);
+const READER = {
+  sample: async (stored) => bytes(stored, 500),
+  part: async (stored, _, { start, stop }) => bytes(stored, stop - start),
+};
+
+/** Tiles of a map, and a wait until they read no more. */
+function tilesOf(reader, count = 1) {
+  const scene = { add() {}, remove() {} };
+  const index = { tiles: Array.from({ length: count }, () => TILE), columns: [] };
+  return new MapTiles(index, { scene, material: {}, reader, onLook() {} });
+}
+
+const settled = async () => {
+  for (let k = 0; k < 50; k++) await new Promise(setImmediate);
+};
+
+test("what is wanted before the sample has come does not overlap it", async () => {
+  const tiles = tilesOf(READER);
+
+  const sample = tiles.readSample("intensity");
+  tiles.want([50_000], CAMERA);
+  await sample;
+  await settled();
+
+  const shown = tiles.show([50_000]);
+  assert.equal(tiles.total, 50_000);
+  assert.equal(
+    shown.reduce((sum, { points }) => sum + points, 0),
+    50_000,
+  );
+  for (const { object } of shown) {
+    const { place, value } = object.geometry.attributes;
+    assert.equal(value.count, place.count);
+  }
+});
+
+test("without a sample parts are read all the same", async () => {
+  const tiles = tilesOf({ ...READER, sample: () => Promise.reject(new Error("no")) });
+
+  tiles.want([50_000], CAMERA);
+  await assert.rejects(tiles.readSample(""));
+  tiles.want([50_000], CAMERA);
+  await settled();
+
+  assert.deepEqual(tiles.have, [50_000]);
+});
+
+test("a server that refuses is asked again only when the camera moves", async () => {
+  let [asked, camera] = [0, CAMERA];
+  const part = () => Promise.reject(new Error(`no ${++asked}`));
+  const tiles = tilesOf({ ...READER, part });
+  tiles.onNews = () => tiles.want([50_000], camera); // as the canvas does: it draws again
+  await tiles.readSample("");
+  await settled();
+
+  assert.equal(asked, 1);
+  camera = { ...CAMERA };
+  tiles.want([50_000], camera);
+  await settled();
+  assert.equal(asked, 2);
+});
+
+// -- drags of a tool
+
+class Canvas extends EventTarget {
+  getBoundingClientRect = () => ({ left: 0, top: 0 });
+  setPointerCapture() {}
+  focus() {}
+
+  send(type, pointerId, [clientX, clientY], more = {}) {
+    this.dispatchEvent(Object.assign(new Event(type), { pointerId, clientX, clientY, ...more }));
+  }
+}
+
+/** A canvas with a tool that takes drags, and what was done on it. */
+function withTool() {
+  const [canvas, done] = [new Canvas(), []];
+  const note = (what) => () => void done.push(what);
+  moveByGestures(canvas, {
+    camera: () => CAMERA,
+    screen: () => ({ width: 800, height: 600 }),
+    standing: () => false,
+    dragging: () => true,
+    move: note("move"),
+    under: () => null,
+    click: note("click"),
+    drag: (_from, _to, ended) => void done.push(ended ? "made" : "drag"),
+    cancel: note("cancel"),
+  });
+  return { canvas, done };
+}
+
+test("a drag of a tool ends it; one that moves the view does not", () => {
+  const { canvas, done } = withTool();
+
+  canvas.send("pointerdown", 1, [100, 100], { button: 0 });
+  canvas.send("pointermove", 1, [150, 150], { buttons: 1, shiftKey: true });
+  canvas.send("pointerup", 1, [150, 150], { button: 0 });
+  assert.deepEqual(done.splice(0), ["move"]);
+
+  canvas.send("pointerdown", 1, [100, 100], { button: 0 });
+  canvas.send("pointermove", 1, [150, 150], { buttons: 1 });
+  canvas.send("pointerup", 1, [150, 150], { button: 0 });
+  assert.deepEqual(done, ["drag", "made"]);
+});
+
+test("two fingers zoom, and end no tool", () => {
+  const { canvas, done } = withTool();
+
+  canvas.send("pointerdown", 1, [100, 100], { button: 0 });
+  canvas.send("pointermove", 1, [120, 120], { buttons: 1 });
+  canvas.send("pointerdown", 2, [300, 300], { button: 0 });
+  canvas.send("pointermove", 2, [350, 350], { buttons: 1 });
+  canvas.send("pointerup", 2, [350, 350], { button: 0 });
+  canvas.send("pointermove", 1, [160, 160], { buttons: 1 });
+  canvas.send("pointerup", 1, [160, 160], { button: 0 });
+
+  assert.deepEqual([...new Set(done)], ["drag", "cancel", "move"]);
+});
