@@ -81,8 +81,13 @@ def connect_to_read(path: Path) -> sqlite3.Connection:
 
 
 def has_room_beside(path: Path) -> bool:
-    """Whether SQLite can make the files it keeps beside a file, even to read it."""
-    if not os.access(path.parent, os.W_OK):
+    """Whether SQLite can make the files it keeps beside a file, even to read it.
+
+    Where a command is confined (`recon4.sandbox`), only the attempt tells.
+    """
+    try:
+        tempfile.TemporaryFile(dir=path.parent).close()
+    except OSError:
         return False
     disk = os.statvfs(path.parent)
     return disk.f_bavail * disk.f_frsize >= SQLITE.room_beside_bytes

@@ -2,6 +2,8 @@
 
 import os
 import sqlite3
+import subprocess
+import sys
 from contextlib import closing
 
 import pytest
@@ -61,3 +63,27 @@ def test_a_disk_without_hard_links_has_the_file_too(tmp_path, monkeypatch):
 
     with closing(connect(tmp_path / "file.sqlite")) as db:
         assert db.execute("SELECT count(*) FROM two").fetchone() == (0,)
+
+
+CONFINED = """
+import sys
+from pathlib import Path
+from recon4.review.journal import read_rows
+from recon4.sandbox import Policy, confine
+project, out = map(Path, sys.argv[1:])
+confine(Policy(read=(Path("/"),), write=(out,), temporary=out))
+print([row.kind for row in read_rows(project)])
+"""
+
+
+def test_a_journal_is_read_by_a_command_that_may_not_write_beside_it(tmp_path):
+    project, out = tmp_path / "project", tmp_path / "out"
+    for folder in (project, out):
+        folder.mkdir()
+    journal.append(project, REJECT)
+
+    done = subprocess.run(
+        [sys.executable, "-c", CONFINED, project, out], capture_output=True, text=True, check=False
+    )
+
+    assert (done.stdout, done.stderr) == ("['reject']\n", "")
