@@ -92,10 +92,25 @@ def classify(
         return [_classes(frames[k], others, known=known, places=places) for k in rows.tolist()]
 
     # Images of scans are made here, in order, so that the threads only read them.
-    given = ((rows, views.near(_middle_ns(frames.t_mid_ns[rows]))) for rows in _spans(frames))
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        made = chain.from_iterable(in_order(pool, work, given))
+        made = chain.from_iterable(in_order(pool, work, _compared_spans(frames, views)))
         yield from track(made, watch, what="classify points", unit="frames", total=len(frames))
+
+
+def _compared_spans(
+    frames: RecordedFrames, views: RegularViews
+) -> Iterator[tuple[NDArray[np.intp], RangeViews | None]]:
+    """Rows of each span with the scans that they are compared with, which stay as they are until
+    the spans of all threads are done.
+    """
+    before_ns: int | None = None
+    for rows in _spans(frames):
+        t_ns = _middle_ns(frames.t_mid_ns[rows])
+        # Each thread has a span in work; of steps this short all fit into what is kept.
+        if before_ns is not None and t_ns - before_ns > VIEWS.kept_ns // MAP_BUILD.workers:
+            views.renew()
+        yield rows, views.near(t_ns)
+        before_ns = t_ns
 
 
 def _spans(frames: RecordedFrames) -> list[NDArray[np.intp]]:

@@ -42,10 +42,20 @@ class RegularViews:
         self._free = list(range(room))
         self._place: dict[int, int] = {}
 
+    def renew(self) -> None:
+        """Forget all images: those that `near` returned stay as they are, in memory of their own.
+
+        For a jump in time: threads may still read what would be overwritten.
+        """
+        self._R, self._t = np.empty_like(self._R), np.empty_like(self._t)
+        self._images, self._slopes = np.empty_like(self._images), np.empty_like(self._slopes)
+        self._free = list(range(len(self._images)))
+        self._place = {}
+
     def near(self, t_ns: int) -> RangeViews | None:
         """The scans that points of a time are compared with; None = there are none.
 
-        Those of the last calls stay valid while the times grow by less than a second.
+        Those of the last calls stay valid while the times grow by less than `ViewTuning.kept_ns`.
 
         Args:
             t_ns: Not before that of the last call [ns].

@@ -1,10 +1,14 @@
 """Which points of tiny scenes are of the carrier or of something that moves."""
 
+from collections import deque
+
 import numpy as np
 import pytest
 
-from recon4.classes.stage import classify, write_classes
+from recon4.classes.stage import _compared_spans, classify, write_classes
+from recon4.classes.views import RegularViews
 from recon4.errors import StoreError
+from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.classes import PointClass, is_delivered
 from recon4.store.classes import StoredClasses
 from tests.unit.classes.scanned_scenes import HEIGHT_M, ROOM, box, cylinder, pane, scanned
@@ -133,3 +137,18 @@ def test_what_moves_the_carrier_reflections_and_noise_are_left_out():
     codes = np.array([0, 1, 2, 3, 4, 5, 6, 7, 18, 64, 65, 66], np.uint8)
 
     np.testing.assert_array_equal(is_delivered(codes), codes * (codes < 7) == codes)
+
+
+def test_images_of_scans_stay_as_they_are_while_threads_read_them_across_a_gap():
+    walk, _ = scanned(box("room", *ROOM), seconds=46.0, speed_m_s=0.1)
+    whole = [frame for k, frame in enumerate(walk.frames) if not 12 < k < 80]  # 34 s without a scan
+    frames = type(walk)(whole, walk.rig, walk.trajectory)
+    in_work = deque(maxlen=MAP_BUILD.workers)
+
+    for _, views in _compared_spans(frames, RegularViews(frames, walk.trajectory)):
+        for images, rows, before in in_work:
+            assert np.array_equal(images[rows], before)
+        if views is not None:
+            rows = np.unique(np.concatenate([views.asked, views.before, views.after]))
+            in_work.append((views.sights.images, rows, views.sights.images[rows].copy()))
+    assert len(in_work) == MAP_BUILD.workers
