@@ -7,23 +7,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from recon4.delivery.pdf_signature import Organization, sign_pdf
 from recon4.errors import StoreError
-from recon4.model.finding import Finding
+from recon4.findings.summary_notes import SaidFinding, findings_in
+from recon4.findings.wording import said as said_of
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Signature
 from recon4.report.client_report import ReportExtras, client_report
 from recon4.report.client_words import Words, words
 from recon4.report.pdf import pdf_of, require_pdf
 from recon4.report.project import project_facts
-from recon4.review.acknowledgments import (
-    Acknowledgment,
-    acknowledgments,
-    report_with_notes,
-)
+from recon4.review.acknowledgments import acknowledgments, report_with_notes, seen_finding
 from recon4.review.approval_state import ApprovalState, latest_state
 from recon4.review.approved import Approval, approval_of
-from recon4.review.journal import read_rows
+from recon4.review.decisions import DecisionKind
+from recon4.review.journal import JournalRow, read_rows
 from recon4.review.state import read_summary
 from recon4.review.trusted_keys import SIGNING_KEY, trusted_for
 from recon4.store.atomic import atomic_file
@@ -168,17 +168,23 @@ def _notes(
     root: Path, approval: Approval | None, assessed: Assessment
 ) -> Mapping[int, Sequence[str]]:
     """Notes of reviewers by finding; of an approved map those up to its approval."""
-    found = acknowledgments(read_rows(root), read_summary(root) or {})
+    summary = read_summary(root) or {}
+    said = [seen_finding(one) for one in findings_in(summary) or []]
+    notes = acknowledgments(_rows_before(approval, read_rows(root)), summary)
+    about = [(said[one.finding], one) for one in notes if one.finding is not None]
     out: dict[int, list[str]] = {}
     for place, finding in enumerate(assessed.findings):
-        for one in found:
-            if not _is_about(one, finding):
-                continue
-            if approval is None or one.time <= approval.stamp.time:
-                out.setdefault(place, []).append(f"{one.who}, {one.time[:10]}: {one.why}")
+        seen = seen_finding(msgspec.convert(said_of(finding), SaidFinding))
+        texts = [f"{one.who}, {one.time[:10]}: {one.why}" for other, one in about if other == seen]
+        if texts:
+            out[place] = texts
     return out
 
 
-def _is_about(note: Acknowledgment, finding: Finding) -> bool:
-    current = note.finding is not None
-    return current and (note.kind, note.span_s) == (str(finding.kind), finding.span_s)
+def _rows_before(approval: Approval | None, rows: Sequence[JournalRow]) -> Sequence[JournalRow]:
+    """The rows that an approval was signed over; all of them without one."""
+    for place, row in enumerate(rows):
+        facts = row.decision().facts if row.kind == DecisionKind.APPROVE else None
+        if approval is not None and facts is not None and facts.approval == approval.hash:
+            return rows[:place]
+    return rows

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 
+from recon4.evaluation.site_control import accuracy_of, control_in
 from recon4.evaluation.table import number
 from recon4.findings.walk import path_length_m
 from recon4.findings.wording import headline, title_of
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaneThickness
 from recon4.model.rig_origin import recording_day
+from recon4.model.site_control import SITE_GRID
 from recon4.model.usability import Unobserved, Usability
 from recon4.report.assessment import Assessment
 from recon4.report.client import Drawing, FrontPage, Row, Signature
@@ -54,8 +56,8 @@ def grouped(count: int) -> str:
 
 
 def accuracy_rows(assessed: Assessment, words: Words) -> list[Row]:
-    """How well the map is known: against a truth if there is one, and by its own adjustment."""
-    out = _true_errors(assessed, words)
+    """How well the map is known: against truth and check points, and by its own adjustment."""
+    out = [*_true_errors(assessed, words), *_check_points(assessed, words)]
     level, drift = assessed.results.level, assessed.drift
     stated = level.uncertainty if level else None
     if stated is not None:
@@ -86,6 +88,25 @@ def _true_errors(assessed: Assessment, words: Words) -> list[Row]:
         mean = number(found.relative.point_weighted.mean_m, 2, 100.0)
         out.append(Row(words("accuracy.relative"), f"{mean} cm"))
     return out
+
+
+def _check_points(assessed: Assessment, words: Words) -> list[Row]:
+    """What independent check points say of the map; none without them."""
+    outcome = control_in(assessed.results.georeference)
+    if outcome is None:
+        return []
+    found = accuracy_of(outcome, "check")
+    pairs = (("flat", found.rmse_h_m), ("height", found.rmse_v_m))
+    known = [
+        words(f"accuracy.check_points_{key}", value=number(value_m, 1, 100.0))
+        for key, value_m in pairs
+        if value_m is not None
+    ]
+    if not known:
+        return []
+    points = grouped(found.points)
+    value = words("accuracy.check_points_value", values=", ".join(known), points=points)
+    return [Row(words("accuracy.check_points"), value)]
 
 
 def _thickness(key: str, found: PlaneThickness | None, words: Words) -> list[Row]:
@@ -156,9 +177,11 @@ def _limits(
     out = [] if signature.approved else [words("limits.draft")]
     if assessed.verdict.usability is not Usability.GOOD:
         out.append(words("limits.reasons"))
-    if facts.evaluation is None:
+    if facts.evaluation is None and not _check_points(assessed, words):
         out.append(words("limits.computed"))
-    if facts.crs:
+    if facts.crs == SITE_GRID:
+        out.append(words("limits.site_grid"))
+    elif facts.crs:
         out.append(words("limits.crs", crs=shown(facts.crs)))
     else:
         out.append(words("limits.local"))

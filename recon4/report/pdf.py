@@ -10,6 +10,7 @@ import json
 import unicodedata
 from dataclasses import asdict
 from datetime import UTC, datetime
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -79,6 +80,14 @@ def _compiled(report: ClientReport, **wanted: Any) -> list[bytes]:
     return made if isinstance(made, list) else [made]
 
 
+@cache
+def _drawn() -> frozenset[int]:
+    """The characters that have a shape in DejaVu Sans; others would be empty boxes."""
+    from matplotlib.ft2font import FT2Font
+
+    return frozenset(FT2Font(str(_fonts() / "DejaVuSans.ttf")).get_charmap())
+
+
 def _fonts() -> Path:
     """Folder of DejaVu Sans, which matplotlib brings along; the others are within typst."""
     import matplotlib
@@ -94,7 +103,7 @@ def _time(created: str) -> datetime:
 
 
 def _printable(value: Any) -> Any:
-    """A record without characters that no font may show: PDF/A refuses them.
+    """A record without characters that no font may or can show: their numbers are in their place.
 
     Drawings are XML of recon4, whose line ends stay.
     """
@@ -108,6 +117,6 @@ def _printable(value: Any) -> Any:
 
 
 def _shown(character: str) -> str:
-    if unicodedata.category(character) in _UNPRINTABLE:
+    if unicodedata.category(character) in _UNPRINTABLE or ord(character) not in _drawn():
         return f"<U+{ord(character):04X}>"
     return character
