@@ -108,12 +108,15 @@ def is_delivery(path: Path) -> bool:
     return path.is_file() or (path / "manifest.json").is_file()
 
 
-def show_checked(path: Path, *, as_json: bool) -> None:
+def show_checked(path: Path, *, as_json: bool, accept: bool = False) -> None:
     """Verify a delivery or a signed report, and say what is intact and whose signature it is.
 
     Raises:
+        typer.BadParameter: If its files are to be accepted as they are.
         typer.Exit: If not all is as it was sent, or the signature does not count.
     """
+    if accept:
+        raise typer.BadParameter("--accept is for projects: what was received is only compared")
     import json
     from dataclasses import asdict
 

@@ -234,7 +234,7 @@ def verify(
     from recon4.cli.terminal import watcher
 
     if is_delivery(folder):
-        return show_checked(folder, as_json=as_json)
+        return show_checked(folder, as_json=as_json, accept=accept)
     if accept and (state := seal_again(folder)):
         _note_accepted(state, folder)
     confine_command(write=[folder])  # SQLite makes files beside what it reads

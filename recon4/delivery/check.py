@@ -71,7 +71,7 @@ def _check_zip(path: Path) -> CheckedFile:
         limit = DELIVERIES.max_manifest_bytes
         blocks = blocks_of(archive, entries[MANIFEST], most=limit, where=path.name)
         manifest = read_manifest(b"".join(blocks))
-        found: dict[str, str] = {}
+        found: dict[str, str | None] = {}
         for name, listed in manifest.files.items():
             if name in entries:
                 stored = blocks_of(archive, entries[name], most=listed.bytes, where=path.name)
@@ -88,7 +88,7 @@ def _check_folder(folder: Path) -> CheckedFile:
         for path in folder.rglob("*")
         if path.is_symlink() or not path.is_dir()
     }
-    found = {}
+    found: dict[str, str | None] = {}
     for name in manifest.files:
         if name in there and not unsafe_name(name) and not (folder / name).is_symlink():
             found[name] = _hash(_blocks(folder / name))
@@ -96,15 +96,19 @@ def _check_folder(folder: Path) -> CheckedFile:
 
 
 def _judged(
-    manifest: DeliveryManifest, found: Mapping[str, str], there: set[str], *, trusted: TrustedKeys
+    manifest: DeliveryManifest,
+    found: Mapping[str, str | None],
+    there: set[str],
+    *,
+    trusted: TrustedKeys,
 ) -> CheckedFile:
     """Compare the files with the manifest, and its signer with the trusted keys."""
     names = [name for name in manifest.files if name in there]
     same = {name for name in names if found.get(name) == manifest.files[name].sha256}
     signer, doubt = _signer(manifest.signature, trusted)
     return CheckedFile(
-        intact=tuple(name for name in names if name in same),
-        altered=tuple(name for name in names if name not in same),
+        intact=tuple(visible(name) for name in names if name in same),
+        altered=tuple(visible(name) for name in names if name not in same),
         missing=tuple(visible(name) for name in manifest.files if name not in there),
         added=tuple(visible(name) for name in sorted(there - {MANIFEST} - manifest.files.keys())),
         says=visible(f"{manifest.project}: {manifest.approval}"),
@@ -149,14 +153,14 @@ def _named(public_key: str, trusted: TrustedKeys) -> tuple[str, str]:
     return f"{visible(key.name)}, key {fingerprint(public_key)}", ""
 
 
-def _hash(blocks: Iterator[bytes]) -> str:
-    """SHA-256; empty if the file cannot be read, or is longer than it was."""
+def _hash(blocks: Iterator[bytes]) -> str | None:
+    """SHA-256; None if the file cannot be read, or is longer than it was."""
     digest = hashlib.sha256()
     try:
         for block in blocks:
             digest.update(block)
     except (CorruptFile, StoreError):
-        return ""
+        return None
     return digest.hexdigest()
 
 

@@ -24,6 +24,8 @@ class ZipFlag(IntFlag):
     """Flags of an entry."""
 
     ENCRYPTED = 1
+    UTF_8 = 1 << 11
+    """Its name is UTF-8, else code page 437."""
 
 
 @contextmanager
@@ -132,7 +134,8 @@ def _refuse_hidden(path: Path, entries: list[zipfile.ZipInfo], archive: zipfile.
     for entry in sorted(entries, key=lambda one: one.header_offset):
         if entry.header_offset < end or (not end and entry.header_offset):
             raise CorruptFile(f"{path.name}: {entry.filename!r} overlaps with another entry")
-        name_bytes = len(entry.orig_filename.encode("utf-8", "surrogateescape"))
+        encoding = "utf-8" if entry.flag_bits & ZipFlag.UTF_8 else "cp437"
+        name_bytes = len(entry.orig_filename.encode(encoding, "surrogateescape"))
         end = entry.header_offset + DELIVERIES.local_header_bytes + name_bytes + entry.compress_size
     if end > archive.start_dir:
         raise CorruptFile(f"{path.name}: an entry reaches into the list at its end")

@@ -6,7 +6,8 @@ import shutil
 import stat
 import tempfile
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -37,7 +38,7 @@ from recon4.review.approval_state import ApprovalState
 from recon4.review.approved import Approval
 from recon4.review.signature import public_key_of
 from recon4.review.state import read_summary
-from recon4.store.atomic import atomic_file
+from recon4.store.atomic import atomic_file, raise_if_full, write_text
 from recon4.store.formats import FORMATS
 from recon4.store.hashing import FileDigest
 from recon4.store.project import read_artifacts
@@ -113,16 +114,16 @@ def deliver(project: Path, out: Path, wish: DeliveryWish, *, progress: Progress)
     _refuse(out, wish)
     map_ = _open(project, wish)
     signed = map_.approval is not None and wish.key is not None
-    with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as name:
-        folder = Path(name)
+    with _folder_beside(out) as folder:
         _write_files(folder, map_, wish, progress=progress)
         texts = words(wish.language)
+        _refuse_changed(map_)
         _write_readme(folder, map_, wish, texts=texts, name=out.name)
         names = sorted(path.name for path in folder.iterdir())
         listed = {one: _digest(folder / one) for one in names}
         key = wish.key if signed else None
         text = manifest_text(_manifest(map_, listed), key)
-        (folder / MANIFEST).write_text(text, "utf-8")
+        write_text(folder / MANIFEST, text)
         with atomic_file(out) as temporary:
             _pack(folder, [README, MANIFEST, *(n for n in names if n != README)], temporary)
             _compare(check_file(temporary), listed)
@@ -162,6 +163,28 @@ def _open(project: Path, wish: DeliveryWish) -> _Map:
     evidence = approval.evidence if approval else None
     wanted = MapExport(crs=wish.crs)
     return _Map(project, state, approval, map_to_export(artifacts, evidence, wanted))
+
+
+@contextmanager
+def _folder_beside(out: Path) -> Iterator[Path]:
+    """A folder for the files of a delivery, which is removed whatever happens.
+
+    Raises:
+        NoSpace: If the disk is full.
+        StoreError: If it cannot be made, or a file in it cannot be written.
+    """
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as name:
+            yield Path(name)
+    except OSError as error:
+        raise_if_full(error, out)
+        raise StoreError(f"{out} cannot be made: {error}") from error
+
+
+def _refuse_changed(map_: _Map) -> None:
+    """Refuse to pack exports of one map with the report of another, made meanwhile."""
+    if dict(read_artifacts(map_.project)) != dict(map_.export.artifacts):
+        raise StoreError("the map was made again while it was packed: deliver it once more")
 
 
 def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Progress) -> None:
@@ -220,9 +243,8 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
     points = f"{len(map_.export.tiles):,}".replace(",", " ")
     lines = [texts("readme.title", title=visible(str(summary.get("name", "")))), ""]
     lines.append(texts("readme.state", state=map_.state.text))
-    lines.append(
-        texts("readme.crs", crs=visible(str(summary.get("crs") or texts("front.crs_local"))))
-    )
+    crs = wish.crs or str(summary.get("crs") or "") or texts("front.crs_local")
+    lines.append(texts("readme.crs", crs=visible(crs)))
     lines += ["", texts("readme.what"), ""]
     for one in sorted(path.name for path in folder.iterdir()):
         kind = kinds.get(one, {"map": "cloud"}.get(one.partition(".")[0], one.partition(".")[0]))
@@ -235,7 +257,7 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
         lines.append(texts("readme.unsigned"))
     if wish.license is None:
         lines += ["", texts("readme.no_license")]
-    (folder / README).write_text("\n".join(lines) + "\n", "utf-8")
+    write_text(folder / README, "\n".join(lines) + "\n")
 
 
 def _pack(folder: Path, names: Sequence[str], out: Path) -> None:

@@ -19,7 +19,7 @@ class DeliveryLimits:
     compared_points: int = 100_000
     """At a time, of an export and its map."""
     same_point_m: float = 1e-4
-    """Rounding of text and of single precision near the middle of a map [m]."""
+    """Rounding of text [m]."""
     block_bytes: int = 1 << 20
     """Read at a time."""
 

@@ -10,12 +10,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.cli.main import main
 from recon4.delivery import package, reread
 from recon4.delivery.check import check_file
 from recon4.delivery.package import DeliveryWish, chosen_files, deliver
 from recon4.delivery.report_files import server_key
 from recon4.errors import ConfigError, CorruptFile, Recon4Error, StoreError
+from recon4.export.map_files import write_map
 from recon4.progress import Silent
+from recon4.report.client_words import words
 from recon4.review.trusted_keys import ensure_own_key, read_keys
 from recon4.store.hashing import hash_file
 from tests.made_once import made_once
@@ -265,3 +268,87 @@ def test_the_key_of_the_server_is_the_one_that_is_trusted(sent):
     (key,) = read_keys(sent / ".recon4", server=True).keys.values()
 
     assert key.fingerprint in check_file(sent / "sent.zip").signer
+
+
+def test_the_readme_names_the_coordinates_of_the_files(sent, tmp_path):
+    map_ = package._open(sent / "room", DeliveryWish())
+    for wish, said in (
+        (DeliveryWish(crs="EPSG:25832"), "Coordinates of the map: EPSG:25832."),
+        (DeliveryWish(), "Coordinates of the map: local frame"),
+    ):
+        package._write_readme(tmp_path, map_, wish, texts=words(), name="d.zip")
+        assert said in (tmp_path / "README.txt").read_text("utf-8")
+
+
+def test_a_map_that_was_made_again_meanwhile_is_refused(sent):
+    map_ = package._open(sent / "room", DeliveryWish())
+    package._refuse_changed(map_)
+    others = dict(map_.export.artifacts) | {"map": sent / "room" / "artifacts" / "other"}
+
+    with pytest.raises(StoreError, match="made again"):
+        package._refuse_changed(replace(map_, export=replace(map_.export, artifacts=others)))
+
+
+def test_a_folder_that_is_not_there_is_said(sent, tmp_path):
+    with pytest.raises(StoreError, match="cannot be made"):
+        deliver(sent / "room", tmp_path / "no" / "d.zip", DeliveryWish(), progress=Silent())
+
+
+def test_what_reads_back_as_no_number_is_wrong(sent, tmp_path):
+    export = package._open(sent / "room", DeliveryWish()).export
+    path = tmp_path / "map.xyz"
+    write_map(export, path, all_points=False, progress=Silent())
+    reread.compare_export(path, export.tiles, export.output)
+    lines = path.read_text().splitlines(keepends=True)
+    lines[-1] = "nan " + lines[-1].split(" ", 1)[1]
+    path.write_text("".join(lines))
+
+    with pytest.raises(StoreError, match="reads back wrong"):
+        reread.compare_export(path, export.tiles, export.output)
+
+
+def test_single_precision_far_from_the_middle_of_a_map_is_no_error():
+    far = np.array([[3000.1234, -4000.4321, 12.3]])
+    rounded = far.astype(np.float32).astype(np.float64)
+
+    assert reread._are_same(far, rounded, single=True)
+    assert not reread._are_same(far, rounded + 0.002, single=True)
+    assert not reread._are_same(far, rounded, single=False)
+
+
+def _unsigned(**files):
+    """A manifest without signature that lists files with these hashes."""
+    listed = {name: {"bytes": 5, "sha256": sha256} for name, sha256 in files.items()}
+    texts = dict.fromkeys(("project", "made", "recon4", "approval", "crs"), "")
+    head = {"format": 1, "kind": "recon4 delivery", "signature": None, "files": listed}
+    return json.dumps(head | texts).encode()
+
+
+def test_names_of_an_unpacked_delivery_cannot_command_a_terminal(stranger):
+    name = "a\x1b[2J"
+    (stranger / "d").mkdir()
+    (stranger / "d" / name).write_bytes(b"x")
+    (stranger / "d" / "manifest.json").write_bytes(_unsigned(**{name: "ab"}))
+
+    assert check_file(stranger / "d").altered == ("a<U+001B>[2J",)
+
+
+def test_what_cannot_be_read_is_altered_whatever_hash_is_listed(stranger):
+    data = _zip(("manifest.json", _unsigned(a="")), ("a", b"12345"))
+    (stranger / "a.zip").write_bytes(data.replace(b"12345", b"12346"))  # its checksum is wrong
+
+    found = check_file(stranger / "a.zip")
+
+    assert (found.intact, found.altered) == ((), ("a",))
+
+
+def test_a_delivery_is_not_accepted_as_it_is(sent, capsys):
+    assert main(["verify", str(sent / "sent.zip"), "--accept"]) == 2
+    assert "--accept" in capsys.readouterr().err
+
+
+def test_an_added_file_with_an_old_name_is_named_and_not_called_an_overlap(stranger):
+    data = _zip(("Gr__e.txt", b"x"), ("manifest.json", _unsigned(a="ab")))
+    (stranger / "a.zip").write_bytes(data.replace(b"Gr__e", "Größe".encode("cp437")))
+
+    assert check_file(stranger / "a.zip").added == ("Größe.txt",)
