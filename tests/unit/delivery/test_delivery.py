@@ -278,6 +278,7 @@ def test_the_readme_names_the_coordinates_of_the_files(sent, tmp_path):
     ):
         package._write_readme(tmp_path, map_, wish, texts=words(), name="d.zip")
         assert said in (tmp_path / "README.txt").read_text("utf-8")
+        (tmp_path / "README.txt").unlink()
 
 
 def test_a_map_that_was_made_again_meanwhile_is_refused(sent):
