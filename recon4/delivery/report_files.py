@@ -7,19 +7,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import msgspec
-
 from recon4.delivery.pdf_signature import Organization, sign_pdf
 from recon4.errors import StoreError
-from recon4.findings.summary_notes import SaidFinding, findings_in
-from recon4.findings.wording import said as said_of
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Signature
 from recon4.report.client_report import ReportExtras, client_report
 from recon4.report.client_words import Words, words
 from recon4.report.pdf import pdf_of, require_pdf
 from recon4.report.project import project_facts
-from recon4.review.acknowledgments import acknowledgments, report_with_notes, seen_finding
+from recon4.review.acknowledgments import (
+    acknowledgments,
+    report_with_notes,
+    seen_finding,
+    seen_findings,
+)
 from recon4.review.approval_state import ApprovalState, latest_state
 from recon4.review.approved import Approval, approval_of
 from recon4.review.decisions import DecisionKind
@@ -169,12 +170,12 @@ def _notes(
 ) -> Mapping[int, Sequence[str]]:
     """Notes of reviewers by finding; of an approved map those up to its approval."""
     summary = read_summary(root) or {}
-    said = [seen_finding(one) for one in findings_in(summary) or []]
+    said = seen_findings(summary)
     notes = acknowledgments(_rows_before(approval, read_rows(root)), summary)
     about = [(said[one.finding], one) for one in notes if one.finding is not None]
     out: dict[int, list[str]] = {}
     for place, finding in enumerate(assessed.findings):
-        seen = seen_finding(msgspec.convert(said_of(finding), SaidFinding))
+        seen = seen_finding(finding)
         texts = [f"{one.who}, {one.time[:10]}: {one.why}" for other, one in about if other == seen]
         if texts:
             out[place] = texts

@@ -12,6 +12,7 @@ from html import escape
 from pathlib import Path
 
 from recon4.findings.summary_notes import SaidFinding, findings_in
+from recon4.model.finding import Finding
 from recon4.report.approval import add_to_block, is_draft
 from recon4.review.decisions import DecisionKind, SeenFinding
 from recon4.review.journal import JournalRow, read_rows
@@ -36,18 +37,27 @@ class Acknowledgment:
     """Its place in the list of findings of the map; null = outdated, the map has no such one."""
 
 
-def seen_finding(finding: SaidFinding) -> SeenFinding:
+def seen_finding(finding: SaidFinding | Finding) -> SeenFinding:
     """What an acknowledgment is about: the finding without its wording, and without its place,
     which moves with the map.
     """
     return SeenFinding(
-        kind=finding.kind,
+        kind=str(finding.kind),
         level=str(finding.level),
         span_s=finding.span_s,
         direction=finding.direction,
         sensor=finding.sensor,
-        values=finding.values,
+        values=dict(finding.values),
     )
+
+
+def seen_findings(summary: Mapping[str, object]) -> list[SeenFinding]:
+    """The findings in ``summary.json``, as acknowledgments are about them.
+
+    Raises:
+        StoreError: If they cannot be read.
+    """
+    return [seen_finding(one) for one in findings_in(summary) or []]
 
 
 def acknowledgments(
@@ -62,7 +72,7 @@ def acknowledgments(
     Raises:
         StoreError: If either is damaged.
     """
-    findings = [seen_finding(one) for one in findings_in(summary) or []]
+    findings = seen_findings(summary)
     last: list[tuple[SeenFinding, Acknowledgment]] = []
     for row in rows:
         if row.kind != DecisionKind.ACKNOWLEDGE:
