@@ -83,7 +83,7 @@ from recon4_app.rigs.store import RigStore
 from recon4_app.rigs.uses import RigUses
 from recon4_app.server_routes import READ_ONLY
 from recon4_app.settings import ServerSettings
-from recon4_app.slices import align_routes, reference_routes
+from recon4_app.slices import align_routes, reference_routes, site_routes
 from recon4_app.slices import routes as slice_routes
 from recon4_app.slices.store import Slices
 from recon4_app.storage import routes as storage_routes
@@ -157,8 +157,8 @@ def _routes() -> list[BaseRoute]:
         job_routes,
     ):
         router.include_router(part.router)
-    more = (choices, server_routes, metrics_routes, reference_routes, align_routes, docs_pages)
-    for part in more:
+    more = (choices, server_routes, metrics_routes, docs_pages)
+    for part in (*more, reference_routes, align_routes, site_routes):
         router.include_router(part.router)
     router.include_router(acknowledgment_routes.router)
     for part in (page, proxy):

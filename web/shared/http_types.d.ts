@@ -1115,6 +1115,16 @@ export interface SignedFigures {
   shift_m: [number | null, number | null, number | null];
 }
 
+export interface SiteSystem {
+  crs?: string;
+}
+
+export interface SiteTrial {
+  text: string;
+  forbidden: Array<string>;
+  unseen: Array<string>;
+}
+
 export interface SliceFacts {
   points: number;
   strays: number;
@@ -1308,6 +1318,10 @@ export interface Operations {
   "DELETE /api/projects/{project_id}": {
     path: { project_id: string };
     response: Deleted;
+  };
+  "DELETE /api/projects/{project_id}/slices/control/site": {
+    path: { project_id: string };
+    response: string;
   };
   "DELETE /api/projects/{project_id}/slices/references/{reference_id}": {
     path: { project_id: string; reference_id: string };
@@ -1504,6 +1518,11 @@ export interface Operations {
     path: { project_id: string; ending: string };
     query?: { draft?: boolean };
     response: any;
+  };
+  "GET /api/projects/{project_id}/slices/control/site": {
+    path: { project_id: string };
+    query?: { crs?: string };
+    response: SiteTrial;
   };
   "GET /api/projects/{project_id}/slices/control/surface": {
     path: { project_id: string };
@@ -1746,6 +1765,11 @@ export interface Operations {
     path: { project_id: string };
     body: ControlFile;
     response: ControlPreview;
+  };
+  "POST /api/projects/{project_id}/slices/control/site": {
+    path: { project_id: string };
+    body: SiteSystem;
+    response: string;
   };
   "POST /api/projects/{project_id}/slices/image": {
     path: { project_id: string };

@@ -25,6 +25,7 @@ import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { combined } from "./measured.js";
 import { figures, residualCells } from "./residual_table.js";
+import { siteSection } from "./site.js";
 
 /**
  * @import {
@@ -306,7 +307,8 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
         <div>${preview ? previewed(preview) : nothing}</div>
         <p class="quiet status" role="status"></p>
         <p class="error problem" role="alert"></p>
-        <div>${now && found ? reported(now, found) : now ? none : nothing}</div>`,
+        <div>${now && found ? reported(now, found) : now ? none : nothing}</div>
+        <section class="site" ?hidden=${!found}></section>`,
       host,
     );
   }
@@ -380,6 +382,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
   }
 
   draw();
+  siteSection(within(host, ".site"), id);
   attempt(message(), async () => {
     await readKept();
     await report();

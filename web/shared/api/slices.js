@@ -140,6 +140,26 @@ export const controlFileUrl = (id, ending, draft = false) =>
   `${slices(id)}/control/report.${ending}${draft ? "?draft=true" : ""}`;
 /**
  * @param {string} project_id
+ * @param {string} crs
+ */
+export const trySite = (project_id, crs) =>
+  request("GET /api/projects/{project_id}/slices/control/site", {
+    path: { project_id },
+    query: { crs },
+  });
+/**
+ * @param {string} project_id
+ * @param {string} crs
+ */
+export const putOnSite = (project_id, crs) =>
+  request("POST /api/projects/{project_id}/slices/control/site", {
+    path: { project_id },
+    body: { crs },
+  });
+export const takeOffSite = (/** @type {string} */ project_id) =>
+  request("DELETE /api/projects/{project_id}/slices/control/site", { path: { project_id } });
+/**
+ * @param {string} project_id
  * @param {string} point
  */
 export const readSurface = (project_id, point) =>
