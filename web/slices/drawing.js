@@ -95,7 +95,6 @@ function drawTools(/** @type {Act} */ act) {
           "Swipe",
           "swipe",
         )}</span
-      ><a class="button" href=${mapUrl(idHere()) + mapQuery(page.state)}>Show in 3-D</a
       >${button("?", showHelp, "Keys  ?", "Help")}`,
     byId("tools"),
   );
@@ -162,5 +161,6 @@ function facing({ name, points, surface }, { strays, frame, approval }) {
     ${
       strays && surface !== "strays" ? html`<span>${count(strays)} points left out</span>` : nothing
     }
-    <span class="frame">${frame}</span>${approvalFact(approval)}`;
+    <span class="frame">${frame}</span>${approvalFact(approval)}
+    <a href=${mapUrl(idHere()) + mapQuery(page.state)}>Show in 3-D</a>`;
 }
