@@ -66,8 +66,8 @@ export function siteSection(host, id) {
           Three or more control points place the map. They are tested first; check points only
           judge. The map is made again, and the places of points are measured in it again.
         </p>
+        <label>EPSG <input size="12" placeholder="site grid" aria-label="EPSG code" /></label>
         <div class="buttons">
-          <label>EPSG <input size="12" placeholder="site grid" aria-label="EPSG code" /></label>
           <button type="button" ?disabled=${busy !== ""} @click=${tried}>Try</button>
           <button type="button" ?disabled=${busy !== ""} @click=${takeOff}>
             Take the map off control points
