@@ -55,13 +55,7 @@ async def try_site(
 
 @router.post("", status_code=204, dependencies=REVIEW, summary="Put the map on control points")
 async def put_on_site(
-    project_id: str,
-    system: SiteSystem,
-    server: Server,
-    *,
-    caller: CalledBy,
-    who: Who,
-    request: Request,
+    project_id: str, system: SiteSystem, server: Server, *, caller: CalledBy
 ) -> None:
     """Note it in the journal; the map follows when it is made again (``remake``).
 
@@ -73,8 +67,8 @@ async def put_on_site(
     control = await caller.wait(
         server.slices.run_background(terms, site_work.site_control_of, artifacts, state, system.crs)
     )
-    await run_in_threadpool(_decide, server, project_id, who=who.name, control=control)
-    audit(request, "put map on control points", project_id)
+    await run_in_threadpool(_decide, server, project_id, who=caller.name, control=control)
+    audit(caller.request, "put map on control points", project_id)
 
 
 @router.delete("", status_code=204, dependencies=REVIEW, summary="Take the map off them")
