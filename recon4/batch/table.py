@@ -14,6 +14,7 @@ from recon4.batch.walk_process import WalkOutcome
 from recon4.batch.walks import WalkTask
 from recon4.errors import StoreError
 from recon4.executors.executor import Finished
+from recon4.export.cells import safe_cell
 from recon4.model.usability import verdict_in
 from recon4.store.atomic import write_json, write_text
 from recon4.store.json_files import read_object
@@ -90,7 +91,9 @@ def write_table(out: Path, rows: Iterable[BatchRow]) -> None:
     text = io.StringIO()
     table = csv.DictWriter(text, [field.name for field in fields(BatchRow)], lineterminator="\n")
     table.writeheader()
-    table.writerows(records)
+    table.writerows(
+        record | {key: safe_cell(str(record[key])) for key in ("walk", "why")} for record in records
+    )
     write_text(out / "batch.csv", text.getvalue())
 
 

@@ -82,11 +82,17 @@ def walk_tasks(
         recordings: Of the walks.
         out: Folder of the projects.
         options: Further arguments of ``recon4 process``.
+
+    Raises:
+        ConfigError: If two recordings would become one project.
     """
-    short = [_project_name(path.relative_to(folder).with_suffix("")) for path in recordings]
-    whole = [_project_name(path.relative_to(folder)) for path in recordings]
-    uses = Counter(short)
-    names = [one if uses[one] == 1 else full for one, full in zip(short, whole, strict=True)]
+    names = [_project_name(path.relative_to(folder)) for path in recordings]
+    for name, count in Counter(names).items():
+        if count > 1:
+            both = ", ".join(
+                str(one) for one, own in zip(recordings, names, strict=True) if own == name
+            )
+            raise ConfigError(f"{both}: both would become the project {name}: rename one")
     return [
         WalkTask(name, str(path), str((out / name).absolute()), (*_beside(path, options), *options))
         for path, name in zip((one.absolute() for one in recordings), names, strict=True)
@@ -113,4 +119,4 @@ def _is_walk(file: Path) -> bool:
 
 
 def _project_name(relative: Path) -> str:
-    return "-".join(relative.parts)
+    return "-".join(relative.with_suffix("").parts)

@@ -76,10 +76,7 @@ class Cluster:
         stop = Event(topic, client)
         client.subscribe_topic(topic, lambda event: say(*event[1]))
         # A task writes files, so the same one is never run twice at a time: no copies of it.
-        futures = [
-            client.submit(_on_worker, function, task, topic, pure=False, retries=0)
-            for task in tasks
-        ]
+        futures = [client.submit(_on_worker, function, task, topic, pure=False) for task in tasks]
         of_future = dict(zip((future.key for future in futures), tasks, strict=True))
         try:
             for future in as_completed(futures):

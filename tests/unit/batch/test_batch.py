@@ -111,18 +111,12 @@ def test_a_walk_is_given_the_samples_and_the_rig_in_its_folder(tmp_path):
     assert given.options == ("--imu", str(walk / "imu.csv"), "--rig", "4recon")
 
 
-def test_walks_of_one_name_get_different_projects(tmp_path):
-    names = [
-        task.name
-        for task in walk_tasks(
-            tmp_path,
-            (tmp_path / "a.bag", tmp_path / "a.pcap", tmp_path / "b.bag"),
-            out=tmp_path,
-            options=(),
-        )
-    ]
+@pytest.mark.parametrize("two", [("a.bag", "a.pcap"), ("a/b.pcap", "a-b.pcap")])
+def test_two_walks_never_become_one_project(tmp_path, two):
+    recordings = tuple(tmp_path / name for name in (*two, "c.bag"))
 
-    assert names == ["a.bag", "a.pcap", "b"]
+    with pytest.raises(ConfigError, match="both would become the project a"):
+        walk_tasks(tmp_path, recordings, out=tmp_path, options=())
 
 
 def test_a_folder_without_walks_is_refused(tmp_path):
