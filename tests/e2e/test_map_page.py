@@ -193,7 +193,7 @@ def test_a_view_ends_the_flight(server, page):
     expect(fly).to_have_attribute("aria-pressed", "true")
     page.keyboard.press("7")
 
-    expect(fly).to_have_attribute("aria-pressed", "false")
+    expect(fly).to_have_attribute("aria-pressed", "false", timeout=5_000)
 
 
 @looks("desktop light")

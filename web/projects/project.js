@@ -27,7 +27,7 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
-import { askFirst } from "../shared/download.js";
+import { askFirst, askOnce } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
@@ -130,10 +130,12 @@ function fileRow(/** @type {ResultFile} */ { name, label, bytes: size }) {
   return html`<li>${link}<small>${name}, ${bytes(size)}</small></li>`;
 }
 
+const reportPdfName = () => `${state.id}-report.pdf`;
+
 /** The report for the client, made and signed when it is asked for. */
 const reportRow = () =>
   html`<li>
-    <a href=${reportPdfUrl(state.id)} download @click=${askFirst(filePlaces)}
+    <a href=${reportPdfUrl(state.id)} download @click=${askOnce(filePlaces, reportPdfName)}
       >Report for the client, PDF</a
     ><small>report.pdf</small>
   </li>`;

@@ -1,7 +1,9 @@
 // Links to files that the server may refuse: a browser shows no reason of a refused download.
 
 import { attempt } from "./dom.js";
-import { canBeRead } from "./http.js";
+import { canBeRead, readBytes } from "./http.js";
+
+const NAME_AGAIN_MS = 60_000; // until then a browser has begun to save
 
 /**
  * The `@click` of a link that asks the server for its file first. A refusal is shown in `message`,
@@ -9,7 +11,34 @@ import { canBeRead } from "./http.js";
  * the click.
  * @param {() => {message: HTMLElement, status: HTMLElement}} places
  */
-export const askFirst = (places) => async (/** @type {MouseEvent} */ event) => {
+export const askFirst = (places) =>
+  clicked(places, async (href) => {
+    await canBeRead(href);
+    save(href, "");
+  });
+
+/**
+ * As `askFirst`, for a small file that the server makes anew at each request: it is asked for once.
+ * @param {() => {message: HTMLElement, status: HTMLElement}} places
+ * @param {() => string} name
+ */
+export const askOnce = (places, name) =>
+  clicked(places, async (href) => {
+    const url = URL.createObjectURL(new Blob([await readBytes(href)]));
+    save(url, name());
+    setTimeout(() => URL.revokeObjectURL(url), NAME_AGAIN_MS);
+  });
+
+function save(/** @type {string} */ href, /** @type {string} */ download) {
+  const file = document.createElement("a");
+  Object.assign(file, { href, download }).click();
+}
+
+/**
+ * @param {() => {message: HTMLElement, status: HTMLElement}} places
+ * @param {(href: string) => Promise<void>} download
+ */
+const clicked = (places, download) => async (/** @type {MouseEvent} */ event) => {
   if (event.ctrlKey || event.metaKey || event.shiftKey) return; // in another tab
   event.preventDefault();
   const link = /** @type {HTMLAnchorElement} */ (event.currentTarget);
@@ -18,10 +47,6 @@ export const askFirst = (places) => async (/** @type {MouseEvent} */ event) => {
   const { message, status } = places();
   link.ariaBusy = "true";
   status.textContent = `${link.textContent}: the file is being made…`;
-  await attempt(message, async () => {
-    await canBeRead(href);
-    const file = document.createElement("a");
-    Object.assign(file, { href, download: "" }).click();
-  });
+  await attempt(message, () => download(href));
   link.ariaBusy = status.textContent = "";
 };

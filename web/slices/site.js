@@ -32,18 +32,18 @@ export function siteSection(host, id) {
     set({ busy: "" });
   }
   const tried = () => run("Trying…", async () => set({ trial: await trySite(id, crs()) }));
-  const put = () =>
-    run("Putting the map on the points…", async () => {
-      await putOnSite(id, crs());
+  /**
+   * @param {string} what shown meanwhile
+   * @param {() => Promise<unknown>} decide
+   */
+  const remade = (what, decide) =>
+    run(what, async () => {
+      await decide();
       await remakeMap(id);
       set({ done: true });
     });
-  const takeOff = () =>
-    run("Taking the map off the points…", async () => {
-      await takeOffSite(id);
-      await remakeMap(id);
-      set({ done: true });
-    });
+  const put = () => remade("Putting the map on the points…", () => putOnSite(id, crs()));
+  const takeOff = () => remade("Taking the map off the points…", () => takeOffSite(id));
 
   function outcome(/** @type {SiteTrial} */ { text, forbidden, unseen }) {
     return html`${forbidden.map((one) => html`<p class="bad">✕ ${one}</p>`)}

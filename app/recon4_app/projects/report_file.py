@@ -42,6 +42,7 @@ async def report_pdf(project_id: str, *, server: Server, caller: CalledBy) -> Fi
         access=FileAccess(read=(key, *judging_folders(key.parent)), write=(root,)),
         limit_s=SIGNING.signing_limit_s,
         outputs={_NAME: place},
+        large=True,  # approvals go first
     )
     run = server.compute_pool.run_background
     await caller.wait(run(Lane.SIGN, terms, write_report_file, str(root), out=_NAME))
