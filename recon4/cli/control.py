@@ -10,7 +10,7 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.terminal import write
-from recon4.errors import ConfigError, GeoreferenceError
+from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
     from recon4.model.site_control import SiteControl
@@ -51,6 +51,7 @@ def control_points(
     """
     confine_command(write=[project])
     from recon4.model.site_control import SiteControl
+    from recon4.slices.site_control import require_agreement, trial_text
 
     if survey is None:
         if not apply or picks or crs:
@@ -58,27 +59,12 @@ def control_points(
         _make_again(project, SiteControl(targets=(), crs=""))
         return
     trial = _try(project, _points(survey), picks, crs=crs)
-    write(_tables(_record(trial)))
+    write(trial_text(trial))
     if trial.unseen:
         write(f"not measured in the map: {', '.join(trial.unseen)}")
-    _refuse(trial)
+    require_agreement(trial)
     if apply:
         _make_again(project, trial.control)
-
-
-def _record(trial: ControlTrial) -> dict[str, object]:
-    """A trial as ``georeference.json`` would have it."""
-    from recon4.model.plain import to_plain
-
-    return {"control": to_plain(trial.record)}
-
-
-def _tables(record: dict[str, object]) -> str:
-    from recon4.evaluation.site_control import control_in, outcome_text
-
-    outcome = control_in(record)
-    assert outcome is not None
-    return outcome_text(outcome)
 
 
 def _points(survey: Path) -> tuple[ControlPoint, ...]:
@@ -135,19 +121,10 @@ def _picked_on_page(project: Path, key: str) -> dict[str, MeasuredPosition]:
     return found
 
 
-def _refuse(trial: ControlTrial) -> None:
-    from recon4.slices.site_control import forbidding
-
-    found = forbidding(trial)
-    if found:
-        raise GeoreferenceError(
-            f"the map is not put on these points: {' '.join(one.text for one in found)}"
-        )
-
-
 def _make_again(project: Path, decided: SiteControl) -> None:
     """Note the decision in the journal and make the map again."""
     from recon4.cli.terminal import describe_summary, watcher
+    from recon4.evaluation.site_control import control_in, outcome_text
     from recon4.pipeline import remake
     from recon4.review.decisions import Decision, DecisionKind
     from recon4.review.journal import append
@@ -162,4 +139,6 @@ def _make_again(project: Path, decided: SiteControl) -> None:
     write(describe_summary(summary))
     if decided.targets:
         path = read_artifacts(project)["level"] / "georeference.json"
-        write(_tables(read_object(path, max_bytes=LIMITS.findings_bytes)))
+        outcome = control_in(read_object(path, max_bytes=LIMITS.findings_bytes))
+        assert outcome is not None  # it is that of these targets
+        write(outcome_text(outcome))

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
 import numpy as np
 
 from recon4.errors import ConfigError, GeoreferenceError
+from recon4.evaluation.site_control import ControlOutcome, outcome_text
 from recon4.geometry.se3 import Array
 from recon4.georeference.control_adjustment import measured_targets
 from recon4.georeference.control_blunders import Blunder, named_blunders
@@ -21,6 +23,7 @@ from recon4.georeference.control_stage import (
     system_of,
 )
 from recon4.georeference.crs_file import read_crs
+from recon4.model.plain import to_plain
 from recon4.model.site_control import SeenTarget, SiteControl
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
@@ -161,6 +164,22 @@ def forbidding(trial: ControlTrial) -> tuple[Blunder, ...]:
     """Blunders of control points: a map is not put on points that contradict each other."""
     control = {one.id for one in trial.control.targets if one.role == "control"}
     return tuple(one for one in trial.blunders if not one.points or control & {*one.points})
+
+
+def require_agreement(trial: ControlTrial) -> None:
+    """Check that the control points may place the map.
+
+    Raises:
+        GeoreferenceError: If they contradict each other, with what is suspected.
+    """
+    if found := forbidding(trial):
+        texts = " ".join(one.text for one in found)
+        raise GeoreferenceError(f"the map is not put on these points: {texts}")
+
+
+def trial_text(trial: ControlTrial) -> str:
+    """Residuals, tests and statements of a trial in lines."""
+    return outcome_text(msgspec.convert(to_plain(trial.record), ControlOutcome))
 
 
 def _is_leveled(level: Path) -> bool:

@@ -37,7 +37,7 @@ MAY_IMPORT = {
     "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/executors": {"recon4.errors", "recon4.executors"},
     "recon4/batch": MODEL
-    | {"recon4.batch", "recon4.executors", "recon4.store"}
+    | {"recon4.batch", "recon4.executors", "recon4.export.cells", "recon4.store"}
     | {"recon4.recording.kinds", "recon4.recording.nearby_samples"}
     | {"recon4.system.processes", "recon4.system.stopping"},
     "recon4/batch/child.py": {"recon4"},
@@ -131,7 +131,8 @@ MAY_IMPORT = {
     | {"recon4.review.stamp"},
     "recon4/slices/site_control.py": STAGE
     | {"recon4.georeference", "recon4.slices"}
-    | {f"recon4.pose_graph.{name}" for name in ("files", "uncertainty_files")},
+    | {f"recon4.pose_graph.{name}" for name in ("files", "uncertainty_files")}
+    | {"recon4.evaluation.site_control"},
     "recon4/report": STAGE
     | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"}
     | {"recon4.findings"},

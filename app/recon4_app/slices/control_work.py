@@ -14,7 +14,7 @@ from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
 from recon4.slices.map_crs import MapFrame
-from recon4.slices.measured_points import MeasuredPosition, orthonormal
+from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text
@@ -60,11 +60,7 @@ def control_file(
 
 def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
     own = map_frame(artifacts)
-    here = state.of_map(Path(artifacts["map"]).name)
-    measured = {
-        name: MeasuredPosition(np.array(p_map), orthonormal(state.along[name]))
-        for name, p_map in here.items()
-    }
+    measured = state.measured_in(Path(artifacts["map"]).name)
     covariances = _covariances(artifacts, measured)
     if state.frame == "crs":
         if own.to_crs is None:
@@ -80,7 +76,7 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
         measured,
         ControlContext(
             covariances=covariances,
-            outdated=state.picks.keys() - here.keys(),
+            outdated=state.picks.keys() - measured.keys(),
             map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
             limits=ControlLimits(**state.limits.model_dump()),
         ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Annotated, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from recon4.mapping.tiles import Surface
@@ -15,7 +16,7 @@ from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.control_limits import ControlLimits
-from recon4.slices.measured_points import orthonormal
+from recon4.slices.measured_points import MeasuredPosition, orthonormal
 from recon4.slices.reference import ReferenceFacts
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import CONTROL_LIMITS, SLICE_PLANES
@@ -277,13 +278,13 @@ class ControlState(Strict):
             orthonormal(directions)  # refuses directions that are none
         return along
 
-    def of_map(self, key: str) -> dict[str, Xyz]:
+    def measured_in(self, key: str) -> dict[str, MeasuredPosition]:
         """Positions found in this map, of which it is known what they measured.
 
         Left out are positions found in an earlier map, and those of an earlier version.
         """
         return {
-            name: at
+            name: MeasuredPosition(np.array(at), orthonormal(self.along[name]))
             for name, at in self.picks.items()
             if self.found_in.get(name) == key and name in self.along
         }

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import msgspec
-import numpy as np
-
 from recon4.errors import GeoreferenceError
-from recon4.evaluation.site_control import ControlOutcome, outcome_text
-from recon4.model.plain import to_plain
 from recon4.model.site_control import SiteControl
 from recon4.slices.control_points import ControlPoint
-from recon4.slices.measured_points import MeasuredPosition, orthonormal
-from recon4.slices.site_control import forbidding, try_control
+from recon4.slices.site_control import (
+    ControlTrial,
+    forbidding,
+    require_agreement,
+    trial_text,
+    try_control,
+)
 from recon4_app.slices.model import ControlState
 from recon4_app.slices.slice_work import Artifacts
 
@@ -38,9 +37,9 @@ def try_site(artifacts: Artifacts, state: ControlState, crs: str) -> SiteTrial:
     Raises:
         GeoreferenceError: If the points place no map.
     """
-    trial = try_control(*_measured(artifacts, state), _paths(artifacts), crs=crs)
+    trial = _try(artifacts, state, crs)
     return SiteTrial(
-        text=outcome_text(msgspec.convert(to_plain(trial.record), ControlOutcome)),
+        text=trial_text(trial),
         forbidden=tuple(one.text for one in forbidding(trial)),
         unseen=trial.unseen,
     )
@@ -52,25 +51,21 @@ def site_control_of(artifacts: Artifacts, state: ControlState, crs: str) -> Site
     Raises:
         GeoreferenceError: If the points place no map, or contradict each other.
     """
-    trial = try_control(*_measured(artifacts, state), _paths(artifacts), crs=crs)
-    if found := forbidding(trial):
-        texts = " ".join(one.text for one in found)
-        raise GeoreferenceError(f"the map is not put on these points: {texts}")
+    trial = _try(artifacts, state, crs)
+    require_agreement(trial)
     return trial.control
 
 
-def _measured(
-    artifacts: Artifacts, state: ControlState
-) -> tuple[list[ControlPoint], Mapping[str, MeasuredPosition]]:
-    here = state.of_map(Path(artifacts["map"]).name)
-    if not here:
+def _try(artifacts: Artifacts, state: ControlState, crs: str) -> ControlTrial:
+    missing = [name for name in ("frames", "odometry", "level") if name not in artifacts]
+    if missing:
+        raise GeoreferenceError(
+            f"control points need the results of {', '.join(missing)}, which this project lacks: "
+            "process its recording again"
+        )
+    measured = state.measured_in(Path(artifacts["map"]).name)
+    if not measured:
         raise GeoreferenceError("no control point was measured in this map")
-    measured = {
-        name: MeasuredPosition(np.array(p_map), orthonormal(state.along[name]))
-        for name, p_map in here.items()
-    }
-    return [ControlPoint(**point.model_dump()) for point in state.points], measured
-
-
-def _paths(artifacts: Artifacts) -> dict[str, Path]:
-    return {name: Path(folder) for name, folder in artifacts.items()}
+    points = [ControlPoint(**point.model_dump()) for point in state.points]
+    folders = {name: Path(folder) for name, folder in artifacts.items()}
+    return try_control(points, measured, folders, crs=crs)
