@@ -18,7 +18,8 @@ export const askFirst = (places) =>
   });
 
 /**
- * As `askFirst`, for a small file that the server makes again at each request: it is asked for once.
+ * As `askFirst`, for a small file that the server makes again at each request: it is asked for
+ * once.
  * @param {() => {message: HTMLElement, status: HTMLElement}} places
  * @param {() => string} name
  */
