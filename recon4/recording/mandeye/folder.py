@@ -27,6 +27,7 @@ from recon4.recording.report import ImportReport
 from recon4.untrusted.bounded import lines_limited
 
 POINTS_NAME = re.compile(r"lidar(\d+)\.la[sz]", re.IGNORECASE)
+_POSITIONS = re.compile(r"gnss\d+\.(gnss|nmea)", re.IGNORECASE)
 _SERIAL_LINE = re.compile(r"(\d{1,3})\s+(\S{1,64})\s*")
 
 
@@ -52,6 +53,8 @@ class MandeyeWalk:
     parts: tuple[WalkPart, ...]
     serials: dict[int, str]
     """LiDAR -> its serial number, where it is stated."""
+    positions: tuple[Path, ...] = ()
+    """Files of positions: one of each number, sentences only where nothing else is."""
 
     @property
     def ids(self) -> tuple[int, ...]:
@@ -89,7 +92,7 @@ def list_walk(folder: Path, report: ImportReport) -> MandeyeWalk:
     moved = sum(a is not b for a, b in zip(parts, ordered, strict=True))
     report.count("files_out_of_order", moved)
     _note_missing(folder, ordered, report)
-    return MandeyeWalk(folder, tuple(ordered), _serials(ordered, report))
+    return MandeyeWalk(folder, tuple(ordered), _serials(ordered, report), _positions(folder))
 
 
 def _part(path: Path, report: ImportReport) -> WalkPart | None:
@@ -136,12 +139,14 @@ def _note_missing(folder: Path, parts: Sequence[WalkPart], report: ImportReport)
     if without and len(without) < len(parts):
         report.details["imu_files_missing"] = f"of {', '.join(without[:5])}"
         report.outcome = "lossy"
-    others = [f.name for f in folder.iterdir() if f.suffix.lower() in (".gnss", ".nmea")]
-    if others:
-        report.derive(
-            f"{len(others)} files of positions of the device are not read, as {min(others)}: give "
-            "a GNSS file beside the folder"
-        )
+
+
+def _positions(folder: Path) -> tuple[Path, ...]:
+    """Files of positions in their order: one of each number."""
+    files = [file for file in folder.iterdir() if _POSITIONS.fullmatch(file.name)]
+    lines_last = sorted(files, key=lambda file: file.suffix.lower() == ".gnss")
+    chosen = {file.stem.lower(): file for file in lines_last}
+    return tuple(sorted(chosen.values(), key=natural))
 
 
 def _serials(parts: Iterable[WalkPart], report: ImportReport) -> dict[int, str]:

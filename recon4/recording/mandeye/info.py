@@ -34,8 +34,14 @@ def describe_walk(info: RecordingInfo, folder: Path) -> RecordingInfo:
         for stream in streams
     )
     with_imu = sum(part.imu is not None for part in walk.parts)
-    samples = (f"IMU samples in {with_imu} files imu*.csv",) if with_imu else ()
+    samples = [f"IMU samples in {with_imu} files imu*.csv"] if with_imu else []
+    samples += [f"GNSS positions in {len(walk.positions)} files"] if walk.positions else []
     last = first + round(seconds * 1e9)
     return replace(
-        info, t_first_ns=first, t_last_ns=last, estimated=True, sensors=sensors, samples=samples
+        info,
+        t_first_ns=first,
+        t_last_ns=last,
+        estimated=True,
+        sensors=sensors,
+        samples=tuple(samples),
     )

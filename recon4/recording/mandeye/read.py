@@ -12,13 +12,14 @@ from recon4.errors import CorruptFile, EmptyRecording
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
-from recon4.model.samples import ImuSamples
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import model_of_points, rings_by_elevation
 from recon4.recording.formats.las_records import las_points
 from recon4.recording.mandeye.folder import MandeyeWalk, WalkPart, times_ns
+from recon4.recording.mandeye.gnss import read_positions
 from recon4.recording.mandeye.imu import read_imu
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.packets.livox.recognition import livox_of_points
@@ -110,8 +111,17 @@ class MandeyeRecording:
         by_name = {self._rig.sensors[k].name: lidar for lidar, k in self._rows.items()}
         return by_name.get(self._rig.imu_sensor, min(self._rows))
 
-    def read(self) -> Iterator[Shots | ImuSamples]:
-        """One part after the other; a damaged one is left out and counted."""
+    def read(self) -> Iterator[Shots | ImuSamples | GnssSamples]:
+        """Positions, then one part after the other; a damaged file is left out and counted."""
+        for path in self._walk.positions:
+            self._report.derive("positions have the times at which the device received them")
+            try:
+                fixes = read_positions(path, self._report)
+            except CorruptFile as error:
+                self._left_out(error)
+                continue
+            if len(fixes):
+                yield fixes
         for part in self._walk.parts:
             self._report.count("files")
             try:

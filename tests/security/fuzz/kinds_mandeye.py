@@ -7,11 +7,13 @@ from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
+from recon4.recording.mandeye.gnss import read_positions
 from recon4.recording.mandeye.imu import read_imu
 from recon4.recording.report import ImportReport
 from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.seeds_recordings import read_recording
 from tests.unit.recording.test_mandeye import RIG, write_walk
+from tests.unit.recording.test_mandeye_positions import write_positions
 
 _ONE = replace(RIG, sensors=RIG.sensors[:1])
 
@@ -47,6 +49,17 @@ def _read_samples(path: Path) -> Reading:
     return Reading(len(found.samples.t_ns), salvaged=bool(report.lost()))
 
 
+def _positions(name: str) -> tuple[bytes, ...]:
+    with tempfile.TemporaryDirectory() as place:
+        write_positions(Path(place), ending=name.split(".")[1])
+        return ((Path(place) / name).read_bytes(),)
+
+
+def _read_positions(path: Path) -> Reading:
+    report = ImportReport()
+    return Reading(len(read_positions(path, report)), salvaged=bool(report.lost()))
+
+
 MANDEYE_KINDS = (
     Kind(
         name="laz-mandeye",
@@ -62,5 +75,15 @@ MANDEYE_KINDS = (
         read=_read_samples,
         knows_end=False,  # text has no end mark
     ),
+    *(
+        Kind(
+            name=f"{ending}-mandeye",
+            file_name=f"gnss0000.{ending}",
+            seeds=partial(_positions, f"gnss0000.{ending}"),
+            read=_read_positions,
+            knows_end=False,
+        )
+        for ending in ("gnss", "nmea")
+    ),
 )
-"""Points in a whole walk of one LiDAR; samples alone."""
+"""Points in a whole walk of one LiDAR; samples alone; positions alone."""
