@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import laspy
@@ -12,7 +11,6 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.store.atomic import write_json, write_text
@@ -21,16 +19,8 @@ from recon4.units import STANDARD_GRAVITY_M_S2
 _HEAD = "timestamp gyroX gyroY gyroZ accX accY accZ imuId timestampUnix"
 
 
-@dataclass(slots=True)
-class _WaitingPart:
-    """What has come for a part."""
-
-    shots: list[Shots] = field(default_factory=list)
-    imu: list[ImuSamples] = field(default_factory=list)
-
-
 class MandeyeWriter:
-    """Writes parts as their points come; call `close` at the end."""
+    """Writes parts as their points come, and the samples of the IMU at the end, by `close`."""
 
     def __init__(self, folder: Path, rig: Rig) -> None:
         """Prepare.
@@ -40,68 +30,74 @@ class MandeyeWriter:
             rig: The LiDARs; their rows are the numbers in the files.
         """
         self._folder, self._rig = folder, rig
-        self._parts: dict[int, _WaitingPart] = {}
+        self._parts: dict[int, list[Shots]] = {}
+        self._numbers: list[int] = []
+        """Of the parts that were written."""
         self._start_ns: int | None = None
         self._written = 0
         self.points = self.samples = 0
         """Written so far."""
 
-    def push(self, item: Shots | ImuSamples) -> None:
-        """Add points of one LiDAR, or samples of the IMU.
+    def push(self, shots: Shots) -> None:
+        """Add points of one LiDAR.
 
         Raises:
             ConfigError: If coordinates are beyond those of the format.
             StoreError: If a file cannot be written.
         """
-        if not len(item.t_ns):
+        if not len(shots):
             return
-        newest_ns = int(item.t_ns.max())
+        newest_ns = int(shots.t_ns.max())
         if self._start_ns is None:
-            self._start_ns = int(item.t_ns.min())
+            self._start_ns = int(shots.t_ns.min())
         part_ns = round(MANDEYE.part_s * 1e9)
-        numbers = np.maximum((item.t_ns - self._start_ns) // part_ns, self._written)
+        numbers = np.maximum((shots.t_ns - self._start_ns) // part_ns, self._written)
         for number in np.unique(numbers).tolist():
-            part = self._parts.setdefault(number, _WaitingPart())
-            if isinstance(item, Shots):
-                part.shots.append(_rows_of_shots(item, numbers == number))
-            else:
-                part.imu.append(_rows_of_imu(item, numbers == number))
-        done = (newest_ns - self._start_ns - round(MANDEYE.wait_s * 1e9)) // part_ns
-        if isinstance(item, Shots):
-            self._write(done)
+            rows = _rows_of_shots(shots, numbers == number)
+            self._parts.setdefault(number, []).append(rows)
+        self._write((newest_ns - self._start_ns - round(MANDEYE.wait_s * 1e9)) // part_ns)
 
-    def close(self) -> None:
-        """Write the rest.
+    def close(self, imu: ImuSamples | None) -> None:
+        """Write the rest, and the samples of the IMU to the parts of their times.
+
+        Args:
+            imu: On the clock of the points, in order of time; None = there are none.
 
         Raises:
             ConfigError, StoreError: As `push`.
         """
         self._write(max(self._parts, default=-1) + 1)
+        if not self._numbers:
+            return
+        holder = [s.name for s in self._rig.sensors].index(self._rig.imu_sensor or self._first)
+        part_ns = round(MANDEYE.part_s * 1e9)
+        starts = [(self._start_ns or 0) + number * part_ns for number in self._numbers]
+        t_ns = imu.t_ns if imu is not None else np.zeros(0, np.int64)
+        ends = [0, *np.searchsorted(t_ns, starts[1:]).tolist(), len(t_ns)]
+        for number, first, last in zip(self._numbers, ends[:-1], ends[1:], strict=True):
+            text, samples = _imu_text(imu, range(first, last), holder)
+            write_text(self._folder / f"imu{number:04d}.csv", text)
+            self.samples += samples
 
     def _write(self, end: int) -> None:
         """The parts before one."""
         for number in sorted(k for k in self._parts if k < end):
-            part = self._parts.pop(number)
-            if part.shots:
-                self._write_part(number, part)
+            self._write_part(number, self._parts.pop(number))
         self._written = max(self._written, end)
 
-    def _write_part(self, number: int, part: _WaitingPart) -> None:
+    def _write_part(self, number: int, shots: Sequence[Shots]) -> None:
         name = f"lidar{number:04d}"
         path = self._folder / f"{name}.laz"
-        points = _write_points(path, part.shots)
+        points = _write_points(path, shots)
+        self._numbers.append(number)
         serials = "".join(
             f"{row} {sensor.serial or sensor.name.replace(' ', '_')}\n"
             for row, sensor in enumerate(self._rig.sensors)
         )
         write_text(self._folder / f"{name}.sn", serials)
-        holder = [s.name for s in self._rig.sensors].index(self._rig.imu_sensor or self._first)
-        text, samples = _imu_text(part.imu, holder)
-        write_text(self._folder / f"imu{number:04d}.csv", text)
         status = {"name": "recon4", "state": "SCANNING", "lidar": {"points_count": points}}
         write_json(self._folder / f"status{number:04d}.json", status)
         self.points += points
-        self.samples += samples
 
     @property
     def _first(self) -> str:
@@ -134,20 +130,15 @@ def _write_points(path: Path, shots: Sequence[Shots]) -> int:
     return len(xyz)
 
 
-def _imu_text(parts: Sequence[ImuSamples], holder: int) -> tuple[str, int]:
-    """The lines of the samples in the order of their times, and their number."""
+def _imu_text(imu: ImuSamples | None, rows: range, holder: int) -> tuple[str, int]:
+    """The lines of some samples, and their number."""
     lines = [_HEAD]
-    if parts:
-        t_ns = np.concatenate([one.t_ns for one in parts])
-        rows = np.concatenate(
-            [
-                np.column_stack([one.gyro_rad_s, one.accel_m_s2 / STANDARD_GRAVITY_M_S2])
-                for one in parts
-            ]
-        )
-        for k in np.argsort(t_ns, kind="stable").tolist():
-            numbers = " ".join(f"{value:.9g}" for value in rows[k].tolist())
-            lines.append(f"{t_ns[k]} {numbers} {holder} {t_ns[k]}")
+    if imu is None:
+        return f"{_HEAD}\n", 0
+    for k in rows:
+        values = [*imu.gyro_rad_s[k], *(imu.accel_m_s2[k] / STANDARD_GRAVITY_M_S2)]
+        numbers = " ".join(f"{value:.9g}" for value in values)
+        lines.append(f"{imu.t_ns[k]} {numbers} {holder} {imu.t_ns[k]}")
     return "\n".join([*lines, ""]), len(lines) - 1
 
 
@@ -160,8 +151,3 @@ def _rows_of_shots(shots: Shots, rows: np.ndarray[tuple[int], np.dtype[np.bool_]
         shots.ring[rows],
         shots.echo[rows],
     )
-
-
-def _rows_of_imu(imu: ImuSamples, rows: np.ndarray[tuple[int], np.dtype[np.bool_]]) -> ImuSamples:
-    times: Times = imu.t_ns[rows]
-    return ImuSamples(times, imu.gyro_rad_s[rows], imu.accel_m_s2[rows])

@@ -12,17 +12,20 @@ from recon4.cli.main import main
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.model.rig import parse_rig
 from recon4.model.samples import ImuSamples
+from recon4.progress import Silent
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
 from recon4.recording.kinds import RecordingKind, recognize
+from recon4.recording.mandeye.convert import convert
 from recon4.recording.mandeye.folder import list_walk
 from recon4.recording.mandeye.imu import read_imu
 from recon4.recording.mandeye.write import MandeyeWriter
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
+from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete, single_rig
+from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, write_pcd, write_room_pcap
 from tests.warned import K, warned
@@ -71,13 +74,12 @@ def write_walk(folder, rig=RIG, *, seconds=5.0 * PARTS, t0_ns=T0_NS):
     writer = MandeyeWriter(folder, rig)
     imu = imu_of(seconds, t0_ns=t0_ns)
     all_shots = [room_of_mid360(k, seconds, t0_ns=t0_ns) for k in range(len(rig.sensors))]
-    writer.push(imu)
     for second in np.arange(0.0, seconds, 1.0):
         for shots in all_shots:
             rows = slice(round(second * 1e9) // POINT_NS, round((second + 1) * 1e9) // POINT_NS)
             parts = [getattr(shots, n)[rows] for n in ("t_ns", "xyz", "intensity", "ring", "echo")]
             writer.push(Shots(shots.sensor, *parts))
-    writer.close()
+    writer.close(imu)
     return imu, all_shots
 
 
@@ -349,3 +351,25 @@ def test_clouds_of_no_single_sensor_are_not_converted(tmp_path, capsys):
     assert main(["convert", str(folder), "--out", str(tmp_path / "out")]) == 1
     assert "expected packets or messages of LiDARs" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_converted_imu_is_on_the_clock_of_the_points_and_in_g(tmp_path):
+    turns = np.random.default_rng(1).normal(0.0, 0.1, (90, 3))
+    path = write_room_pcap(tmp_path / "walk.pcap", seconds=0.5)
+    shots = open_recording(OpenRequest((path,), None, IngestSettings(), ImportReport()))
+    start_ns = next(int(s.t_ns[0]) for s in shots.read() if isinstance(s, Shots) and len(s))
+    numbers = [
+        ",".join(f"{x:.9f}" for x in (*gyro, *1e-3 * gyro[:2], 1.0 + 1e-3 * gyro[2]))
+        for gyro in turns
+    ]
+    rows = [f"{start_ns + k * 5_000_000},{row}" for k, row in enumerate(numbers)]
+    head = "t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2"
+    (tmp_path / "imu.csv").write_text("\n".join([head, *rows, ""]), "utf-8")
+    late = replace(single_rig(Stream("a", "VLP-16")), imu_time_offset_s=0.05)
+
+    sources = Sources((path,), late, imu=tmp_path / "imu.csv")
+    assert convert(sources, tmp_path / "out", progress=Silent()).samples == 90
+    found = read_imu(tmp_path / "out" / "imu0000.csv", ImportReport()).samples
+
+    assert found.t_ns[0] == start_ns + 50_000_000
+    np.testing.assert_allclose(found.accel_m_s2[:, 2], G * (1.0 + 1e-3 * turns[:, 2]), atol=1e-6)
