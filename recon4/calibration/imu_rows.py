@@ -201,7 +201,7 @@ def _sampled(window: Window, rig: Rig, t_s: Array, *, accel: bool) -> Array:
     """Turn rate or specific force in body axes at some times, (M, 3)."""
     imu = window.imu
     assert imu is not None
-    change_s = rig.imu_time_offset_s - window.recorded_rig.imu_time_offset_s
+    change_s = rig.imu_clock_offset_s - window.recorded_rig.imu_clock_offset_s
     known_s = (imu.t_ns - window.start_ns) * 1e-9 + change_s
     values = imu.accel_m_s2 if accel else imu.gyro_rad_s
     at = np.stack([np.interp(t_s, known_s, values[:, axis]) for axis in range(3)], axis=1)

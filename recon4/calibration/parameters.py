@@ -171,15 +171,12 @@ class Parameters:
         for row, count in self.beams:
             rows = delta[self.of_beams(row)].reshape(3, count) + _beam_rows(sensors[row], count)
             sensors[row] = replace(sensors[row], beams=BeamCorrections.of(rows))
-        rig = replace(rig, sensors=tuple(sensors))
-        if not self.imu:
-            return rig
-        step = delta[self.of_imu]
-        return replace(
-            rig,
-            T_body_imu=_moved(rig.T_body_imu, step),
-            imu_time_offset_s=rig.imu_time_offset_s + float(step[6]),
-        )
+        step = delta[self.of_imu] if self.imu else np.zeros(7)
+        T_body_imu = _moved(rig.T_body_imu, step) if self.imu else rig.T_body_imu
+        moved = replace(rig, sensors=tuple(sensors), T_body_imu=T_body_imu)
+        # The clock of the LiDAR that it is in may have changed, too: both are of the recording.
+        since_s = moved.imu_clock_offset_s - rig.imu_clock_offset_s
+        return replace(moved, imu_time_offset_s=rig.imu_time_offset_s + float(step[6]) - since_s)
 
     def between(self, before: Rig, after: Rig) -> Array:
         """The change of the parameters that leads from one rig to another, (P,)."""
@@ -189,7 +186,7 @@ class Parameters:
             for row in self.lidars
         ]  # fmt: skip
         if self.imu:
-            clock_s = after.imu_time_offset_s - before.imu_time_offset_s
+            clock_s = after.imu_clock_offset_s - before.imu_clock_offset_s
             rows.append((before.T_body_imu, after.T_body_imu, clock_s))
         beams = [
             _beam_rows(after.sensors[row], count) - _beam_rows(before.sensors[row], count)

@@ -40,8 +40,9 @@ class LidarFacts:
     has_imu: bool = False
     """Whether its packets have an IMU."""
     p_sensor_imu_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where the IMU is in the frame of the points, whose axes it has [m]; 0 = within a centimeter,
-    or not known."""
+    """Where the IMU is in the frame of the points [m]; 0 = within a centimeter, or not known."""
+    rpy_sensor_imu_deg: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Roll, pitch, yaw of its axes in those of the points [°]."""
 
     @property
     def has_rings(self) -> bool:

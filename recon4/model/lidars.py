@@ -282,6 +282,8 @@ _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0,
         min_range_m=0.1,
         range_m=30.0,
         sample_ports=(7788, 6688),
+        has_imu=True,
+        rpy_sensor_imu_deg=(180.0, 0.0, -90.0),  # public reports, and numbers in device packets
     ),
     replace(
         _HELIOS,

@@ -16,6 +16,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
+from recon4.model.imu_mounts import imu_mount, is_in_holder
 from recon4.model.lidars import LIDARS, lidar_model
 from recon4.model.limits import RIG_LIMITS
 from recon4.model.point_recipes import PointRecipe, parse_fields
@@ -113,7 +114,7 @@ class Rig:
     T_body_imu: SE3
     """Mounting of the IMU."""
     imu_time_offset_s: float
-    """Added to the IMU's time stamps to get rig time [s]."""
+    """Of the IMU itself, added to its time stamps [s]; see `imu_clock_offset_s`."""
     p_body_antenna: Array
     """Lever arm: phase center of the GNSS antenna in the body [m], (3,)."""
     gnss_time_offset_s: float
@@ -137,6 +138,15 @@ class Rig:
     def T_body_sensor(self) -> SE3:
         """Mountings of all sensors, a batch."""
         return SE3.stack(sensor.T_body_sensor for sensor in self.sensors)
+
+    @property
+    def imu_clock_offset_s(self) -> float:
+        """Added to the stamps of IMU samples as recorded to get rig time [s].
+
+        An IMU in a LiDAR is on the clock of that LiDAR, whose offset counts for it, too.
+        """
+        holder = next((one for one in self.sensors if one.name == self.imu_sensor), None)
+        return self.imu_time_offset_s + (holder.time_offset_s if holder else 0.0)
 
     def row_of(self, kind: SensorKind) -> int | None:
         """Row of the first enabled sensor of a kind in ``sensors``; None = there is none."""
@@ -218,19 +228,11 @@ def parse_rig(text: str, *, where: str) -> Rig:
     )
 
 
-def imu_mount(holder: Sensor, other: SE3 | None = None) -> SE3:
-    """Mounting of the IMU in a LiDAR: its axes, the place of the data sheet; or the other one."""
-    if other is not None and not lidar_model(holder.model).has_imu:
-        return other  # axes of its own
-    place = np.array(lidar_model(holder.model).p_sensor_imu_m)
-    return holder.T_body_sensor @ SE3(np.eye(3), place)
-
-
 def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:
-    """The LiDAR with the IMU; its mounting is that of the IMU, where that has its axes.
+    """The LiDAR with the IMU; None = an IMU of its own.
 
     Raises:
-        ConfigError: If there is none of this name, or the IMU is also mounted by itself.
+        ConfigError: If there is none of this name.
     """
     name = imu.text("sensor")
     if not name:
@@ -238,13 +240,7 @@ def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:
     names = [sensor.name for sensor in sensors]
     if name not in names:
         raise ConfigError(f"{imu.where}: sensor must be one of {names}, got {name[:80]!r}")
-    holder = sensors[names.index(name)]
-    mounted = sorted({"xyz_m", "rpy_deg", "quat_xyzw"} & imu.values.keys())
-    if mounted and lidar_model(holder.model).has_imu:
-        raise ConfigError(
-            f"{imu.where}: the IMU in {name} is mounted as {name} is: leave out {mounted[0]}"
-        )
-    return holder
+    return sensors[names.index(name)]
 
 
 def _calibration(value: object, where: str) -> RigCalibration | None:
@@ -289,8 +285,7 @@ def format_rig(rig: Rig) -> str:
         lines += format_beams(sensor.beams)
     lines += ["[imu]"]
     lines += [f"sensor = {_quoted(rig.imu_sensor)}"] if rig.imu_sensor else []
-    holders = [lidar_model(one.model) for one in rig.sensors if one.name == rig.imu_sensor]
-    lines += [] if any(one.has_imu for one in holders) else _mounting_lines(rig.T_body_imu)
+    lines += [] if is_in_holder(rig) else _mounting_lines(rig.T_body_imu)
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
     lines += [f"topic = {_quoted(rig.imu_topic)}"] if rig.imu_topic else []
     lines += ["", "[gnss]"]

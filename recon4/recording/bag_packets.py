@@ -27,6 +27,7 @@ from recon4.recording.packets.senders import packets_of
 from recon4.recording.packets.streams import first_datagrams, recognized
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import Stream, assign_topics
 from recon4.recording.tuning_heads import PROBE
 from recon4.settings import IngestSettings
 
@@ -111,6 +112,24 @@ class PacketTopics:
         Raises:
             ConfigError: If its packets cannot be decoded.
         """
+        reader = PacketReader(self._decoder(row, sensor), sensor.name, self.imu)
+        return dict.fromkeys((sensor.topic, *self._samples_of(sensor)), reader)
+
+    def have_imu(self, row: int, sensor: Sensor) -> bool:
+        """Whether the first packets of a sensor have samples of its IMU.
+
+        Raises:
+            ConfigError: If its packets cannot be decoded.
+        """
+        decoder = self._decoder(row, sensor)
+        heads = [self.packets.head(name) for name in (sensor.topic, *self._samples_of(sensor))]
+        head = join_datagrams(heads)
+        whole = np.flatnonzero(head.length == decoder.size)
+        decoder.push(head.t_ns[whole], head.payloads(whole, decoder.size))
+        found = decoder.samples(head.take(np.isin(head.length, list(decoder.sample_sizes))))
+        return found is not None and found.imu is not None
+
+    def _decoder(self, row: int, sensor: Sensor) -> PacketDecoder:
         beside = self._samples_of(sensor)
         of = PacketSensor(
             row=row,
@@ -121,9 +140,7 @@ class PacketTopics:
             settings=self.settings,
             report=self.report,
         )
-        decoder = open_decoder(of, alone=len(self.rig.sensors) == 1)
-        reader = PacketReader(decoder, sensor.name, self.imu)
-        return dict.fromkeys((sensor.topic, *beside), reader)
+        return open_decoder(of, alone=len(self.rig.sensors) == 1)
 
     def _samples_of(self, sensor: Sensor) -> list[str]:
         """Topics with other packets, each of the sensor whose topic is most alike."""
@@ -169,6 +186,33 @@ class PacketReader:
         """Shots that were held back."""
         if len(shots := self._decoder.flush()):
             yield shots
+
+
+def imu_in_packets(
+    packets: BagPackets, rig: Rig | None, streams: Sequence[Stream], *, settings: IngestSettings
+) -> str:
+    """Says that the IMU that a rig names is in the packets of its LiDAR; empty = it is not.
+
+    Args:
+        packets: Of an open bag.
+        rig: Names a LiDAR whose IMU is read, or none.
+        streams: The LiDARs of the bag.
+        settings: Of the reader.
+
+    Raises:
+        ConfigError: If the rig has no LiDAR of the bag, or its packets cannot be decoded.
+    """
+    if rig is None or not rig.imu_sensor or not streams:
+        return ""
+    quiet = ImportReport()
+    rig = assign_topics(rig, streams, quiet)
+    row = [sensor.name for sensor in rig.sensors].index(rig.imu_sensor)
+    if rig.sensors[row].topic not in {topic.name for topic in packets.data_topics}:
+        return ""
+    imu = LidarImu(rig, other="", report=quiet)
+    topics = PacketTopics(packets, rig, settings, imu, quiet)
+    has_imu = topics.have_imu(row, rig.sensors[row])
+    return f"IMU: that in the packets of {rig.imu_sensor} is read" * has_imu
 
 
 def packets_in(message: BagMessage, content: Any) -> Datagrams:

@@ -29,16 +29,11 @@ from recon4.recording.bag_messages import (
     stamp_clock,
     stamp_ns,
 )
-from recon4.recording.bag_packets import BagPackets, PacketTopics
+from recon4.recording.bag_packets import BagPackets, PacketTopics, imu_in_packets
 from recon4.recording.clock_compare import LIDAR, warn_of_other_joint_clock
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.driver_topics import no_lidar_text, unread_text, warn_of_drivers
-from recon4.recording.formats.bags import (
-    CLOUD,
-    Bag,
-    BagMessage,
-    BagTopic,
-)
+from recon4.recording.formats.bags import CLOUD, Bag, BagMessage, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds, shared_topics
 from recon4.recording.mount_check import mounted_rig
@@ -59,6 +54,7 @@ from recon4.recording.stamps import StampClock
 from recon4.recording.topic_choice import (
     FIX_KIND,
     ODOMETRY_KIND,
+    ImuTopics,
     Named,
     choose_imu,
     choose_topic,
@@ -137,6 +133,8 @@ class BagRecording:
             lidars = [stream.topic for stream in self.streams]
             beside = [topic for topic in bag.topics if topic.name in lidars]
             self.imu = choose_imu(bag, named_imu(rig, settings), report, lidars=beside)
+            if self.imu.topic and not settings.imu_topic and self._is_in_packets(rig):
+                self.imu = ImuTopics()
             self.imu_topic = self.imu.topic
             self.fix_topic = choose_topic(bag, named_fixes(rig, settings), FIX_KIND, report=report)
             by_setting = Named(settings.odometry_topic)
@@ -146,8 +144,16 @@ class BagRecording:
         if not self.streams:
             raise EmptyRecording(no_lidar_text(paths[0].name, self.topics))
         samples = SampleTopics(self.imu_topic, self.fix_topic)
-        self.rig = mounted_rig(rig, self.streams, samples, mounts=mounts, report=report)
+        mounted = mounted_rig(rig, self.streams, samples, mounts=mounts, report=report)
+        self._lidar_imu = LidarImu(mounted, other=self.imu_topic, report=report)
+        self.rig = self._lidar_imu.rig
         self._moving = mounts.moving
+
+    def _is_in_packets(self, rig: Rig | None) -> bool:
+        found = imu_in_packets(self._packets, rig, self.streams, settings=self._settings)
+        if found:
+            self._report.derive(f"{found}, as the rig says, not {self.imu.topic}")
+        return bool(found)
 
     def read(self) -> Iterator[Item]:
         """Stream the bag once; messages of one topic are in order of time."""
@@ -207,7 +213,7 @@ class BagRecording:
             self._packets,
             self.rig,
             self._settings,
-            LidarImu(self.rig, other=self.imu_topic, report=self._report),
+            self._lidar_imu,
             self._report,
         )
         for row, sensor in enumerate(self.rig.sensors):

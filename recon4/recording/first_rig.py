@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, format_rig
 from recon4.store.atomic import write_text
 
@@ -30,11 +31,24 @@ def first_rig_text(
             f"# Measure xyz_m [m] and rpy_deg (roll, pitch, yaw) [°] of {names}: all are 0 here.",
             "# A centimeter and a degree are enough; recon4 calibrate finds the rest.",
         ]
+    uncertain = [*uncertain, *_turned_imu(rig)]
     lines += [f"# Uncertain: {' '.join(text.split())}" for text in uncertain]
     text = format_rig(rig)
     if not mounted:
         text = text.replace("quat_xyzw = [0.0, 0.0, 0.0, 1.0]", "rpy_deg = [0.0, 0.0, 0.0]")
     return "\n".join([*lines, text])
+
+
+def _turned_imu(rig: Rig) -> list[str]:
+    """What is not certain of an IMU whose axes are not those of the points of its LiDAR."""
+    models = [lidar_model(one.model) for one in rig.sensors if one.name == rig.imu_sensor]
+    return [
+        f"the IMU of an {model.name} is taken as turned by rpy_deg = "
+        f"{list(model.rpy_sensor_imu_deg)} against its points, as public reports say; another "
+        "mount: rpy_deg of [imu], in the body"
+        for model in models
+        if any(model.rpy_sensor_imu_deg)
+    ]
 
 
 def write_first_rig(text: str, path: Path) -> None:

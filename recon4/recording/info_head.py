@@ -121,7 +121,7 @@ def judge_samples(
     A receiver may have no fix yet in the first second: only all positions are judged.
     """
     imu, gnss = join(head.imu), join(head.gnss) if whole else None
-    offset_s = rig.imu_time_offset_s
+    offset_s = rig.imu_clock_offset_s
     if is_same_clock(IMU_CLOCK, offset_s, report) and imu is not None:
         if not offset_s:
             warn_of_free_clocks(report, imu_file=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -11,11 +11,9 @@ import numpy as np
 from msgspec import to_builtins
 from numpy.typing import NDArray
 
-from recon4.errors import ConfigError, EmptyRecording
+from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.events import Remarked
-from recon4.model.finding import Value
-from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
@@ -26,15 +24,16 @@ from recon4.progress import Progress
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
-from recon4.recording.clock_names import described, known_offset_s, looks_like, offset_values
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.limits import LIMITS
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest, Recording
+from recon4.recording.packets.lidar_imu import rig_of_imu_file
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
+from recon4.recording.samples.covering import covering
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.samples.heights import compare_heights
 from recon4.recording.samples.units import GyroUnit
@@ -138,6 +137,8 @@ class LiveSource:
     scans of a 2-D laser as read, before they are cleaned."""
     report: ImportReport = field(default_factory=ImportReport)
     """Receives repairs and warnings as they happen."""
+    opened: Callable[[Rig], None] = lambda rig: None
+    """Called before anything is read, with the rig and what the recording tells of it."""
 
 
 def ingest(
@@ -170,6 +171,9 @@ def ingest(
     recording = open_recording(
         OpenRequest(paths, sources.rig, settings, report, open_file=live.open_file)
     )
+    if given.imu:
+        recording = replace(recording, rig=rig_of_imu_file(recording.rig, sources.rig))
+    live.opened(recording.rig)
     assembler = Assembler(
         recording.rig, settings=settings, report=report, wait_s=recording.wait_s, on_cut=live.watch
     )
@@ -251,7 +255,7 @@ def _imu(
         return None
     if given.imu and found.imu:
         report.derive("IMU samples are those of the CSV file, not the recording's")
-    offset_s = rig.imu_time_offset_s
+    offset_s = rig.imu_clock_offset_s
     if not given.imu and not is_same_clock(IMU_CLOCK, offset_s, report):
         return None
     if not offset_s:
@@ -263,7 +267,7 @@ def _imu(
         report=report,
         gyro_unit=given.gyro_unit,
     )
-    return _covering(clean, written.span, bool(given.imu), report=report)
+    return covering(clean, written.span, bool(given.imu), report=report)
 
 
 def _gnss(
@@ -280,56 +284,7 @@ def _gnss(
     if not from_file and not is_same_clock(GNSS_CLOCK, offset_s, report):
         return None
     clean = clean_gnss(samples, offset_s=offset_s, report=report)
-    return _covering(clean, written.span, bool(given.gnss), report=report)
-
-
-def _covering(
-    samples: Samples | None, span: Span, asked_for: bool, *, report: ImportReport
-) -> Samples | None:
-    """The samples, unless their times do not overlap with those of the points.
-
-    Raises:
-        ConfigError: If they were given as a file, which must be used.
-    """
-    if samples is None:
-        return None
-    what = "IMU" if isinstance(samples, ImuSamples) else "GNSS"
-    first, last = int(samples.t_ns[0]), int(samples.t_ns[-1])
-    margin_ns = 1_000_000_000
-    if last < span[0] - margin_ns or first > span[1] + margin_ns:
-        ahead_s = (first - span[0]) / 1e9
-        if asked_for:
-            raise ConfigError(
-                f"{what} samples cover {first / 1e9:.3f} … {last / 1e9:.3f} s, the points "
-                f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same? If both "
-                f"begin together, they differ by {described(ahead_s)}: give [{what.lower()}] "
-                f"time_offset_s = {-ahead_s:.3f} in the rig file"
-            )
-        report.warn(
-            FindingKind.SAMPLES_ELSEWHEN,
-            what=what,
-            table=what.lower(),
-            first_s=first / 1e9,
-            last_s=last / 1e9,
-            points_first_s=span[0] / 1e9,
-            points_last_s=span[1] / 1e9,
-            offset_s=-ahead_s,
-            **offset_values(ahead_s),
-        )
-        return None
-    late_s, early_s = (first - span[0]) / 1e9, (span[1] - last) / 1e9
-    looks = looks_like(late_s) if abs(late_s + early_s) < 1.0 else ""
-    if looks or (what == "IMU" and max(late_s, early_s) > 1.0):
-        clock: dict[str, Value] = {"looks": looks, "offset_s": -known_offset_s(late_s)}
-        report.warn(
-            FindingKind.SAMPLES_SHORT,
-            what=what,
-            table=what.lower(),
-            late_s=late_s,
-            early_s=early_s,
-            **(clock if looks else {}),
-        )
-    return samples
+    return covering(clean, written.span, bool(given.gnss), report=report)
 
 
 def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -> None:

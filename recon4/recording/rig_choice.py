@@ -11,9 +11,10 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe
-from recon4.model.rig import Rig, Sensor, imu_mount, load_rig
+from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.recording.report import ImportReport
 
 THESIS_RIG = "4recon"
@@ -171,10 +172,11 @@ def single_rig(stream: Stream) -> Rig:
         topic=stream.topic,
         fields=stream.fields,
     )
+    turned = any(lidar_model(stream.model).rpy_sensor_imu_deg)  # an IMU of its own is not
     return Rig(
         name=f"single {stream.model}",
         sensors=(sensor,),
-        T_body_imu=imu_mount(sensor),
+        T_body_imu=SE3.identity() if turned else imu_mount(sensor),
         imu_time_offset_s=0.0,
         p_body_antenna=np.zeros(3),
         gnss_time_offset_s=0.0,

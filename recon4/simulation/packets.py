@@ -76,7 +76,7 @@ def put_imu(
     """Put samples of the IMU in a LiDAR into its data packets, if that is where they belong."""
     within = built_in_imu(setup.rig.sensors[data.row]).within
     if within is not None and len(data.payloads) and len(samples):
-        within(data.payloads, _stamped(samples, data.row, setup, degradation=degradation))
+        within(data.payloads, stamped(samples, data.row, setup, degradation=degradation))
 
 
 def pack_imu(
@@ -93,16 +93,18 @@ def pack_imu(
     facts = lidar_model(sensor.model)
     # The last one is that of samples: the first one of an Airy is that of its device data.
     port = facts.sample_ports[-1] if facts.sample_ports else sensor.port
-    payloads = made(_stamped(samples, row, setup, degradation=degradation))
-    return Packets(row, samples.t_ns + DELIVERY.latency_ns, payloads, port)
+    payloads = made(stamped(samples, row, setup, degradation=degradation))
+    arrival_ns = samples.t_ns - round(1e9 * sensor.time_offset_s) + DELIVERY.latency_ns
+    return Packets(row, arrival_ns, payloads, port)
 
 
-def _stamped(
+def stamped(
     samples: ImuSamples, row: int, setup: SimulationSetup, *, degradation: Degradation
 ) -> ImuSamples:
-    """Samples on the clock of a LiDAR."""
+    """Samples of the IMU in a LiDAR, on the clock of that LiDAR."""
     stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
-    return replace(samples, t_ns=setup.epoch_ns + stamps)
+    offset_ns = round(1e9 * setup.rig.sensors[row].time_offset_s)
+    return replace(samples, t_ns=setup.epoch_ns - offset_ns + stamps)
 
 
 def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup) -> None:

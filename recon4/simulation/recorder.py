@@ -27,6 +27,7 @@ from recon4.simulation.packets import (
     pack,
     pack_imu,
     put_imu,
+    stamped,
     write_packets,
     write_position_packets,
 )
@@ -96,7 +97,7 @@ class WalkRecorder:
                 self._bag.packets(part.row, part.t_arrival_ns, part.payloads)
             start_ns = setup.epoch_ns + second_index * SECOND_NS
             if self._imu is not None:
-                self._bag.imu(_during(self._imu, start_ns))
+                self._bag.imu(self._as_stamped(_during(self._imu, start_ns)))
             if self._gnss is not None:
                 self._bag.gnss(_during(self._gnss, start_ns))
 
@@ -111,6 +112,13 @@ class WalkRecorder:
         samples = _during(self._imu, setup.epoch_ns + second_index * SECOND_NS)
         own = pack_imu(samples, setup.imu_row, setup, degradation=self._degradation)
         return [] if own is None else [own]
+
+    def _as_stamped(self, samples: ImuSamples) -> ImuSamples:
+        """Samples as their driver stamps them: those of the IMU in a LiDAR are on its clock."""
+        row = self._setup.imu_row
+        if row is None:
+            return samples
+        return stamped(samples, row, self._setup, degradation=self._degradation)
 
     def _write_truth(self) -> None:
         folder, setup = self._folder, self._setup

@@ -11,8 +11,9 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3
+from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
-from recon4.model.rig import Rig, Sensor, imu_mount, load_rig
+from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.simulation.crowd import ALONE, Crowd
 from recon4.simulation.degradation import BEAM_ANGLE
@@ -149,7 +150,7 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
     for sensor in sensors:
         if family_of(sensor.model).imu(sensor.model) is not None:
             # Named: a reader would take the first LiDAR that has one, simulated or not.
-            place = imu_mount(sensor, sensor.T_body_sensor @ built_in_imu(sensor).T_sensor_imu)
+            place = imu_mount(sensor)
             return replace(rig, imu_sensor=sensor.name, T_body_imu=place, imu_time_offset_s=0.0)
     return rig
 

@@ -195,7 +195,7 @@ class FrameStore:
             folder,
             index,
             rig,
-            _imu(imu, rig.imu_time_offset_s - recorded.imu_time_offset_s),
+            _imu(imu, rig.imu_clock_offset_s - recorded.imu_clock_offset_s),
             _gnss(gnss, rig.gnss_time_offset_s - recorded.gnss_time_offset_s),
             _read_report(folder / "report.json"),
             recorded,

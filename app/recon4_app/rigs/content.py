@@ -11,8 +11,10 @@ import numpy as np
 from recon4.errors import ConfigError, WrongSettings
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, parse_beams
+from recon4.model.imu_mounts import imu_mount
+from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe, parse_fields_text
-from recon4.model.rig import SENSOR_MODELS, Rig, Sensor, imu_mount
+from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
 from recon4.model.serial_device import parse_serial_device
 from recon4.untrusted.names import visible
 from recon4_app.rigs.model import (
@@ -80,8 +82,13 @@ def rig_of(content: RigContent) -> Rig:
 def _imu_mount(content: RigContent) -> SE3:
     """That of the LiDAR that the IMU is in, or its own."""
     holder = next((one for one in content.sensors if one.name == content.imu.sensor), None)
-    other = _mount(content.imu.xyz_m, content.imu.rpy_deg)
-    return other if holder is None else imu_mount(_sensor(holder), other)
+    stated = _mount(content.imu.xyz_m, content.imu.rpy_deg)
+    if holder is None:
+        return stated
+    # The page shows the mount of before: where the LiDAR tells it, it follows the LiDAR.
+    facts = lidar_model(holder.model)
+    follows = facts.has_imu and not any(facts.rpy_sensor_imu_deg)
+    return imu_mount(_sensor(holder), None if follows else stated)
 
 
 def problems_of(content: RigContent) -> dict[str, str]:

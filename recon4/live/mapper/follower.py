@@ -68,7 +68,7 @@ class _MapFollower(Generic[_Mapped]):
         synchronization: ImuSynchronization[_Mapped],
     ) -> None:
         self._map, self._latency = live_map, latency
-        self._offset_ns = round(rig.imu_time_offset_s * 1e9)
+        self._offset_ns = round(rig.imu_clock_offset_s * 1e9)
         self._synchronization = synchronization
 
     def flush(self) -> Iterator[MapperMessage]:

@@ -29,7 +29,7 @@ class LiveAttitude:
 
     def __init__(self, rig: Rig) -> None:
         self._rig = rig
-        self._offset_ns = round(1e9 * rig.imu_time_offset_s)
+        self._offset_ns = round(1e9 * rig.imu_clock_offset_s)
         self._t_ns: Times = np.zeros(0, np.int64)
         self._R: Array = np.zeros((0, 3, 3))
         """``R_world_body``, (N, 3, 3)."""

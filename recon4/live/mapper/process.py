@@ -61,7 +61,7 @@ class Mapper:
         self._settings: Settings = preset(session.preset)
         self._mapping = threading.Lock()
         self._growth = WriteProgress()
-        self._live = LiveSource(self._open, self._watch)
+        self._live = LiveSource(self._open, self._watch, opened=self._opened)
         self._loop = asyncio.get_running_loop()
         self._lines = LineServer(
             initial_messages=self._initial_messages, on_request=lambda request: None
@@ -172,6 +172,14 @@ class Mapper:
 
     def _open(self, path: Path) -> Any:
         return TailFile(path, self._growth)
+
+    def _opened(self, rig: Rig) -> None:
+        """Map with the IMU of the LiDAR that is read, where the rig file names none."""
+        if rig.imu_sensor == self._rig.imu_sensor:
+            return
+        with self._mapping:
+            self._rig = rig
+            self._follower = self._make_follower()
 
     def _watch(self, item: Multiframe | ImuSamples | GnssSamples | LaserScans) -> None:
         if isinstance(item, GnssSamples):

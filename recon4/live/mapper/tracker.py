@@ -40,7 +40,7 @@ class Tracker:
         )
         self._rig = rig
         self._settings = replace(part_of(settings, OdometryReads), odometry=shorter)
-        self._offset_ns = round(rig.imu_time_offset_s * 1e9)
+        self._offset_ns = round(rig.imu_clock_offset_s * 1e9)
         self._waiting: list[ImuSamples] = []
         self._odometry: Odometry | None = None
         self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=LIVE_TRACKER.tried_frames)

@@ -11,6 +11,7 @@ import numpy as np
 
 from recon4.errors import EmptyRecording
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
@@ -110,6 +111,7 @@ class PacketCapture:
         self.rig = rig if isinstance(rig, Rig) else self._chosen(rig, groups)
         self._warn_of_others()
         self._imu = LidarImu(self.rig, other=self._own_imu(), report=report)
+        self.rig = self._imu.rig
         self._settings = settings
         self._channels = self._assign(groups)
         self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
@@ -196,7 +198,7 @@ class PacketCapture:
         mine = datagrams.take(np.isin(datagrams.port, list(ports)))
         if len(mine):
             texts = [mine.payload(row) for row in range(len(mine))]
-            yield PacketSamples(*self._samples.push(mine.t_ns.tolist(), texts))
+            yield self._imu.of("", PacketSamples(*self._samples.push(mine.t_ns.tolist(), texts)))
 
     def _assign(self, groups: list[tuple[PacketStream, ...]]) -> list[_Channel]:
         chosen = _match(self.rig.sensors, groups, self._report)
@@ -244,8 +246,13 @@ class PacketCapture:
                 )
 
     def _own_imu(self) -> str:
-        """Sender of an IMU that is in no LiDAR; empty = there is none."""
+        """Sender of an IMU that is in no LiDAR; empty = none, or the rig names a LiDAR with one."""
         own = [s.label for s in self.streams if s.kind == "IMU" and s.port == self.rig.imu_port]
+        named = [s for s in self.rig.sensors if s.name == self.rig.imu_sensor]
+        if own and any(lidar_model(sensor.model).has_imu for sensor in named):
+            name = named[0].name
+            self._report.derive(f"IMU: that in {name} is read, as the rig says, not {own[0]}")
+            return ""
         return next(iter(own), "")
 
     def _sent_instead(self, sensor: Sensor) -> str:

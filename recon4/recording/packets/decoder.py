@@ -135,14 +135,11 @@ class PacketDecoder:
         return self._layout.sample_sizes
 
     def samples(self, datagrams: Datagrams) -> PacketSamples | None:
-        """What the other packets of the sensor tell; None = nothing.
+        """What the other packets of the sensor tell, as stamped; None = nothing.
 
-        The time offset of the rig file counts for its IMU as for its points.
+        `Rig.imu_clock_offset_s` is added where the samples of all kinds of recordings are cleaned.
         """
-        found = self._layout.samples(datagrams, self.clock)
-        if found is None or found.imu is None or not self._offset_ns:
-            return found
-        return replace(found, imu=replace(found.imu, t_ns=found.imu.t_ns + self._offset_ns))
+        return self._layout.samples(datagrams, self.clock)
 
     def flush(self) -> Shots:
         """Give out what was held back."""

@@ -6,13 +6,12 @@ The inverse of `recon4.recording.packets.family`: the pattern of a model, and pa
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
@@ -32,15 +31,13 @@ class WithinData(Protocol):
 class BuiltInImu:
     """The IMU in a LiDAR, in the axes in which the family's reader gives its samples.
 
-    Where it is says `recon4.model.rig.imu_mount`, or ``T_sensor_imu`` if its axes are its own.
+    Where it is says `recon4.model.rig.imu_mount`.
     """
 
     packets: Callable[[ImuSamples], Payloads] | None = None
     """One packet for each sample, whose times are on the clock of the sensor; None = …"""
     within: WithinData | None = None
     """… they are in the data packets."""
-    T_sensor_imu: SE3 = field(default_factory=SE3.identity)
-    """Of an IMU with axes of its own: where a simulated rig has it."""
     rate_hz: int = 200
 
 

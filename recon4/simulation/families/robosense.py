@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import Array
 from recon4.model.lidars import lidar_model
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
@@ -60,9 +60,8 @@ class SimulatedRoboSense:
         return _pattern(model) if model in MODELS else None
 
     def imu(self, model: str) -> BuiltInImu | None:
-        """Of an Airy, turned as public reports say: no manual tells."""
-        turned = SE3.from_rpy(np.pi, 0.0, -0.5 * np.pi, t=np.zeros(3))
-        return BuiltInImu(packets=encode_imu, T_sensor_imu=turned) if model == "Airy" else None
+        """Of an Airy."""
+        return BuiltInImu(packets=encode_imu) if model == "Airy" else None
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Packets of blocks; the blocks of one firing have its azimuth."""

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.cli.main import main
+from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import load_rig, parse_rig, rig_presets
 from recon4.recording.info import describe
@@ -51,4 +52,4 @@ def test_a_rig_is_shipped_for_each_make(name, models):
     holder = next((s for s in rig.sensors if s.name == rig.imu_sensor), None)
     if holder is not None:
         assert lidar_model(holder.model).has_imu
-        np.testing.assert_array_equal(rig.T_body_imu.R, holder.T_body_sensor.R)
+        np.testing.assert_array_equal(rig.T_body_imu.R, imu_mount(holder).R)

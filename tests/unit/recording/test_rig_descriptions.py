@@ -5,7 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3
+from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import format_rig, parse_rig
 from recon4.recording.packets.companions import described_in, with_descriptions
@@ -83,5 +84,20 @@ def test_the_rig_turns_the_imu_of_a_lidar_whose_axes_are_not_those_of_the_points
     expected = np.array([[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
     np.testing.assert_allclose(rig.T_body_imu.R, expected, atol=1e-12)
     np.testing.assert_allclose(again.T_body_imu.R, expected, atol=1e-9)
-    with pytest.raises(ConfigError, match="leave out rpy_deg"):
-        parse_rig(text.replace('"Airy"', '"JT128"'), where="rig.toml")
+
+
+@pytest.mark.parametrize("model", ["JT128", "Airy"])
+def test_a_stated_mount_of_an_imu_counts_and_one_of_zeros_is_that_of_the_data_sheet(model):
+    text = format_rig(rig_of(("front", model))).split("[imu]")[0].replace("0.0, 1.0]", "1.0, 0.0]")
+    text += '[imu]\nsensor = "front"\nrpy_deg = [0.0, 0.0, 0.0]\n'
+
+    nowhere = parse_rig(text, where="rig.toml")
+    stated = parse_rig(text.replace("[0.0, 0.0, 0.0]\n", "[0.0, 1.0, 0.0]\n"), where="rig.toml")
+    again = parse_rig(format_rig(stated), where="rig.toml")
+
+    holder = nowhere.sensors[0]
+    np.testing.assert_allclose(nowhere.T_body_imu.R, imu_mount(holder).R, atol=1e-12)
+    assert "xyz_m" not in format_rig(nowhere).split("[imu]")[1].split("[gnss]")[0]
+    np.testing.assert_allclose(
+        again.T_body_imu.R, SE3.from_rpy(0, np.deg2rad(1), 0, t=np.zeros(3)).R, atol=1e-9
+    )

@@ -1,7 +1,6 @@
 """Every model fires by its own pattern, and its packets say what the rays met."""
 
 import json
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
-from recon4.recording.packets.decoder import open_decoder
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.sensor_clock import SensorClock
@@ -235,28 +233,6 @@ def test_the_imu_of_an_airy_has_a_port_and_axes_of_its_own():
     assert sent.port == 6688
     turned = setup.rig.sensors[0].T_body_sensor.inverse() @ setup.rig.T_body_imu
     np.testing.assert_allclose(turned.R, [[0, -1, 0], [-1, 0, 0], [0, 0, -1]], atol=1e-12)
-
-
-@pytest.mark.parametrize("model", ["OS0-32", "Mid-360"])
-def test_the_time_offset_of_a_lidar_counts_for_points_and_imu_alike(model):
-    lidar = lidar_of(model)
-    late = replace(lidar, sensor=replace(lidar.sensor, time_offset_s=0.25))
-    payloads = packets_of(lidar, fired(lidar, packets=300))
-    at_ns = opened(lidar, payloads, ImportReport()).stamps_ns(payloads)
-    sent = (
-        family_of(model)
-        .imu(model)
-        .packets(ImuSamples(at_ns[:10], np.ones((10, 3)), np.full((10, 3), 9.0)))
-    )
-
-    def times(sensor):
-        decoder = open_decoder(packet_sensor(sensor, payloads, ImportReport()))
-        shots = [decoder.push(at_ns, payloads), decoder.flush()]
-        last_ns = max(part.t_ns.max() for part in shots if len(part))
-        return last_ns, decoder.samples(datagrams_of(sent, t_ns=at_ns[:10])).imu.t_ns[0]
-
-    (point_ns, imu_ns), (late_point_ns, late_imu_ns) = times(lidar), times(late)
-    assert late_point_ns - point_ns == late_imu_ns - imu_ns == 250_000_000
 
 
 def test_a_rig_of_two_makes_has_ports_of_both_and_the_imu_that_is_in_one():
