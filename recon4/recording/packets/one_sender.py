@@ -15,6 +15,7 @@ from recon4.errors import ConfigError
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketFormat, PacketSensor, Payloads
 from recon4.recording.packets.tuning import MIXED_SENDERS
+from recon4.recording.stamps import strays
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -60,7 +61,9 @@ def _head(layout: PacketFormat, datagrams: Datagrams) -> _Arrivals | None:
     payloads = payloads[layout.sound(payloads)]
     if len(payloads) < MIXED_SENDERS.fewest:
         return None
-    return _Arrivals(layout, payloads, layout.stamps_ns(payloads))
+    stamps_ns = layout.stamps_ns(payloads)
+    kept = ~strays(stamps_ns)  # a damaged stamp is not that of another sensor
+    return _Arrivals(layout, payloads[kept], stamps_ns[kept])
 
 
 def _without_copies(payloads: Payloads) -> Payloads:

@@ -232,6 +232,20 @@ def test_two_solid_ones_packet_by_packet_are_refused():
     require_one_sender(layout, of)
 
 
+def test_damaged_stamps_are_not_those_of_another_sensor():
+    number = np.arange(400, dtype=np.int64)
+    number[50::50] += np.array([60_000, -70_000, 80_000, 9_000_000, -50_000, 10**9, 123_456])
+    layout = SimpleNamespace(
+        size=8, packet_s=1e-3, azimuth_cdeg=lambda _: None, likely_models=lambda _: (),
+        sound=lambda rows: np.ones(len(rows), bool),
+        stamps_ns=lambda rows: rows.view(np.int64)[:, 0] * 1_000_000,
+    )  # fmt: skip
+    sensor = SimpleNamespace(topic="/m1")
+    head = test_hesai_packets.datagrams(number[:, None].view(np.uint8).copy())
+
+    require_one_sender(layout, SimpleNamespace(head=head, sensor=sensor))
+
+
 def test_what_is_of_none_of_the_sensors_is_counted(tmp_path):
     hdl, vlp = velodyne("HDL-32E"), velodyne("VLP-16")
     strange = hdl[1][:5].copy()
