@@ -168,12 +168,7 @@ def ingest(
     sources = _sort_out(sources)
     paths = sources.recordings
     given = _Samples.of_files(sources, out, settings=settings, report=report)
-    recording = open_recording(
-        OpenRequest(paths, sources.rig, settings, report, open_file=live.open_file)
-    )
-    if given.imu:
-        recording = replace(recording, rig=rig_of_imu_file(recording.rig, sources.rig))
-    live.opened(recording.rig)
+    recording = _opened(sources, live, settings=settings)
     assembler = Assembler(
         recording.rig, settings=settings, report=report, wait_s=recording.wait_s, on_cut=live.watch
     )
@@ -194,6 +189,19 @@ def ingest(
         writer.add(imu=imu, gnss=gnss, report=about)
     for finding in report.findings:
         progress.event(Remarked(finding=finding))
+
+
+def _opened(sources: Sources, live: LiveSource, *, settings: IngestSettings) -> Recording:
+    """The recording, with the rig of the samples that are used."""
+    recording = open_recording(
+        OpenRequest(
+            sources.recordings, sources.rig, settings, live.report, open_file=live.open_file
+        )
+    )
+    if sources.imu is not None:
+        recording = replace(recording, rig=rig_of_imu_file(recording.rig, sources.rig))
+    live.opened(recording.rig)
+    return recording
 
 
 def _sort_out(sources: Sources) -> Sources:

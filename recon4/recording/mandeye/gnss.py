@@ -23,9 +23,6 @@ from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import height_of_gga
 from recon4.untrusted.bounded import lines_limited, parse_float
 
-_CELLS = 7
-"""Of a line, that must be there: up to the geoid separation."""
-_QUALITY_CELL = 9
 _Row = tuple[int, float, float, float, int]
 """Time [ns], latitude, longitude [deg], ellipsoidal height [m], quality."""
 
@@ -67,10 +64,11 @@ def read_positions(path: Path, report: ImportReport) -> GnssSamples:
 
 def _row_of_cells(line: str, report: ImportReport) -> _Row | None:
     cells = line.split()
-    if len(cells) < _CELLS:
-        raise ValueError(f"{_CELLS} cells or more, got {len(cells)}")
+    if len(cells) < MANDEYE.position_cells:
+        raise ValueError(f"{MANDEYE.position_cells} cells or more, got {len(cells)}")
     lat_deg, lon_deg, altitude_m = (parse_float(cell) for cell in cells[1:4])
-    quality = int(cells[_QUALITY_CELL]) if len(cells) > _QUALITY_CELL else int(GnssQuality.SINGLE)
+    stated = cells[MANDEYE.quality_cell : MANDEYE.quality_cell + 1]
+    quality = int(stated[0]) if stated else int(GnssQuality.SINGLE)
     if quality == GnssQuality.INVALID or not math.isfinite(lat_deg + lon_deg):
         report.count("gnss_no_fix")
         return None

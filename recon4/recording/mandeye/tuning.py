@@ -20,7 +20,11 @@ class MandeyeTuning:
     most_g: float = 3.0
     """Accelerations whose median is below this are in g, else in m/s²."""
     most_bytes: int = 1 << 30
-    """Of a file of IMU samples."""
+    """Of a file of IMU samples or positions."""
+    position_cells: int = 7
+    """Cells of a line with a position: up to the geoid separation …"""
+    quality_cell: int = 9
+    """… and where the quality of the fix is, if it is there."""
     part_s: float = 5.0
     """Length of a part that is written [s]: that of the devices."""
     wait_s: float = 2.0
