@@ -121,7 +121,7 @@ constraints: $(VENV)/installed-dev
 
 lock: $(TOOLS)/installed
 	$(COMPILE) --extra build -o requirements/run.lock pyproject.toml
-	$(COMPILE) --extra build --extra dev --extra pdf --extra dask -o requirements/dev.lock pyproject.toml
+	$(COMPILE) --extra build --extra dev --extra pdf --extra dask --extra mcp -o requirements/dev.lock pyproject.toml
 	$(COMPILE) -o requirements/tools.lock requirements/tools.in
 
 audit: $(TOOLS)/installed

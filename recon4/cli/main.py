@@ -37,6 +37,7 @@ from recon4.cli.terminal import write
 from recon4.errors import Cancelled, Recon4Error
 from recon4.system.stopping import StopSignals
 from recon4_app.cli.keys import keys
+from recon4_app.cli.mcp import assistant
 from recon4_app.cli.serve import server
 from recon4_app.cli.users import users
 
@@ -53,7 +54,7 @@ app = typer.Typer(
 
 app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
-for _part in (server, live, simulation, slices, backups, space):
+for _part in (server, assistant, live, simulation, slices, backups, space):
     app.add_typer(_part)
 for _part in (
     calibration,

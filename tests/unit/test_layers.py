@@ -199,6 +199,9 @@ ONLY_HERE = {
     "typer": {"recon4/cli", "app/recon4_app/cli"},
     "cryptography": {"app/recon4_app/network/certificate.py"}
     | {f"recon4/review/{name}.py" for name in ("certificate", "signature")},
+    "mcp": {"app/recon4_app/assistant"},
+    "httpx2": {"app/recon4_app/assistant/http_client.py"},
+    "h11": {"app/recon4_app/webhooks/post.py"},
     "typst": {"recon4/report/pdf.py"},
     "pyhanko": {"recon4/delivery/pdf_signature.py", "recon4/report/pdf.py"},
     "argon2": {"app/recon4_app/access/login/passwords.py"},
@@ -313,8 +316,9 @@ def test_the_page_names_every_package():
 
 def test_every_package_imported_is_named_in_pyproject():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
-    texts = [*project["dependencies"], *project["optional-dependencies"]["pdf"]]
-    texts += project["optional-dependencies"]["dask"]
+    texts = list(project["dependencies"])
+    for extra in ("pdf", "dask", "mcp"):
+        texts += project["optional-dependencies"][extra]
     named = {_distribution(Requirement(text).name) for text in texts}
     homes = metadata.packages_distributions()
 

@@ -1,5 +1,6 @@
 """What recon4 needs to run must not force its licence on those who use it."""
 
+import itertools
 import re
 import tomllib
 from importlib import metadata
@@ -53,9 +54,11 @@ def is_strong_copyleft(licence: str) -> bool:
 def test_nothing_needed_to_run_is_under_the_gpl():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
-    names = needed_to_run(project["dependencies"])
+    extras = [project["optional-dependencies"][extra] for extra in ("pdf", "dask", "mcp")]
 
-    assert {"numpy", "gtsam", "lazrs", "fastapi", "ezdxf", "mako"} <= names
+    names = needed_to_run([*project["dependencies"], *itertools.chain(*extras)])
+
+    assert {"numpy", "gtsam", "lazrs", "fastapi", "ezdxf", "mako", "mcp", "httpx2"} <= names
     assert {name: licence_of(name) for name in names if is_strong_copyleft(licence_of(name))} == {}
 
 

@@ -1,0 +1,120 @@
+"""Tools for files and images: exports, downloads, slices."""
+
+from __future__ import annotations
+
+import base64
+from pathlib import Path
+from typing import Annotated
+
+from mcp.server.mcpserver import Image
+from mcp.server.mcpserver.exceptions import ToolError
+from pydantic import Field
+
+from recon4_app.assistant.arguments import Color, FileName, Meters, ProjectId, Xy
+from recon4_app.assistant.http_client import Query, ServerClient
+from recon4_app.assistant.records import (
+    Downloaded,
+    ExportList,
+    MapExtent,
+    ProjectFacts,
+    ShownSlice,
+)
+from recon4_app.assistant.tuning import ASSISTANT
+
+WRITTEN = (
+    *("map.copc.laz", "map.laz", "map.e57", "map.ply", "map.pcd", "map.xyz"),
+    *("findings.csv", "findings.geojson", "report.pdf"),
+)
+"""What the server writes of a map when it is asked to."""
+
+
+class FileTools:
+    """Tools that change nothing on the server; downloads go to one folder of this computer."""
+
+    def __init__(self, server: ServerClient, downloads: Path | None) -> None:
+        self._server, self._downloads = server, downloads
+
+    async def list_exports(self, project: ProjectId) -> ExportList:
+        """List the files of a project, and those that the server writes of its map."""
+        facts = await self._server.get(f"api/projects/{project}", ProjectFacts)
+        written = list(WRITTEN) if facts.has_map else []
+        return ExportList(files=facts.files, written_on_request=written)
+
+    async def download_export(
+        self,
+        project: ProjectId,
+        file: FileName,
+        crs: Annotated[
+            str,
+            Field(description="CRS of a map file, as EPSG:25832; empty = that of the map."),
+        ] = "",
+    ) -> Downloaded:
+        """Download a file to the folder for downloads of this computer; nothing is overwritten."""
+        assert self._downloads is not None  # else this is no tool
+        facts = await self._server.get(f"api/projects/{project}", ProjectFacts)
+        path, query = _address(project, file, crs, results={one.name for one in facts.files})
+        target = _free_name(self._downloads / f"{project}-{file}")
+        return await self._server.download(path, target, query)
+
+    async def slice_image(
+        self,
+        project: ProjectId,
+        *,
+        z_m: Annotated[
+            Meters | None,
+            Field(description="Height of a horizontal slice; none = 1.2 m over the first floor."),
+        ] = None,
+        ends_m: Annotated[
+            tuple[Xy, Xy] | None, Field(description="Ends of a vertical slice, seen from above.")
+        ] = None,
+        thickness_m: Annotated[float, Field(gt=0.0, le=5.0)] = 0.1,
+        color: Color = "height",
+    ) -> list[Image | str]:
+        """Show a horizontal or vertical slice of the map: double walls and drift are visible."""
+        plane: dict[str, object] = {"thickness_m": thickness_m}
+        if ends_m is not None:
+            plane |= {"kind": "vertical", "a_m": ends_m[0], "b_m": ends_m[1]}
+        else:
+            height_m = await self._height(project) if z_m is None else z_m
+            plane |= {"kind": "horizontal", "z_m": height_m}
+        side = ASSISTANT.image_px
+        asked = {"plane": plane, "width": side, "height": side, "color": color}
+        path = f"api/projects/{project}/slices/image"
+        found = await self._server.post(path, ShownSlice, asked)
+        about = (
+            f"{found.name}: {found.points} points, {found.pixel_m * 100.0:.1f} cm a pixel, "
+            f"{color} from {found.low:.3g} to {found.high:.3g}"
+        )
+        return [Image(data=base64.b64decode(found.png), format="png"), about]
+
+    async def _height(self, project: str) -> float:
+        """Where a horizontal slice shows walls: over the lowest floor that was walked on."""
+        extent = await self._server.get(f"api/projects/{project}/map", MapExtent)
+        if extent.storeys:
+            return min(storey.floor_m for storey in extent.storeys) + ASSISTANT.eye_m
+        return (extent.low_m[2] + extent.high_m[2]) / 2.0
+
+
+def _address(project: str, file: str, crs: str, *, results: set[str]) -> tuple[str, Query]:
+    """Path of a file on the server, and its query."""
+    base = f"api/projects/{project}"
+    if file in results and not crs:
+        return f"{base}/files/{file}", {}
+    if file not in WRITTEN:
+        names = ", ".join(sorted({*results, *WRITTEN}))
+        raise ToolError(f"{project} has no {file}; expected one of {names}")
+    if file.startswith("map."):
+        return f"{base}/{file}", {"crs": crs}
+    if crs:
+        raise ToolError(f"{file} is written in the CRS of the map: leave crs out")
+    return f"{base}/{file}", {}
+
+
+def _free_name(path: Path) -> Path:
+    """The path, or one with a number if there is such a file."""
+    stem, _, endings = path.name.partition(".")
+    number, free = 1, path
+    while free.exists():
+        number += 1
+        free = path.with_name(f"{stem}-{number}.{endings}")
+    return free
