@@ -24,8 +24,10 @@ from recon4_app.rigs.store import RigStore
 from recon4_app.rigs.uses import RigUses
 from recon4_app.settings import ServerSettings
 from recon4_app.slices.store import Slices
+from recon4_app.storage.project_space import ProjectSpaces
 from recon4_app.uploads.store import UploadStore
 from recon4_app.viewer.pool import ViewerPool
+from recon4_app.webhooks.deliver import Webhooks
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,6 +52,8 @@ class ServerParts:
     rigs: RigStore
     rig_uses: RigUses
     calibrations: Calibrations
+    project_spaces: ProjectSpaces
+    webhooks: Webhooks
 
 
 def parts(connection: HTTPConnection) -> ServerParts:

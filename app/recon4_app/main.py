@@ -6,7 +6,7 @@ import asyncio
 import logging
 import time
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from functools import cache
 from typing import Any
 
@@ -87,10 +87,14 @@ from recon4_app.slices import align_routes, reference_routes, site_routes
 from recon4_app.slices import routes as slice_routes
 from recon4_app.slices.store import Slices
 from recon4_app.storage import routes as storage_routes
+from recon4_app.storage.project_space import ProjectSpaces
 from recon4_app.uploads import routes as upload_routes
 from recon4_app.uploads.store import UploadStore
 from recon4_app.viewer import page, proxy
 from recon4_app.viewer.pool import ViewerPool
+from recon4_app.webhooks import routes as webhook_routes
+from recon4_app.webhooks.deliver import Webhooks
+from recon4_app.webhooks.store import WebhookStore
 
 log = logging.getLogger(__name__)
 
@@ -150,6 +154,7 @@ def _routes() -> list[BaseRoute]:
         login_routes,
         admin_routes,
         key_routes,
+        webhook_routes,
         pairing_routes,
         project_routes,
         map_routes,
@@ -233,6 +238,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     watching = [
         asyncio.create_task(parts.supervisor.run()),
         asyncio.create_task(_maintain(parts)),
+        asyncio.create_task(parts.webhooks.run()),
         asyncio.create_task(rotate_logs(settings.state, parts.jobs, parts.current_capture)),
         asyncio.create_task(parts.current_capture.adopt()),
     ]
@@ -251,7 +257,9 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
     jobs = JobStore(settings.state / "jobs.sqlite")
     pool = ComputePool(settings.state / "compute", children=child_register(settings))
     checks = ApprovalChecks()
-    projects = ProjectStore(settings.root, _import_folders(settings))
+    projects = ProjectStore(
+        settings.root, _import_folders(settings), index=settings.state / "index" / "projects.json"
+    )
     rigs = RigStore(settings.root)
     uses = RigUses(rigs, projects, jobs)
     trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_retention_s)
@@ -263,9 +271,11 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         sockets=Streams("viewers", _viewer_limits(settings)),
         children=child_register(settings),
     )
+    access = open_access(settings.state, login=settings.login, notice=notice)
     return ServerParts(
         settings=settings,
-        access=open_access(settings.state, login=settings.login, notice=notice),
+        access=access,
+        webhooks=Webhooks(WebhookStore(access.engine), jobs, access.log, settings=settings),
         projects=projects,
         thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
         trash=trash,
@@ -282,6 +292,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         rigs=rigs,
         rig_uses=uses,
         calibrations=Calibrations(projects, uses),
+        project_spaces=ProjectSpaces(projects, jobs),
     )
 
 
@@ -295,6 +306,9 @@ async def _maintain(parts: ServerParts) -> None:
             lambda: parts.uploads.sweep(time.time()),
             lambda: parts.trash.sweep(time.time()),
             lambda: parts.slices.exports.sweep(time.time()),
+            parts.webhooks.store.sweep,
+            parts.projects.cards.save,
+            parts.webhooks.wake,
         )
     )
 
@@ -305,6 +319,8 @@ async def _close_parts(parts: ServerParts) -> None:
     parts.checks.close()
     parts.supervisor.close()
     await parts.viewers.close()
+    with suppress(StoreError):  # it is made again
+        parts.projects.cards.save()
     parts.jobs.close()
     parts.access.close()
 

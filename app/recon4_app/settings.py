@@ -14,6 +14,8 @@ from recon4.sandbox import allowed_environment
 from recon4.untrusted.names import is_unnameable, visible
 from recon4_app.network.behind import PublicAddress
 
+Network = ipaddress.IPv4Network | ipaddress.IPv6Network
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ServerSettings:
@@ -80,6 +82,8 @@ class ServerSettings:
     state_folder: Path | None = None
     """Folder of the server's own files; None = ``.recon4`` in ``root``. With another one the server
     only shows ``root``, and changes nothing."""
+    webhook_networks: tuple[Network, ...] = ()
+    """Networks besides the internet to which webhooks may be posted."""
     sensor_bind_address: str = "0.0.0.0"
     """Address of the network interface for the sensors of a live capture; 0.0.0.0 = any."""
 
@@ -145,6 +149,19 @@ def allowed_hosts_from_environment() -> tuple[str, ...]:
     """Host names in ``RECON4_NAMES``, with commas between."""
     named = os.environ.get("RECON4_NAMES", "")
     return tuple(part.strip() for part in named.split(",") if part.strip())
+
+
+def webhook_networks_from_environment() -> tuple[Network, ...]:
+    """Networks in ``RECON4_WEBHOOK_NETWORKS``, with commas between: 192.168.1.0/24.
+
+    Raises:
+        ConfigError: If one is none.
+    """
+    named = os.environ.get("RECON4_WEBHOOK_NETWORKS", "").split(",")
+    try:
+        return tuple(ipaddress.ip_network(part.strip()) for part in named if part.strip())
+    except ValueError as error:
+        raise ConfigError(f"RECON4_WEBHOOK_NETWORKS: {error}") from error
 
 
 def worker_environment() -> dict[str, str]:

@@ -39,7 +39,7 @@ SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls", "metrics.token", "
 """Beginnings of the names of files that are secret, or say whom the server trusts: keys, password
 hashes, sessions, the token of the metrics; also copies of them and damaged ones. Backed up and
 restored only on request, so that a foreign backup makes no key and no token valid."""
-_DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
+_DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash", "index")
 _TEMPORARY = re.compile(
     r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat|audit\.room"
 )

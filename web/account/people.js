@@ -26,6 +26,7 @@ import "../shared/page_head.js";
 import "./session_list.js";
 import { withPassword } from "./recent_login.js";
 import { showTrustedKeys } from "./trusted_keys.js";
+import { showWebhooks } from "./webhooks.js";
 
 /** @import {Account, Changes, Entry, Role} from "../shared/http_types" */
 
@@ -145,3 +146,4 @@ sessions.source = { read: listSessions, end: endSession };
 byId("without").hidden = (await attempt(byId("message"), readCurrentUser))?.login ?? true;
 await reload();
 await showTrustedKeys(() => readLog());
+await showWebhooks(() => readLog());

@@ -357,6 +357,8 @@ export interface ErrorEllipse {
   up_m: number;
 }
 
+export type EventKind = "job.finished" | "approval.signed" | "test";
+
 export interface FileView {
   name: string;
   bytes: number;
@@ -376,6 +378,12 @@ export interface FolderEntry {
   folder: boolean;
   bytes: number;
 }
+
+export interface FreeRequest {
+  what: Array<Freeable>;
+}
+
+export type Freeable = "earlier" | "frames" | "map";
 
 export interface GnssContent {
   lever_arm_m?: [number, number, number];
@@ -693,6 +701,17 @@ export interface NewVersion {
   after?: number | null;
 }
 
+export interface NewWebhook {
+  url: string;
+  events?: Array<EventKind>;
+  secret?: string;
+}
+
+export interface NewWebhookView {
+  webhook: Webhook;
+  secret: string;
+}
+
 export interface OtherMap {
   id: string;
   label: string;
@@ -795,11 +814,26 @@ export interface ProjectCard {
   preset: string;
   rig: string;
   has_map: boolean;
+  tags: Array<string>;
+  archived: boolean;
+  recording: string;
   path_length_m: number | null;
   points: number | null;
   approval: ApprovalState;
   usability: string;
   problem: string;
+}
+
+export interface ProjectChanges {
+  name?: string | null;
+  tags?: Array<string> | null;
+  archived?: boolean | null;
+}
+
+export interface ProjectSpace {
+  id: string;
+  bytes: number;
+  freeable: Record<string, number>;
 }
 
 export interface ProjectView {
@@ -812,6 +846,8 @@ export interface ProjectView {
   rig: string;
   files: Array<ResultFile>;
   stages: Array<StageView>;
+  tags: Array<string>;
+  archived: boolean;
   viewable: boolean;
   has_map: boolean;
   summary: Record<string, any>;
@@ -876,10 +912,6 @@ export interface Remedy {
   text: string;
   page: string;
   needs: string;
-}
-
-export interface Rename {
-  name: string;
 }
 
 export interface Requirement {
@@ -1299,6 +1331,27 @@ export interface WalkStretch {
   positions_m: Array<[number, number, number]>;
 }
 
+export interface Webhook {
+  id: string;
+  url: string;
+  events: Array<EventKind>;
+  created: string;
+  by: string;
+  waiting: number;
+  problem: string;
+}
+
+export interface WebhookDelivery {
+  number: number;
+  event: string;
+  kind: EventKind;
+  created: string;
+  attempts: number;
+  delivered: string;
+  next_attempt: string;
+  problem: string;
+}
+
 export interface WindowSpec {
   left: number;
   bottom: number;
@@ -1345,6 +1398,10 @@ export interface Operations {
   };
   "DELETE /api/uploads/{upload_id}": {
     path: { upload_id: string };
+    response: string;
+  };
+  "DELETE /api/webhooks/{webhook_id}": {
+    path: { webhook_id: string };
     response: string;
   };
   "GET /api/audit": {
@@ -1594,6 +1651,9 @@ export interface Operations {
   "GET /api/storage": {
     response: StorageView;
   };
+  "GET /api/storage/projects": {
+    response: Array<ProjectSpace>;
+  };
   "GET /api/trash": {
     response: Array<Deleted>;
   };
@@ -1607,6 +1667,13 @@ export interface Operations {
   "GET /api/uploads/{upload_id}/files": {
     path: { upload_id: string };
     response: Array<FileView>;
+  };
+  "GET /api/webhooks": {
+    response: Array<Webhook>;
+  };
+  "GET /api/webhooks/{webhook_id}/deliveries": {
+    path: { webhook_id: string };
+    response: Array<WebhookDelivery>;
   };
   "GET /healthz": {
     response: Record<string, string>;
@@ -1625,7 +1692,7 @@ export interface Operations {
   };
   "PATCH /api/projects/{project_id}": {
     path: { project_id: string };
-    body: Rename;
+    body: ProjectChanges;
     response: ProjectView;
   };
   "PATCH /api/uploads/files/{file_id}": {
@@ -1711,6 +1778,11 @@ export interface Operations {
     path: { project_id: string };
     body: CalibratedVersion;
     response: SavedRig;
+  };
+  "POST /api/projects/{project_id}/free": {
+    path: { project_id: string };
+    body: FreeRequest;
+    response: ProjectSpace;
   };
   "POST /api/projects/{project_id}/map/pick": {
     path: { project_id: string };
@@ -1827,6 +1899,14 @@ export interface Operations {
   };
   "POST /api/uploads/files": {
     response: any;
+  };
+  "POST /api/webhooks": {
+    body: NewWebhook;
+    response: NewWebhookView;
+  };
+  "POST /api/webhooks/{webhook_id}/test": {
+    path: { webhook_id: string };
+    response: Webhook;
   };
   "PUT /api/projects/{project_id}/slices/control": {
     path: { project_id: string };

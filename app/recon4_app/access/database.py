@@ -1,4 +1,4 @@
-"""``access.sqlite``: people, sessions, known browsers and the audit log, in a file of mode 0600.
+"""``access.sqlite``: people, sessions, known browsers, audit log and webhooks, mode 0600.
 
 The server and the command ``recon4 users`` both write to it, so a change begins by taking the
 write lock. Readers never wait.
@@ -72,6 +72,34 @@ AUDIT = sa.Table(
     sa.Column("hash", sa.String, nullable=False),
 )
 """Triggers reject changes and deletions of a row."""
+
+WEBHOOKS_TABLE = sa.Table(
+    "webhooks",
+    METADATA,
+    sa.Column("id", sa.String, primary_key=True),
+    sa.Column("url", sa.String, nullable=False),
+    sa.Column("secret", sa.String, nullable=False),
+    sa.Column("events", sa.String, nullable=False),
+    sa.Column("created_s", sa.Float, nullable=False),
+    sa.Column("by", sa.String, nullable=False),
+)
+"""``events`` are the kinds it takes, with spaces between; ``by`` is the admin who added it."""
+
+DELIVERIES = sa.Table(
+    "deliveries",
+    METADATA,
+    sa.Column("number", sa.Integer, primary_key=True),
+    sa.Column("webhook", sa.String, nullable=False),
+    sa.Column("event", sa.String, nullable=False),
+    sa.Column("kind", sa.String, nullable=False),
+    sa.Column("body", sa.String, nullable=False),
+    sa.Column("created_s", sa.Float, nullable=False),
+    sa.Column("attempts", sa.Integer, nullable=False),
+    sa.Column("due_s", sa.Float, nullable=False),
+    sa.Column("delivered_s", sa.Float, nullable=True),
+    sa.Column("problem", sa.String, nullable=False),
+)
+"""An event for a webhook, once; ``delivered_s`` is NULL until the receiver took it."""
 
 
 def open_database(path: Path) -> sa.Engine:

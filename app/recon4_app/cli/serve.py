@@ -46,6 +46,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
         ServerSettings,
         allowed_hosts_from_environment,
         recording_folders_from_environment,
+        webhook_networks_from_environment,
     )
 
     try:
@@ -59,6 +60,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
             tls_key=tls_key,
             allowed_hosts=allowed_hosts_from_environment(),
             recording_folders=recording_folders_from_environment(),
+            webhook_networks=webhook_networks_from_environment(),
             viewer_points=points,
             sensor_bind_address=live_address,
         )

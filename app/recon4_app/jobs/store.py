@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -40,6 +40,9 @@ JOBS = sa.Table(
 """The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs`` is
 JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one damaged row."""
 
+ENDED = sa.Table("ended", METADATA, sa.Column("job", sa.String, primary_key=True))
+"""Ids of jobs whose end was not announced yet."""
+
 
 class JobStore:
     """All jobs, finished ones too."""
@@ -49,6 +52,8 @@ class JobStore:
         self.notice = _restore(self._copies)
         """Notice for users: set when the file was damaged, else empty."""
         self._engine = open_engine(path)
+        self.on_ended: Callable[[], object] = lambda: None
+        """Called after a job has ended, in any thread."""
         with self._engine.begin() as connection:
             migrate(connection, Path(__file__).parent)
 
@@ -86,7 +91,21 @@ class JobStore:
         with self._engine.begin() as connection:
             if connection.execute(JOBS.update().where(mine).values(**_row(after))).rowcount != 1:
                 raise Conflict(f"job {before.id} is no longer {before.state}")
+            if after.over:
+                connection.execute(ENDED.insert().values(job=after.id))
+        if after.over:
+            self.on_ended()
         return after
+
+    def ended(self) -> list[Job]:
+        """Jobs whose end was not announced yet, oldest first."""
+        mine = JOBS.select().where(JOBS.c.id.in_(sa.select(ENDED.c.job)))
+        return self._select(mine.order_by(JOBS.c.number))
+
+    def forget_ended(self, job_ids: Sequence[str]) -> None:
+        """Note that the ends of these jobs were announced."""
+        with self._engine.begin() as connection:
+            connection.execute(ENDED.delete().where(ENDED.c.job.in_(job_ids)))
 
     def get(self, job_id: str) -> Job:
         """One job.
@@ -123,6 +142,10 @@ class JobStore:
     def has_project(self, project: str) -> bool:
         """Whether a job has a project, which may not exist yet."""
         return bool(self.of_project(project))
+
+    def is_busy(self, project: str) -> bool:
+        """Whether a job of a project waits or runs."""
+        return any(not job.over for job in self.of_project(project))
 
     def _select(self, query: sa.Select[Any]) -> list[Job]:
         with self._engine.connect() as connection:

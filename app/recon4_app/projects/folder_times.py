@@ -10,27 +10,35 @@ from recon4.review.approved import VERSIONS
 from recon4.review.newest_approval import record_path
 from recon4.review.trusted_keys import STATE, TRUSTED_KEYS
 
-Stamp = tuple[int | None, ...]
+FileStamp = tuple[int, int, int]
+"""Modification time [ns], inode and size [bytes]: a file that replaced another one differs in two
+of them, also if the clock of the file system has not moved on."""
+Stamp = tuple[FileStamp | None, ...]
 
 
 def stamp_of(folder: Path) -> Stamp:
-    """Modification times of the files of a card [ns]; None for a missing one.
+    """Stamps of the files of a card; None for a missing one.
 
     The first three say when it was updated, the others whether its approval was.
     """
+    root, state = str(folder), str(folder.parent / STATE)
     names = ("project.json", "summary.json", "artifacts", "decisions.sqlite", VERSIONS)
-    state = folder.parent / STATE
-    judging = (state / TRUSTED_KEYS, record_path(state, folder.name))
-    approvals = sorted(folder.glob(f"{VERSIONS}/*/approval.json"))
-    paths = (*(folder / n for n in names), *judging, *approvals)
-    return tuple(_changed_ns(path) for path in paths)
+    found = [_stamp(f"{root}/{name}") for name in names]
+    if found[0] is None:
+        return (None,)
+    found.append(_stamp(f"{state}/{TRUSTED_KEYS}"))
+    found.append(_stamp(str(record_path(folder.parent / STATE, folder.name))))
+    if found[4] is not None:
+        found += [_stamp(str(path)) for path in sorted(folder.glob(f"{VERSIONS}/*/approval.json"))]
+    return tuple(found)
 
 
-def _changed_ns(path: Path) -> int | None:
+def _stamp(path: str) -> FileStamp | None:
     try:
-        return path.stat().st_mtime_ns
+        status = os.stat(path)
     except OSError:
         return None
+    return status.st_mtime_ns, status.st_ino, status.st_size
 
 
 def weigh(folder: Path) -> tuple[int, float]:

@@ -85,6 +85,10 @@ class ProjectView:
     rig: str
     files: tuple[ResultFile, ...]
     stages: tuple[StageView, ...]
+    tags: tuple[str, ...]
+    """Words by which people find it."""
+    archived: bool
+    """Whether the list leaves it out at first."""
     viewable: bool
     """Whether the viewer can show it in 3-D."""
     has_map: bool
@@ -110,6 +114,12 @@ class ProjectCard:
     rig: str
     has_map: bool
     """Whether there is a map, for a thumbnail."""
+    tags: tuple[str, ...]
+    """Words by which people find it."""
+    archived: bool
+    """Whether the list leaves it out at first."""
+    recording: str
+    """SHA-256 of its first recording; empty = not known yet."""
     path_length_m: float | None
     """Path length [m]; None before the first run has finished."""
     points: int | None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
+from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, StreamingResponse
@@ -18,13 +18,12 @@ from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import ProblemDetail
 from recon4_app.errors import Conflict
-from recon4_app.jobs.model import JobState
 from recon4_app.names import Name
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
 from recon4_app.projects.model import MAP_IMAGES, FolderEntry, ProjectCard, ProjectView
 from recon4_app.projects.trash import Deleted
-from recon4_app.projects.tuning import LOOKS
+from recon4_app.projects.tuning import LOOKS, PROJECT_LIST
 
 router = APIRouter(
     prefix="/api",
@@ -41,13 +40,30 @@ REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src
 FINDINGS_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json"}
 
 
-class Rename(BaseModel):
-    """A new display name."""
+Tag = Annotated[Name, Field(min_length=1, max_length=PROJECT_LIST.max_tag)]
+
+
+class ProjectChanges(BaseModel):
+    """What people say of a project; a field that is left out stays."""
 
     model_config = ConfigDict(extra="forbid")
 
-    name: Name = Field(min_length=1, max_length=100)
+    name: Name | None = Field(default=None, min_length=1, max_length=100)
     """Display name; any letters."""
+    tags: list[Tag] | None = Field(default=None, max_length=PROJECT_LIST.max_tags)
+    """Words by which people find it, as that of a site, a customer or a day."""
+    archived: bool | None = None
+    """Whether the list leaves it out at first; nothing is moved or deleted."""
+
+    def fields(self) -> dict[str, object]:
+        """What is changed, by its name in ``project.json``."""
+        given = self.model_dump(exclude_none=True)
+        if self.name is not None:
+            given["name"] = self.name.strip()
+        if self.tags is not None:
+            texts = [" ".join(one.split()) for one in self.tags]
+            given["tags"] = [*{one.casefold(): one for one in texts if one}.values()]
+        return given
 
 
 class Restored(BaseModel):
@@ -73,13 +89,18 @@ def read_project(project_id: str, server: Server) -> ProjectView:
     return _compared(server, server.projects.get(project_id))
 
 
-@router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename a project")
-def rename_project(
-    project_id: str, new: Rename, server: Server, *, request: Request
+@router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Change a project")
+def change_project(
+    project_id: str, new: ProjectChanges, server: Server, *, request: Request
 ) -> ProjectView:
-    """Change the display name of a project; its folder and URLs stay. Not while a job runs."""
-    server.projects.rename(project_id, new.name.strip())
-    audit(request, "rename project", f"{project_id}: {new.name}")
+    """Change display name or tags of a project, or archive it. Not while a job runs.
+
+    Its folder and URLs stay.
+    """
+    fields = new.fields()
+    server.projects.describe(project_id, fields)
+    said = ", ".join(f"{name} {value}" for name, value in fields.items())
+    audit(request, "change project", f"{project_id}: {said}")
     return _compared(server, server.projects.get(project_id))
 
 
@@ -210,6 +231,5 @@ def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
 
 
 def _refuse_while_busy(server: ServerParts, project_id: str) -> None:
-    active = (JobState.QUEUED, JobState.RUNNING)
-    if any(job.state in active for job in server.jobs.of_project(project_id)):
+    if server.jobs.is_busy(project_id):
         raise Conflict(f"a job of {project_id} waits or runs; cancel it first")

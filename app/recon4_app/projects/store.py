@@ -5,25 +5,30 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
 
+from recon4 import __version__
 from recon4.errors import StoreError
-from recon4.model.usability import Usability
-from recon4.review.approval_state import ApprovalState, approval_state, not_valid
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
-from recon4.store.earlier_names import SUMMARY, current_names
-from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage as StageRow
 from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
 from recon4.untrusted.names import visible
 from recon4_app.errors import Conflict, NotFound, project_page
+from recon4_app.projects.cards import CardIndex
 from recon4_app.projects.clone import clone_artifacts
+from recon4_app.projects.described import (
+    approval_in,
+    object_of,
+    rig_name,
+    shown_name,
+    summary_of,
+    tags_of,
+)
 from recon4_app.projects.folder_names import free_folder_name
-from recon4_app.projects.folder_times import Stamp, iso, stamp_of, weigh
+from recon4_app.projects.folder_times import iso, weigh
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.model import (
     RESULTS,
@@ -45,16 +50,25 @@ PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 class ProjectStore:
     """Reads project folders. Paths are made from checked names only."""
 
-    def __init__(self, root: Path, imports: ImportFolders) -> None:
-        self._root = root.resolve()
+    def __init__(self, root: Path, imports: ImportFolders, *, index: Path | None = None) -> None:
+        """Name the folders.
+
+        Args:
+            root: Folder of the projects.
+            imports: Folders that requests may name files of.
+            index: File of the index of the list; None = it is not kept.
+        """
+        self.root = root.resolve()
+        """Folder of the projects."""
         self.imports = imports
         """Files of this computer that requests may name."""
-        self._cards: dict[str, tuple[Stamp, ProjectCard]] = {}
+        self.cards = CardIndex(index, __version__)
 
     def all(self) -> list[ProjectCard]:
         """All projects, the newest first. Unchanged folders are not read again."""
-        with os.scandir(self._root) as entries:
+        with os.scandir(self.root) as entries:
             found = [card for entry in entries if (card := self._card(entry)) is not None]
+        self.cards.forget_all_but({card.id for card in found})
         return sorted(found, key=lambda card: card.updated, reverse=True)
 
     def get(self, project_id: str) -> ProjectView:
@@ -71,7 +85,7 @@ class ProjectStore:
         Raises:
             NotFound: If there is none of that name.
         """
-        folder = self._root / project_id
+        folder = self.root / project_id
         if not PROJECT_ID.fullmatch(project_id) or not _is_project(folder):
             raise NotFound(f"no project {project_id[:64]!r}")
         return folder
@@ -83,11 +97,11 @@ class ProjectStore:
             Conflict: If there is a project or another folder of that name.
         """
         self.refuse_reserved(name)
-        if (self._root / name).exists():
+        if (self.root / name).exists():
             raise Conflict(
                 f"there is a project or folder {name} already: choose another name, or run the "
                 "project again from its own page",
-                remedy=project_page(name) if is_project(self._root / name) else None,
+                remedy=project_page(name) if is_project(self.root / name) else None,
             )
 
     def refuse_reserved(self, name: str) -> None:
@@ -96,7 +110,7 @@ class ProjectStore:
         Raises:
             Conflict: If the server itself uses the folder of that name.
         """
-        if name in RESERVED and not is_project(self._root / name):
+        if name in RESERVED and not is_project(self.root / name):
             raise Conflict(f"{name} is a folder of the server: choose another name")
 
     def free_folder_name(self, title: str, is_promised: Callable[[str], bool]) -> str:
@@ -108,7 +122,7 @@ class ProjectStore:
         """
         return free_folder_name(
             title,
-            lambda name: name in RESERVED or (self._root / name).exists() or is_promised(name),
+            lambda name: name in RESERVED or (self.root / name).exists() or is_promised(name),
         )
 
     def result(self, project_id: str, name: str) -> Path:
@@ -123,7 +137,7 @@ class ProjectStore:
             raise NotFound(f"project {project_id} has no file {name[:64]!r}")
         if name == "summary.json":
             return folder / name
-        summary, _ = _summary(folder)
+        summary, _ = summary_of(folder)
         approval = approval_of(folder, artifact_keys(summary))
         if approval is None:
             return folder / name
@@ -169,9 +183,18 @@ class ProjectStore:
             NotFound: If there is none of that name.
             Conflict: If a job is writing to it.
         """
+        self.describe(project_id, {"name": name})
+
+    def describe(self, project_id: str, fields: Mapping[str, object]) -> None:
+        """Change what people say of a project: ``name``, ``tags``, ``archived``.
+
+        Raises:
+            NotFound: If there is none of that name.
+            Conflict: If a job is writing to it.
+        """
         try:
             with Folder.open(self.folder(project_id)) as project:
-                project.describe(name=name)
+                project.describe(**fields)
         except StoreError as error:
             raise Conflict(f"not now: {error}") from error
 
@@ -186,8 +209,8 @@ class ProjectStore:
         folder = self.folder(project_id)
         if not PROJECT_ID.fullmatch(target):
             raise NotFound(f"not a valid project name: {target[:64]!r}")
-        work = self._root / ".recon4" / "clones"
-        clone_artifacts(_artifacts(folder), self._root / target, work)
+        work = self.root / ".recon4" / "clones"
+        clone_artifacts(_artifacts(folder), self.root / target, work)
 
     def importable(self, path: str) -> Path:
         """The real path of a recording, rig, IMU, GNSS or reference file on this computer.
@@ -210,85 +233,31 @@ class ProjectStore:
     def _card(self, entry: os.DirEntry[str]) -> ProjectCard | None:
         if not PROJECT_ID.fullmatch(entry.name) or not entry.is_dir(follow_symlinks=False):
             return None
-        folder = Path(entry.path)
-        stamp = stamp_of(folder)
-        if stamp[0] is None:
-            return None
-        kept = self._cards.get(entry.name)
-        if kept is None or kept[0] != stamp:
-            kept = self._cards[entry.name] = (stamp, _read_card(folder, stamp))
-        return kept[1]
+        return self.cards.card(Path(entry.path))
 
     def _read(self, folder: Path) -> ProjectView:
-        facts, problems = _object(folder, "project.json")
-        summary, more = _summary(folder)
+        facts, problems = object_of(folder, "project.json")
+        summary, more = summary_of(folder)
         stages, most = _stages(folder)
         size, changed_s = weigh(folder)
         return ProjectView(
             id=folder.name,
-            name=_name(facts, folder),
+            name=shown_name(facts, folder),
             finished=(folder / "summary.json").exists(),
             updated=iso(changed_s),
             bytes=size,
             preset=visible(str(facts.get("preset") or "")),
-            rig=_name_of(facts.get("rig")),
+            rig=rig_name(facts.get("rig")),
             files=tuple(_results(folder)),
             stages=stages,
+            tags=tags_of(facts),
+            archived=facts.get("archived") is True,
             viewable=any(stage.stage in VIEWABLE_STAGES for stage in stages),
             has_map=any(stage.stage == "map" for stage in stages),
             summary=summary,
-            approval=_approval(folder, summary),
+            approval=approval_in(folder, summary),
             problem="; ".join(filter(None, (problems, more, most))),
         )
-
-
-def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
-    facts, problem = _object(folder, "project.json")
-    summary, more = _summary(folder)
-    finished = stamp[1] is not None
-    return ProjectCard(
-        id=folder.name,
-        name=_name(facts, folder),
-        finished=finished,
-        updated=iso(max(t_ns for t_ns in stamp[:3] if t_ns is not None) / 1e9),
-        preset=visible(str(facts.get("preset") or "")),
-        rig=_name_of(facts.get("rig")),
-        has_map=finished and ("points" in summary or summary.get("map") == "2d"),
-        path_length_m=_number(summary.get("path_length_m")),
-        points=_whole(summary.get("points")),
-        approval=_approval(folder, summary),
-        usability=_usability(summary),
-        problem="; ".join(filter(None, (problem, more))),
-    )
-
-
-def _approval(folder: Path, summary: dict[str, object]) -> ApprovalState:
-    """State of the approval of the files of a project."""
-    try:
-        return approval_state(folder, artifact_keys(summary))
-    except StoreError as error:
-        return not_valid("Not approved: the approval cannot be read", error)
-
-
-def _usability(summary: dict[str, object]) -> str:
-    """The verdict on the map; empty where there is none, as in files of format 1."""
-    verdict = summary.get("verdict")
-    usability = verdict.get("usability") if isinstance(verdict, dict) else None
-    return usability if usability in list(Usability) else ""
-
-
-def _name(facts: dict[str, object], folder: Path) -> str:
-    return visible(str(facts.get("name") or folder.name))
-
-
-def _number(value: Any) -> float | None:
-    return (
-        float(value) if isinstance(value, int | float) and abs(value) < PROJECT_LIST.large else None
-    )
-
-
-def _whole(value: Any) -> int | None:
-    return value if isinstance(value, int) and abs(value) < PROJECT_LIST.large else None
 
 
 def _is_project(folder: Path) -> bool:
@@ -346,25 +315,3 @@ def _stage(row: StageRow) -> StageView:
         peak_bytes=int(row.peak_bytes),
         finished=visible(str(row.finished)),
     )
-
-
-def _summary(folder: Path) -> tuple[dict[str, object], str]:
-    """``summary.json`` with current names, and the problem with it."""
-    summary, problem = _object(folder, "summary.json")
-    return current_names(summary, SUMMARY), problem
-
-
-def _object(folder: Path, name: str) -> tuple[dict[str, object], str]:
-    """A JSON object and the problem with its file; a page shows the readable rest."""
-    path = folder / name
-    if not path.exists():
-        return {}, ""
-    try:
-        return read_object(path), ""
-    except StoreError as error:
-        problem = str(error).replace(f"{folder}/", "")
-        return {}, visible(problem, most=PROJECT_LIST.max_problem)
-
-
-def _name_of(rig: Any) -> str:
-    return visible(str(rig.get("name", "")) if isinstance(rig, dict) else str(rig or ""))

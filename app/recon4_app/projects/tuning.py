@@ -61,6 +61,9 @@ class ProjectListLimits:
     """Greater numbers are not plausible, and not exact in a browser."""
     max_entries: int = 2000
     """A longer folder listing is cut."""
+    max_tags: int = 20
+    max_tag: int = 40
+    """Characters."""
 
 
 PROJECT_LIST = ProjectListLimits()

@@ -41,7 +41,6 @@ from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import ProblemDetail
 from recon4_app.errors import Conflict, project_page
-from recon4_app.jobs.model import JobState
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
 from recon4_app.review.model import (
@@ -246,7 +245,7 @@ async def approve(
     and ``why`` is shorter than ``map.min_reason_characters``.
     """
     root = server.projects.folder(project_id)
-    if await run_in_threadpool(_busy, project_id, server):
+    if await run_in_threadpool(server.jobs.is_busy, project_id):
         raise Conflict(
             "a job of this project is queued or running; approve when it is done",
             remedy=project_page(project_id),
@@ -259,6 +258,7 @@ async def approve(
         raise Conflict(str(error)) from error
     await run_in_threadpool(make_read_only, approval)
     await run_in_threadpool(record_signed, root, key.parent)
+    server.webhooks.wake()
     what = f"{project_id} version {approval.version} {approval.hash}"
     await run_in_threadpool(audit, request, "approve", what)
     return await run_in_threadpool(_view, project_id, server, who)
@@ -332,7 +332,7 @@ def _view(project_id: str, server: ServerParts, who: Person) -> ReviewView:
         in_map=in_map == decided.key,
         finished=in_map is not None,
         map=_map_facts(root),
-        busy=_busy(project_id, server),
+        busy=server.jobs.is_busy(project_id),
         may_review=who.may(Permission.REVIEW),
         may_process=who.may(Permission.PROCESS),
         approval=server.checks.state(root, artifact_keys(read_summary(root) or {})),
@@ -352,11 +352,6 @@ def _map_facts(root: Path) -> MapFacts | None:
         findings=findings_in(summary),
         figures=signed_figures(summary),
     )
-
-
-def _busy(project_id: str, server: ServerParts) -> bool:
-    jobs = server.jobs.of_project(project_id)
-    return any(job.state in (JobState.QUEUED, JobState.RUNNING) for job in jobs)
 
 
 def _now_and_before(rows: Sequence[JournalRow]) -> tuple[Decided, Decided]:

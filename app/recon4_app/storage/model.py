@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from recon4.archive.space import Freeable
+
 StoredKind = Literal["project", "recording", "upload", "deleted"]
 
 
@@ -33,3 +35,14 @@ class StorageView:
     items: tuple[StoredItem, ...]
     server_bytes: int
     """State of the server: queue, logs, backups, caches."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectSpace:
+    """How much space a project takes."""
+
+    id: str
+    bytes: int
+    """Without files that it has twice (hard links)."""
+    freeable: dict[Freeable, int]
+    """What can be freed, because processing the recording makes it again -> its size [bytes]."""

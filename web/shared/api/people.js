@@ -3,7 +3,7 @@
 import { forgetKept } from "../address.js";
 import { become, request } from "../http.js";
 
-/** @import {Changes, NewKey, NewPerson} from "../http_types" */
+/** @import {Changes, NewKey, NewPerson, NewWebhook} from "../http_types" */
 
 /**
  * @param {string} who
@@ -52,3 +52,10 @@ export const addTrustedKey = (/** @type {NewKey} */ key) =>
   request("POST /api/keys", { body: key });
 export const removeTrustedKey = (/** @type {string} */ fingerprint) =>
   request("DELETE /api/keys/{fingerprint}", { path: { fingerprint } });
+export const listWebhooks = () => request("GET /api/webhooks");
+export const addWebhook = (/** @type {NewWebhook} */ webhook) =>
+  request("POST /api/webhooks", { body: webhook });
+export const removeWebhook = (/** @type {string} */ webhook_id) =>
+  request("DELETE /api/webhooks/{webhook_id}", { path: { webhook_id } });
+export const testWebhook = (/** @type {string} */ webhook_id) =>
+  request("POST /api/webhooks/{webhook_id}/test", { path: { webhook_id } });

@@ -3,7 +3,7 @@
 import { at } from "../address.js";
 import { name, request } from "../http.js";
 
-/** @import {NewJob} from "../http_types" */
+/** @import {Freeable, NewJob, ProjectChanges} from "../http_types" */
 
 export const listProjects = () => request("GET /api/projects");
 export const readProject = (/** @type {string} */ project_id) =>
@@ -38,10 +38,22 @@ export const checkSettings = (preset, settings) =>
   request("POST /api/settings/check", { body: { preset, settings } });
 /**
  * @param {string} project_id
+ * @param {ProjectChanges} changes
+ */
+export const changeProject = (project_id, changes) =>
+  request("PATCH /api/projects/{project_id}", { path: { project_id }, body: changes });
+/**
+ * @param {string} project_id
  * @param {string} title
  */
-export const renameProject = (project_id, title) =>
-  request("PATCH /api/projects/{project_id}", { path: { project_id }, body: { name: title } });
+export const renameProject = (project_id, title) => changeProject(project_id, { name: title });
+export const listSpaces = () => request("GET /api/storage/projects");
+/**
+ * @param {string} project_id
+ * @param {Freeable[]} what
+ */
+export const freeSpace = (project_id, what) =>
+  request("POST /api/projects/{project_id}/free", { path: { project_id }, body: { what } });
 export const deleteProject = (/** @type {string} */ project_id) =>
   request("DELETE /api/projects/{project_id}", { path: { project_id } });
 export const listTrash = () => request("GET /api/trash");
