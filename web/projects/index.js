@@ -2,6 +2,7 @@
 
 import {
   listProjects,
+  listSpaces,
   listTrash,
   thumbnailUrl,
   projectUrl,
@@ -22,17 +23,24 @@ import {
   render,
   repeat,
   succeeds,
+  targetOf,
   within,
 } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
 import "./job_status.js";
 import "./new_job.js";
+import { organize, spaceText } from "./organize.js";
+import { ORDERS, chosen, searchOf, tagCounts, twinsOf, wantedIn } from "./project_list.js";
 import "../shared/page_head.js";
 
-/** @import {Deleted, JobView, ProjectCard} from "../shared/http_types" */
+/**
+ * @import {Deleted, JobView, ProjectCard, ProjectSpace} from "../shared/http_types"
+ * @import {Order} from "./project_list.js"
+ */
 
-const MANY = 12;
+const MANY = 3;
+const STEP = 48; // cards that are drawn at a time: of a thousand, few are looked at
 const RELOAD_AFTER_MS = 100;
 
 /** What the page shows. */
@@ -41,6 +49,13 @@ const state = {
   projects: [],
   /** @type {Map<string, JobView>} */
   jobs: new Map(), // the newest job of each project
+  /** @type {Map<string, ProjectCard[]>} */
+  twins: new Map(), // other projects of the same recording
+  /** @type {Map<string, ProjectSpace>} */
+  spaces: new Map(), // empty for those who may not free any
+  wanted: wantedIn(location.search),
+  most: STEP, // cards
+  processes: false, // whether this person may organize
   reloads: false, // soon
   draws: false, // before the next frame
 };
@@ -62,10 +77,48 @@ function card(id, project) {
       ${project?.finished ? approvalMark(project.approval) : nothing}
       ${project && project.name !== id ? html`<p class="quiet">${id}</p>` : nothing}
       <p class="quiet">${factsOf(project, view)}</p>
+      ${project ? placeOf(project) : nothing}
       ${project?.problem ? html`<p class="error">Damaged: ${project.problem}</p>` : nothing}
     </div>
     ${open ? html`<job-status .view=${view}></job-status>` : nothing}
   </li>`;
+}
+
+/** Tags, archive, space and other projects of the same recording. */
+function placeOf(/** @type {ProjectCard} */ project) {
+  const { id, name, tags, archived } = project;
+  const space = state.spaces.get(id);
+  const twins = state.twins.get(id);
+  const others = (twins ?? []).map((one) => one.name).join(", ");
+  return html`${
+    tags.length || archived
+      ? html`<p class="tags">
+          ${archived ? html`<span class="tag">Archived</span>` : nothing}
+          ${tags.map(
+            (tag) =>
+              html`<button type="button" class="tag" @click=${() => show(`tag:${tag}`)}>
+                ${tag}
+              </button>`,
+          )}
+        </p>`
+      : nothing
+  }
+  ${twins ? html`<p class="quiet">Same recording as ${others}</p>` : nothing}
+  ${
+    state.processes
+      ? html`<p class="organizing">
+          <span class="quiet">${space ? spaceText(space) : nothing}</span>
+          <button type="button" aria-label="Organize ${name}" @click=${() => ask(project)}>
+            Organize
+          </button>
+        </p>`
+      : nothing
+  }`;
+}
+
+function ask(/** @type {ProjectCard} */ project) {
+  const tags = tagCounts(state.projects).map(([tag]) => tag);
+  organize(project, state.spaces.get(project.id), tags, () => Promise.all([reload(), weigh()]));
 }
 
 const thumbnail = (/** @type {ProjectCard | undefined} */ project) =>
@@ -91,11 +144,11 @@ function factsOf(project, view) {
 
 function draw() {
   state.draws = false;
-  const { projects, jobs } = state;
+  const { projects, jobs, wanted, twins, spaces } = state;
   const known = new Set(projects.map((one) => one.id));
   const waiting = [...jobs].filter(([id, { job }]) => !known.has(id) && !job.finished);
-  const wanted = byId("find", HTMLInputElement).value.trim().toLowerCase();
-  const shown = projects.filter(({ name, id }) => `${name} ${id}`.toLowerCase().includes(wanted));
+  const found = chosen(projects, wanted, { twins, spaces });
+  const shown = found.slice(0, state.most);
   /** @type {Array<[string, ProjectCard | undefined]>} */
   const cards = [
     ...waiting.map(([id]) => /** @type {[string, undefined]} */ ([id, undefined])),
@@ -110,8 +163,52 @@ function draw() {
     byId("projects"),
   );
   byId("empty").hidden = projects.length + waiting.length > 0;
-  byId("none").hidden = waiting.length + shown.length > 0 || !wanted;
-  within(document, "label.find").hidden = projects.length <= MANY;
+  byId("none").hidden = cards.length > 0 || !projects.length;
+  byId("more").hidden = shown.length === found.length;
+  byId("more").textContent = `Show more: ${found.length - shown.length} are left`;
+  drawTools();
+}
+
+function drawTools() {
+  const { projects, wanted, twins } = state;
+  const archived = projects.filter((one) => one.archived).length;
+  const tags = tagCounts(projects);
+  const asked = wanted.text || wanted.show || archived || tags.length || twins.size;
+  byId("tools").hidden = projects.length <= MANY && !asked;
+  /** @type {Array<[string, string]>} */
+  const choices = [
+    ["", `All (${projects.length - archived})`],
+    ...tags.map(([tag, n]) => /** @type {[string, string]} */ ([`tag:${tag}`, `${tag} (${n})`])),
+    ["twins", `Same recording twice (${twins.size})`],
+    ["archived", `Archived (${archived})`],
+  ];
+  if (!choices.some(([value]) => value === wanted.show))
+    choices.push([wanted.show, wanted.show.replace(/^tag:/, "")]);
+  const option = (/** @type {[string, string]} */ [value, text], /** @type {string} */ now) =>
+    html`<option value=${value} .selected=${value === now}>${text}</option>`;
+  render(
+    choices.map((one) => option(one, wanted.show)),
+    byId("show"),
+  );
+  render(
+    Object.entries(ORDERS).map((one) => option(one, wanted.order)),
+    byId("order"),
+  );
+}
+
+/** Draws what the tools ask for, from the top; the address of the page asks for the same. */
+function want(/** @type {Partial<typeof state.wanted>} */ changes) {
+  Object.assign(state.wanted, changes);
+  state.most = STEP;
+  history.replaceState(null, "", `${location.pathname}${searchOf(state.wanted)}`);
+  draw();
+}
+
+const show = (/** @type {string} */ value) => want({ show: value });
+
+function showMore() {
+  state.most += STEP;
+  draw();
 }
 
 /** Several jobs may change at once: they are drawn together. */
@@ -124,6 +221,15 @@ function drawSoon() {
 async function reload() {
   state.reloads = false;
   state.projects = (await attempt(byId("message"), listProjects)) ?? state.projects;
+  state.twins = twinsOf(state.projects);
+  draw();
+}
+
+/** Reads the sizes, which take longer than the list. */
+async function weigh() {
+  const spaces = await attempt(byId("message"), listSpaces);
+  if (!spaces) return;
+  state.spaces = new Map(spaces.map((one) => [one.id, one]));
   draw();
 }
 
@@ -168,7 +274,7 @@ async function showTrash() {
 
 async function begin() {
   const { may } = await readCurrentUser();
-  const processes = may.includes("process");
+  const processes = (state.processes = may.includes("process"));
   byId("new").hidden = byId("to-new").hidden = !processes;
   within(document, "main").classList.toggle("alone", !processes);
   const server = await attempt(byId("message"), readServer);
@@ -176,7 +282,9 @@ async function begin() {
     (server?.notices ?? []).map((text) => html`<p class="notice">▲ ${text}</p>`),
     byId("notices"),
   );
-  if (processes) await showTrash();
+  if (!processes) return;
+  await showTrash();
+  await weigh();
 }
 
 watchJobs(
@@ -191,6 +299,17 @@ watchJobs(
     only("page-head").linked = linked;
   },
 );
-byId("find").addEventListener("input", draw);
+byId("find", HTMLInputElement).value = state.wanted.text;
+byId("find").addEventListener("input", (event) => want({ text: targetOf(event).value.trim() }));
+byId("order").addEventListener("change", (event) =>
+  want({ order: /** @type {Order} */ (targetOf(event).value) }),
+);
+byId("show").addEventListener("change", (event) => show(targetOf(event).value));
+byId("tools").addEventListener("submit", (event) => event.preventDefault());
+byId("more").addEventListener("click", showMore);
+new IntersectionObserver(
+  (entries) => entries.some((one) => one.isIntersecting) && showMore(),
+  { rootMargin: "600px" }, // before a person sees the end
+).observe(byId("more"));
 begin();
 reload();
