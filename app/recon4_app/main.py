@@ -33,6 +33,7 @@ from recon4_app.access.people import LOCAL, READER, Permission, allow_anonymous,
 from recon4_app.access.restoring import access_copies, restore_access
 from recon4_app.access.routes_check import check_declared
 from recon4_app.access.startup_notice import startup_notice
+from recon4_app.annotations import routes as annotation_routes
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.deps import Server, ServerParts
 from recon4_app.jobs import choices
@@ -165,7 +166,8 @@ def _routes() -> list[BaseRoute]:
     more = (choices, server_routes, metrics_routes, docs_pages)
     for part in (*more, reference_routes, align_routes, site_routes):
         router.include_router(part.router)
-    router.include_router(acknowledgment_routes.router)
+    for part in (acknowledgment_routes, annotation_routes):
+        router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
     for part in (review_routes, slice_routes, map_view_routes, rig_routes, storage_routes):

@@ -12,7 +12,7 @@ from recon4.progress import Progress
 from recon4.review.audit import audit_review
 from recon4.review.newest_approval import APPROVALS, accept_as_it_is
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
-from recon4.store.audit import audit, audit_seals
+from recon4.store.audit import LATER_FOLDERS, audit, audit_seals
 from recon4.store.hashing import files_below
 from recon4.store.project import is_project, loose_files
 from recon4.store.seal import (
@@ -192,9 +192,9 @@ def accept(path: Path) -> Path | None:
     if not is_project(path):
         raise StoreError(f"{path} is not a recon4 project")
     (path / SEALS).unlink(missing_ok=True)
-    slices = [f"slices/{name}" for name in files_below(path / "slices")]
+    later = [f"{one}/{name}" for one in LATER_FOLDERS for name in files_below(path / one)]
     journal = ["decisions.sqlite"] if (path / "decisions.sqlite").exists() else []
-    adopt(path, [*loose_files(path), *journal, *slices])
+    adopt(path, [*loose_files(path), *journal, *later])
     return accept_as_it_is(path)
 
 

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 from pathlib import Path
 
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.export.cells import safe_cell
+from recon4.export.geojson import MapSystem, collection, feature
 from recon4.export.tuning import FINDING_EXPORT
 from recon4.findings.summary_notes import SaidFinding, findings_in
 from recon4.geometry.se3 import Array
-from recon4.georeference.crs import CrsTransform, to_geodetic
 from recon4.georeference.crs_file import read_crs
-from recon4.georeference.site_grid import SiteGrid
 from recon4.model.trajectory import Trajectory
 from recon4.review.state import read_summary
 from recon4.store.arrays import load_trajectory
@@ -24,8 +22,6 @@ from recon4.store.atomic import write_text
 from recon4.store.project import read_artifacts
 
 ENDINGS = (".csv", ".geojson")
-MapSystem = CrsTransform | SiteGrid
-"""Where a map has its coordinates."""
 _STAGES = ("level", "map_2d")
 """Whose trajectory the map has, of each kind of walk."""
 _COLUMNS = ("kind", "level", "title", "start_s", "end_s", "sensor", "direction", "text", "remedy")
@@ -102,36 +98,11 @@ def _table(findings: list[SaidFinding], lines: list[Array], place: MapSystem | N
 
 def _geometries(findings: list[SaidFinding], lines: list[Array], place: MapSystem | None) -> str:
     """A feature a finding: its stretch of the walk, a point, or no geometry."""
-    frame = "map frame: x, y, z [m]; the map is not georeferenced"
-    if isinstance(place, CrsTransform):
-        frame = "WGS 84: longitude, latitude [deg], ellipsoidal height [m]"
-    elif place is not None:
-        frame = "grid of the site: easting, northing, height [m]"
     features = [
-        {
-            "type": "Feature",
-            "geometry": _geometry(line, place),
-            "properties": _properties(finding) | {"coordinates": frame},
-        }
+        feature(line, place, _properties(finding))
         for finding, line in zip(findings, lines, strict=True)
     ]
-    whole = {"type": "FeatureCollection", "features": features}
-    return json.dumps(whole, ensure_ascii=False, indent=1) + "\n"
-
-
-def _geometry(line: Array, place: MapSystem | None) -> dict[str, object] | None:
-    if not len(line):
-        return None
-    p = line
-    if isinstance(place, SiteGrid):
-        p = place.to_crs(line)
-    elif place is not None:
-        lat_rad, lon_rad, height_m = to_geodetic(place.origin, line)
-        p = np.stack([np.rad2deg(lon_rad), np.rad2deg(lat_rad), height_m], axis=1)
-    positions = [[round(x, 9), round(y, 9), round(z, 3)] for x, y, z in p.tolist()]
-    if np.ptp(line, axis=0).max() == 0.0:
-        return {"type": "Point", "coordinates": positions[0]}
-    return {"type": "LineString", "coordinates": positions}
+    return collection(features)
 
 
 def _properties(finding: SaidFinding) -> dict[str, object]:

@@ -58,7 +58,20 @@ class Terrain:
         return GeoRaster(pixels.astype(np.float32), self.plane, self.grid, TERRAIN.nodata)
 
 
-def terrain(tiles: TileSet, kind: TerrainKind, *, cell_m: float) -> Terrain:
+@dataclass(frozen=True, slots=True)
+class TerrainPart:
+    """A part of a map."""
+
+    window: SliceWindow
+    """Seen from above [m]."""
+    low_m: float = -np.inf
+    high_m: float = np.inf
+    """Points below and above are left out, as a ceiling [m]."""
+
+
+def terrain(
+    tiles: TileSet, kind: TerrainKind, *, cell_m: float, part: TerrainPart | None = None
+) -> Terrain:
     """Heights of the ground (``dtm``) or of what is highest (``dsm``), cell by cell.
 
     The ground is found by a progressive morphological filter (Zhang et al. 2003) on the lowest
@@ -69,42 +82,75 @@ def terrain(tiles: TileSet, kind: TerrainKind, *, cell_m: float) -> Terrain:
         tiles: The map.
         kind: Which surface.
         cell_m: Edge of a cell [m].
+        part: Only this part of the map; tiles beside it are not read.
 
     Raises:
         ConfigError: If the map is empty or the raster too large.
     """
-    grid = _grid(tiles, cell_m)
+    part = part or TerrainPart(_window(tiles))
+    grid = _grid(part.window, cell_m)
     shape, ground = (grid.height, grid.width), kind == "dtm"
     edge = np.full(shape, np.inf if ground else -np.inf).ravel()
-    for rows, z_m in _cells(tiles, grid, ground=ground):
+    for rows, z_m in _cells(tiles, grid, part, ground=ground):
         (np.minimum if ground else np.maximum).at(edge, rows, z_m)
     lowest = edge.reshape(shape)
     if ground:
         lowest = np.where(_is_ground(lowest, cell_m), lowest, np.nan)
     lowest[~np.isfinite(lowest)] = np.nan
-    height, sd = _means(tiles, grid, lowest, ground=ground)
+    points = _cells(tiles, grid, part, ground=ground)
+    height, sd = _means(points, lowest)
     return Terrain(kind, grid, height, sd, _position_sd(tiles))
 
 
-def _grid(tiles: TileSet, cell_m: float) -> RasterGrid:
+def spacing_m(tiles: TileSet, part: TerrainPart) -> float:
+    """Distance of neighboring points of a part of a map, seen from above where it was seen [m].
+
+    The median over cells of `TERRAIN.density_m` that have points; 0 if none has.
+
+    Raises:
+        ConfigError: If the part is too large.
+    """
+    grid = _grid(part.window, TERRAIN.density_m)
+    counts = np.zeros(grid.width * grid.height)
+    for rows, _ in _cells(tiles, grid, part, ground=False):
+        counts += np.bincount(rows, minlength=len(counts))
+    seen = counts[counts > 0.0]
+    return float(TERRAIN.density_m / np.sqrt(np.median(seen))) if len(seen) else 0.0
+
+
+def _window(tiles: TileSet) -> SliceWindow:
     if not len(tiles):
         raise ConfigError("the map has no points, there is no terrain")
     low, high = (np.asarray(corner)[:2] for corner in tiles.bounds_m)
+    return SliceWindow(*low.tolist(), *high.tolist())
+
+
+def _grid(window: SliceWindow, cell_m: float) -> RasterGrid:
+    """Whole cells, so that the same place has the same cells in any part of a map."""
+    low, high = np.array([window.left, window.bottom]), np.array([window.right, window.top])
     low, high = np.floor(low / cell_m) * cell_m, (np.floor(high / cell_m) + 1.0) * cell_m
     return RasterGrid(SliceWindow(*low.tolist(), *high.tolist()), cell_m)
 
 
 def _cells(
-    tiles: TileSet, grid: RasterGrid, *, ground: bool
+    tiles: TileSet, grid: RasterGrid, part: TerrainPart, *, ground: bool
 ) -> Iterator[tuple[NDArray[np.int64], Array]]:
     """Cell and height of points, tile by tile; of the ground only those of level surfaces."""
+    window = grid.window
+    rounding_m = 1e-4  # of points at the edge of a map
+    low = np.array([window.left - rounding_m, window.bottom - rounding_m, part.low_m])
+    high = np.array([window.right + rounding_m, window.top + rounding_m, part.high_m])
     for tile in tiles:
-        columns = tile.read(["xyz", "normal"])
+        if np.any(np.array(tile.high_m) < low) or np.any(np.array(tile.low_m) > high):
+            continue
+        columns = tile.read(["xyz", "normal"] if ground else ["xyz"])
         p = columns["xyz"].astype(np.float64) + tile.origin_m
+        inside = np.all((p >= low) & (p <= high), axis=1)
         if ground:
-            p = p[columns["normal"][:, 2] > TERRAIN.level]
-        column = ((p[:, 0] - grid.window.left) / grid.pixel_m).astype(np.int64)
-        row = ((grid.window.top - p[:, 1]) / grid.pixel_m).astype(np.int64)
+            inside &= columns["normal"][:, 2] > TERRAIN.level
+        p = p[inside]
+        column = ((p[:, 0] - window.left) / grid.pixel_m).astype(np.int64)
+        row = ((window.top - p[:, 1]) / grid.pixel_m).astype(np.int64)
         column, row = np.clip(column, 0, grid.width - 1), np.clip(row, 0, grid.height - 1)
         yield row * grid.width + column, p[:, 2]
 
@@ -128,12 +174,12 @@ def _is_ground(lowest: Array, cell_m: float) -> NDArray[np.bool_]:
 
 
 def _means(
-    tiles: TileSet, grid: RasterGrid, edge: Array, *, ground: bool
+    points: Iterator[tuple[NDArray[np.int64], Array]], edge: Array
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Mean height of the points near the lowest or highest one, and their deviation, (H, W)."""
     flat = edge.ravel()
     count, total, squares = np.zeros((3, len(flat)))
-    for rows, z_m in _cells(tiles, grid, ground=ground):
+    for rows, z_m in points:
         off = z_m - flat[rows]
         near = np.abs(off) <= TERRAIN.surface_m
         count += np.bincount(rows[near], minlength=len(flat))

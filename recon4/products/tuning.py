@@ -201,6 +201,8 @@ class TerrainTuning:
     """Most heights of contours."""
     shortest_m: float = 1.0
     """A shorter contour is left out [m]."""
+    density_m: float = 0.25
+    """Edge of the cells in which points are counted [m]."""
     border_m: float = 0.5
     """The base of a volume is fitted to the ground this near to the border of its polygon [m]."""
     border_cells: int = 8

@@ -69,11 +69,11 @@ def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> S
     no point within the radius, if they are not flat (an edge, a pole: no point of it is known to
     be the surveyed one), or if the foot lies beside them, where the plane is only extrapolated.
     """
-    points = _points_near(tiles, p_map, radius_m)
+    points = points_near(tiles, p_map, radius_m)
     if not len(points):
         return None
     nearest = points[np.argmin(np.linalg.norm(points - p_map, axis=1))]
-    plane = _plane_at(_points_near(tiles, nearest, PICKS.plane_m))
+    plane = _plane_at(points_near(tiles, nearest, PICKS.plane_m))
     if plane is None:
         return None
     middle, n = plane
@@ -89,12 +89,12 @@ def measured_directions(tiles: TileSet, plane: SlicePlane, p_map: Array) -> Arra
     A person sees the two of the slice. Across it the point is any of the slab, unless it lies on
     a surface: then also across the surface.
     """
-    surface = _plane_at(_points_near(tiles, p_map, PICKS.plane_m))
+    surface = _plane_at(points_near(tiles, p_map, PICKS.plane_m))
     seen = plane.axes[:2]
     return seen if surface is None else np.vstack([seen, surface[1]])
 
 
-def _points_near(tiles: TileSet, p_map: Array, radius_m: float) -> Array:
+def points_near(tiles: TileSet, p_map: Array, radius_m: float) -> Array:
     """Points of the map in a ball [m], (N, 3)."""
     low, high = p_map - radius_m, p_map + radius_m
     near = [np.empty((0, 3))]

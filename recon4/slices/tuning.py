@@ -171,6 +171,52 @@ PICKS = PickTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class SnapTuning:
+    """Snapping of a pick to a plane, an edge or a corner."""
+
+    around: tuple[float, float] = (0.3, 0.6)
+    """Least and largest radius in which planes are looked for [m]: of a corner within less, a plane
+    across it would have more points than its walls."""
+    times: float = 3.0
+    """It is as many times the reach of the pick, within these."""
+    most_points: int = 8000
+    """More points are thinned out evenly."""
+    planes: int = 3
+    """Planes that are looked for, the largest first."""
+    hypotheses: int = 160
+    """Of each plane: with a third of the points on it one of them is right (1 - 5e-3)."""
+    near_m: float = 0.02
+    """A point this near is on a plane that three points make [m]."""
+    fitted_m: tuple[float, float] = (0.004, 0.02)
+    """Least and largest distance of a point from its plane after the fit [m]."""
+    sigmas: float = 3.0
+    """It is as many standard deviations of the points, within these."""
+    rounds: int = 4
+    """Of the fit."""
+    guard_m: float = 0.04
+    """What is nearer to another plane does not count in the last fit [m]."""
+    least_points: int = 40
+    """With fewer there is no plane."""
+    least_width_m: float = 0.015
+    """Least standard deviation of a plane's points along its narrower side [m]: a line is none."""
+    contrast: float = 0.5
+    """Of the points within three times `near_m`, as many are within it; of a bush, a third."""
+    apart: float = 0.94
+    """Planes with a larger cosine between their normals do not meet in an edge (20°)."""
+    support_m: float = 0.06
+    """Each plane has points this near to where a pick snaps to [m]."""
+    support_times: float = 3.0
+    """Or this many times as near as its points are to each other, if that is more."""
+    support_points: int = 5
+    """As many."""
+    grazing: float = 0.1
+    """Least cosine between ray and normal: seen more flatly, the ray does not say where [-]."""
+
+
+SNAPS = SnapTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class PlacementTuning:
     """Where the coordinates of a reference belong."""
 

@@ -29,6 +29,8 @@ from recon4.store.sqlite_files import connect_to_read
 from recon4.store.stage import damage_of, read_manifest
 
 _JOURNAL = "decisions.sqlite"
+LATER_FOLDERS = ("annotations", "slices")
+"""Folders of a project that are written after a run; their files are sealed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,11 +117,11 @@ def content_damage(path: Path) -> list[str]:
 
 
 def _later_files(root: Path) -> Iterator[str]:
-    """Files that are written after a run: decisions and slices."""
+    """Files that are written after a run: decisions, slices, notes and saved views."""
     if (root / _JOURNAL).exists():
         yield _JOURNAL
-    if (root / "slices").is_dir():
-        yield from (f"slices/{name}" for name in files_below(root / "slices"))
+    for folder in LATER_FOLDERS:
+        yield from (f"{folder}/{name}" for name in files_below(root / folder))
 
 
 def _ledger(root: Path, damaged: list[str]) -> tuple[list[FinishedStage], set[str]]:

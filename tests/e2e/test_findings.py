@@ -108,7 +108,7 @@ def kept_stretch(viewer):
 def test_a_finding_flies_to_its_stretch_in_the_viewer_and_marks_it(found, page, screenshot):
     page.goto(f"{found.url}/projects/office/")
     for finding, times in ((WEAK, "40.0 s to 44.0 s"), (LOST, "20.0 s to 25.0 s")):
-        entry(page, finding).get_by_role("link", name=f"Show in the map: {times}").click()
+        entry(page, finding).get_by_role("link", name=f"In the graph: {times}").click()
         looks_at(page.frames[1], finding)
     if page.viewport_size["width"] > 1000:  # on a phone the panel is folded
         slider = page.frames[1].locator(".mantine-Slider-markLabel", has_text="20.0 s to 25.0 s")
@@ -132,7 +132,7 @@ def test_a_finding_chosen_before_the_viewer_has_loaded_is_opened_there(found, pa
     page.route("**/viewer/", answer_the_second)
     page.goto(f"{found.url}/projects/office/")
     page.locator("iframe").wait_for()
-    entry(page, WEAK).get_by_role("link", name="Show in the map: 40.0 s to 44.0 s").click()
+    entry(page, WEAK).get_by_role("link", name="In the graph: 40.0 s to 44.0 s").click()
 
     page.wait_for_function(
         "() => { const viewer = document.querySelector('iframe');"
@@ -184,13 +184,26 @@ def test_each_finding_has_its_level_code_text_and_remedy(found, page, screenshot
 
 
 @looks("desktop light")
-def test_the_bar_of_other_pages_links_to_the_stretch_on_the_page_of_the_project(found, page):
+def test_a_finding_flies_to_its_stretch_on_the_page_of_the_map_and_marks_it(
+    found, page, screenshot
+):
     page.goto(f"{found.url}/projects/office/slices/")
     page.locator("map-verdict summary").first.click()
     with page.expect_popup() as opened:
         entry(page, WEAK).get_by_role("link", name="Show in the map").click()
+    shown = opened.value
+    assert "/projects/office/map/?span=40,44&place=" in shown.url
 
-    assert "/projects/office/#span=40,44&place=" in opened.value.url
+    expect(shown).to_have_url(re.compile("camera=.*&span=40,44"))
+    expect(shown.locator("#overlay line.stretch").first).to_be_attached()
+    camera = parse_qs(urlsplit(shown.url).query)["camera"][0].split(",")
+    part = WALK.T_a_b.t[400:441]
+    middle = (part.min(axis=0) + part.max(axis=0)) / 2.0
+    np.testing.assert_allclose([float(x) for x in camera[:3]], middle, atol=0.02)
+    screenshot(shown, "map-finding")
+    shown.keyboard.press("Escape")
+    expect(shown.locator("#overlay line.stretch")).to_have_count(0)
+    expect(shown).not_to_have_url(re.compile("span="))
 
 
 @looks("desktop light")

@@ -110,6 +110,39 @@ def test_a_measured_distance_is_that_of_the_walls(server, page):
 
 
 @looks("desktop light")
+def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(server, page, screenshot):
+    opened(page, server, f"?{TOP}&z=..")
+    panel = page.locator("#panel")
+    expect(panel.get_by_role("button", name="New note")).to_be_visible()
+
+    page.keyboard.press("n")
+    page.mouse.click(*at(page, 0.0, 2.5))
+    panel.get_by_label("Note at").fill("crack over the door")
+    panel.get_by_role("button", name="Keep the note").click()
+    note = panel.locator(".notes li")
+    expect(note).to_contain_text("crack over the door")
+    note.get_by_role("button", name="Mark as done").click()
+    expect(note).to_contain_text("✓ Done · local")
+    expect(page.locator("#overlay .pin.note.done")).to_have_count(1)
+    panel.get_by_label("Name of this view").fill("From above")
+    panel.get_by_role("button", name="Save this view").click()
+
+    page.locator("#map").focus()
+    page.keyboard.press("r")
+    for x in (0.0, ROOM_M[0]):
+        page.mouse.click(*at(page, x, 2.5))
+    plot = page.get_by_role("img", name=re.compile("Profile: .* points"))
+    expect(plot).to_be_visible()
+    expect(page.get_by_role("link", name="DXF")).to_have_attribute("href", re.compile("flat"))
+    screenshot(page, "map-profile")
+
+    panel.get_by_role("button", name="crack over the door", exact=True).click()
+    expect(page).to_have_url(re.compile(r"camera=-?0(\.0\d*)?,2\."))
+    panel.get_by_role("button", name=re.compile("^From above")).click()
+    expect(page).to_have_url(re.compile(r"camera=8,5,1\.5,0,-90,14,1"))
+
+
+@looks("desktop light")
 def test_a_link_opens_exactly_the_same(server, page, context):
     opened(page, server, f"?{TOP}&z=..2&color=time&layers=walk&depth=0")
     before = page.url

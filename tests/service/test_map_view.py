@@ -1,11 +1,15 @@
 """The points of the page *Map* over HTTP, on a real server with real child processes."""
 
+import json
 from itertools import pairwise
 
+import httpx
 import numpy as np
 import pytest
 
+from recon4.archive.verify import verify_project
 from recon4.mapping.tiles import TileSet
+from recon4.progress import Silent
 from recon4.store.project import read_artifacts
 from tests.project_builder import ROOM_M, build_project
 from tests.served import served
@@ -32,8 +36,9 @@ def index_of(server):
 
 
 def points(server, **query):
-    key = index_of(server)["key"]
-    return server.get(f"{BASE}/{key}/points", params={"stored": "xyz"} | query)
+    index = index_of(server)
+    usual = {"stored": "xyz", "version": index["version"]}
+    return server.get(f"{BASE}/{index['key']}/points", params=usual | query)
 
 
 def places(data, tile):
@@ -93,8 +98,10 @@ def test_the_sample_is_the_first_points_of_every_tile(server):
     index = index_of(server)
     address = f"{BASE}/{index['key']}/sample"
 
-    data = server.get(address, params={"stored": "xyz"}).content
-    part = server.get(address, params={"stored": "xyz"}, headers={"Range": "bytes=0-99"})
+    data = server.get(address, params={"stored": "xyz", "version": index["version"]}).content
+    part = server.get(
+        address, params={"stored": "xyz", "version": 1}, headers={"Range": "bytes=0-99"}
+    )
 
     at = 0
     for row, tile in enumerate(index["tiles"]):
@@ -112,7 +119,7 @@ def test_a_chunk_is_kept_for_ever_and_not_sent_again(server):
 
     again = server.get(
         f"{BASE}/{key}/points",
-        params={"stored": "xyz", "tile": 0, "start": 0, "stop": 10},
+        params={"stored": "xyz", "version": 1, "tile": 0, "start": 0, "stop": 10},
         headers={"If-None-Match": tag},
     )
 
@@ -141,7 +148,7 @@ def test_hostile_parameters_are_refused(server, query, status):
 
 @pytest.mark.parametrize("key", ["..%2f..", "0" * 64, "x", "map"])
 def test_a_map_that_is_none_of_the_project_is_not_found(server, key):
-    address = f"{BASE}/{key}/points?stored=xyz&tile=0&start=0&stop=1"
+    address = f"{BASE}/{key}/points?stored=xyz&version=1&tile=0&start=0&stop=1"
 
     assert server.get(address).status_code == 404
     assert server.get("/api/projects/young/map").status_code == 404
@@ -182,6 +189,103 @@ def test_a_map_that_was_made_again_is_not_measured_in(server):
     answer = pick(server, key="0" * 64)
 
     assert answer.status_code == 409 and "made again" in answer.json()["detail"]
+
+
+SNAP = {"snap_rad": 0.03}
+
+
+def test_a_pick_near_a_corner_of_the_room_is_that_corner(server):
+    def snapped(target, **changes):
+        direction = np.array(target) - EYE
+        direction /= np.linalg.norm(direction)
+        found = pick(server, direction=direction.tolist(), pixel_rad=0.003, **SNAP | changes)
+        return found.json()["snap"]
+
+    corner = snapped((ROOM_M[0], 0.05, 0.06))
+    edge = snapped((15.2, 0.05, 0.02))
+    wall = snapped((ROOM_M[0], 1.2, 1.0))
+    level = snapped((ROOM_M[0], 0.05, 0.06), planes=[(0.0, 0.0, 1.0, -0.3)])
+
+    assert (corner["kind"], edge["kind"], wall["kind"]) == ("corner", "edge", "plane")
+    assert corner["p_map"] == pytest.approx([ROOM_M[0], 0.0, 0.0], abs=0.01)
+    assert edge["p_map"][1:] == pytest.approx([0.0, 0.0], abs=0.01)
+    assert wall["p_map"][0] == pytest.approx(ROOM_M[0], abs=0.01) and wall["sd_m"] < 0.02
+    assert level is None or level["kind"] != "corner"  # the floor is clipped
+    assert pick(server).json()["snap"] is None
+
+
+def test_a_volume_is_that_of_what_is_shown(server):
+    polygon = [(5.0, 2.0), (7.0, 2.0), (7.0, 4.0), (5.0, 4.0)]
+    ask = {"key": index_of(server)["key"], "polygon": polygon, "high_m": 1.0}
+
+    over = server.post(f"{BASE}/volume", json=ask | {"base_m": -0.5}).json()
+    fitted = server.post(f"{BASE}/volume", json=ask).json()
+    nothing = server.post(f"{BASE}/volume", json=ask | {"low_m": 0.5})
+
+    assert (over["area_m2"], over["below_m3"]) == (pytest.approx(4.0), 0.0)
+    assert over["above_m3"] == pytest.approx(2.0, rel=0.02)
+    assert fitted["above_m3"] < 0.1 and abs(fitted["base_m"]) < 0.05
+    assert nothing.status_code == 422 and "nothing was seen" in nothing.json()["detail"]
+    assert server.post(f"{BASE}/volume", json=ask | {"key": "0" * 64}).status_code == 409
+    assert server.post(f"{BASE}/volume", json=ask | {"polygon": polygon[:2]}).status_code == 422
+
+
+def test_a_page_of_another_layout_receives_no_points(server):
+    key = index_of(server)["key"]
+
+    for address in (f"{BASE}/{key}/sample?stored=xyz", f"{BASE}/{key}/points?stored=xyz&tile=0"):
+        more = "&start=0&stop=2" if "points" in address else ""
+        answer = server.get(f"{address}{more}&version=0")
+        assert answer.status_code == 409 and "reload the page" in answer.json()["detail"]
+        assert server.get(address + more).status_code == 422
+
+
+def test_marks_of_the_operator_are_on_the_walk(server):
+    marks = server.root / "office/recordings/marks.jsonl"
+    marks.parent.mkdir()
+    began_ns = 1_700_000_000_000_000_000
+    lines = [
+        {"t_ns": began_ns + 10_000_000_000, "what": "point", "text": "door", "who": "otto"},
+        {"t_ns": began_ns + 11_000_000_000, "what": "pause"},
+        {"t_ns": began_ns - 90_000_000_000, "what": "place", "text": "before"},
+        {"t_ns": "now", "what": "point"},
+    ]
+    marks.write_text("\n".join([*map(json.dumps, lines), "{", ""]))
+
+    walk = server.get(f"{BASE}/walk").json()
+    marks.unlink()
+
+    (mark,) = walk["marks"]
+    at = walk["t_s"].index(mark["t_s"])
+    assert (mark["text"], mark["who"], mark["t_s"]) == ("door", "otto", 10.0)
+    assert mark["p_map"] == pytest.approx(walk["positions_m"][at], abs=1e-3)
+    assert walk["marks_left_out"] == 3
+    assert server.get(f"{BASE}/walk").json()["marks"] == []
+
+
+def test_a_note_is_kept_changed_listed_and_exported(server):
+    notes = "/api/projects/office/notes"
+    place = [1.5, 2.5, 0.25]
+    key = index_of(server)["key"]
+
+    note = server.post(notes, json={"p_map": place, "text": "a crack", "key": key}).json()
+    change = {"revision": note["revision"], "status": "done"}
+    with httpx.Client(base_url=server.url) as client:
+        done = client.patch(f"{notes}/{note['id']}", json=change)
+        late = client.patch(f"{notes}/{note['id']}", json=change | {"status": "open"})
+        listed = client.get(notes).json()
+        (feature,) = client.get(f"{notes}.geojson").json()["features"]
+        gone = [client.delete(f"{notes}/{note['id']}").status_code for _ in range(2)]
+
+    assert listed == {"may_change": True, "notes": [done.json()]}
+    assert late.status_code == 409 and "meanwhile" in late.json()["detail"]
+    assert feature["geometry"] == {"type": "Point", "coordinates": place}
+    about = feature["properties"]
+    assert (about["text"], about["status"], about["who"]) == ("a crack", "done", "local")
+    assert "not georeferenced" in about["coordinates"]
+    assert server.post(notes, json={"p_map": place, "text": "", "key": key}).status_code == 422
+    assert (gone, server.get(notes).json()["notes"]) == ([204, 404], [])
+    assert verify_project(server.root / "office", Silent()).damaged == ()
 
 
 def test_the_walk_has_times_positions_and_nodes(server):

@@ -309,7 +309,14 @@ test("the address keeps the whole state", () => {
     camera: { target: [1.5, -2, 0.25], yaw: 0.5, pitch: -0.5, distance: 7.125, parallel: true },
     color: "time",
     lo: 3,
-    layers: ["walk", "findings"],
+    layers: ["findings", "walk"],
+    mark: {
+      span: [40, 44.5],
+      place: [
+        [1, 2, 0],
+        [3, 4, 0.5],
+      ],
+    },
     cutCeiling: false,
     depth: false,
     size: 2,
@@ -321,6 +328,15 @@ test("the address keeps the whole state", () => {
           [0, 0.5, 2.25],
         ],
         name: "Door, left",
+      },
+      {
+        kind: "profile",
+        points: [
+          [0, 0, 1],
+          [5, 0.5, 1],
+        ],
+        name: "Profile 1",
+        figure: 0.35,
       },
     ],
     clip: {
@@ -339,7 +355,7 @@ test("the address keeps the whole state", () => {
 test("an address that is not ours shows the usual", () => {
   const query =
     "camera=1,2&color=__proto__&z=a..b&box=1,2,3,-1,1,1,0&section=1,1,1,1,1&size=1e9&m=x;1,2,3;n" +
-    "&m=distance;1,2,3;n&lo=NaN&camera=1,2,3,4,5,0,0&layers=all";
+    "&m=distance;1,2,3;n&m=profile:x;1,2,3;n&lo=NaN&camera=1,2,3,4,5,0,0&layers=all";
   const { camera, color, clip, measurements, lo, layers } = parse(query);
   assert.deepEqual(
     { camera, color, clip, measurements, lo, layers },

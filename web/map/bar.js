@@ -19,13 +19,17 @@ import { VIEWS } from "./views.js";
  * @property {() => void} panel
  * @property {() => void} help
  * @property {(next: Partial<import("./state.js").MapState>) => void} change
- * @property {() => void} save
+ * @property {(name: string) => void} save
  * @property {(query: string) => void} open
- * @property {(name: string) => void} forget
+ * @property {(view: string) => void} forget
+ * @property {ReturnType<typeof import("./notes.js").notesOf>} notes
+ * @property {ReturnType<typeof import("./profile.js").profileOf>} profile
  * @property {() => void} csv
  * @property {(time: number) => void} seek
  * @property {(p: number[]) => void} goTo
  * @property {() => void} faceSection
+ * @property {() => void} snapping
+ * @property {(pin: import("./places.js").Pin) => void} choosePin
  */
 
 /** @type {Array<[string, string]>} */
@@ -36,16 +40,20 @@ export const KEYS = [
   ["Double click", "Fly to a point"],
   ["Two fingers", "Zoom and move"],
   ["Arrows", "Move"],
+  ["Space", "Pick what is in the middle: every tool by keyboard"],
   ["+ -", "Nearer, farther"],
   ["F", "All of the map"],
   ["5 7 1 2 3 4", "Oblique, top, front, back, right, left"],
   ["O", "Perspective or parallel"],
   ["M H A Q I", "Measure a distance, height, angle, area, point"],
-  ["Enter", "End the corners of an area"],
+  ["R V", "Profile of a strip, volume over a plane"],
+  ["S", "Snap to corners, edges and planes, or not"],
+  ["Enter", "End the corners of an area or a volume"],
   ["B", "Clip box: drag a rectangle"],
   ["X", "Section: drag a line"],
   ["Z", "With and without ceilings"],
   ["C", "Next color"],
+  ["N", "Note: click a place"],
   ["G", "Stand on the walk: click a place"],
   ["P", "Fly along the walk"],
   ["W", "Show the walk"],
@@ -64,6 +72,7 @@ const tool = (text, key, act, pressed) =>
   html`<button
     type="button"
     title=${`${text} (${key})`}
+    aria-keyshortcuts=${key.length === 1 ? key : nothing}
     aria-pressed=${pressed === undefined ? nothing : String(pressed)}
     @click=${act}
   >
@@ -78,6 +87,8 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
     ["angle", "A"],
     ["area", "Q"],
     ["point", "I"],
+    ["profile", "R"],
+    ["volume", "V"],
   ]);
   render(
     html`<div role="toolbar" aria-label="View">
@@ -98,6 +109,7 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
         )}
         ${tool("Box", "B", () => act.tool("box"), current === "box")}
         ${tool("Section", "X", () => act.tool("section"), current === "section")}
+        ${page.notes.may ? tool("Note", "N", () => act.tool("note"), current === "note") : nothing}
         ${tool("Stand here", "G", () => act.tool("stand"), current === "stand")}
         ${tool("Fly", "P", act.fly, flight.on)}
       </div>

@@ -11,9 +11,12 @@ import { VIEWS } from "./views.js";
  * @property {() => unknown} walk shown or not
  * @property {() => unknown} end of any tool
  * @property {() => unknown} finish of a measurement
+ * @property {() => unknown} press what is in the middle of the image
  * @property {(x: number, y: number) => unknown} step by a part of the image
  * @property {(times: number) => unknown} zoom nearer (below 1) or farther
  */
+
+const OF_CONTROLS = ["Enter", " "]; // they press the control that has the focus
 
 /**
  * @param {Act} act
@@ -28,9 +31,13 @@ const keysOf = (act, more) => ({
   a: () => act.tool("measure", "angle"),
   q: () => act.tool("measure", "area"),
   i: () => act.tool("measure", "point"),
+  r: () => act.tool("measure", "profile"),
+  v: () => act.tool("measure", "volume"),
+  s: act.snapping,
   b: () => act.tool("box"),
   x: () => act.tool("section"),
   g: () => act.tool("stand"),
+  n: () => act.tool("note"),
   p: act.fly,
   l: act.share,
   t: act.panel,
@@ -43,6 +50,7 @@ const keysOf = (act, more) => ({
   "?": act.help,
   Escape: more.end,
   Enter: more.finish,
+  " ": more.press,
   ArrowLeft: () => more.step(-1, 0),
   ArrowRight: () => more.step(1, 0),
   ArrowUp: () => more.step(0, 1),
@@ -60,12 +68,14 @@ const keysOf = (act, more) => ({
 export function listenToKeys(act, more) {
   const keys = keysOf(act, more);
   addEventListener("keydown", (event) => {
-    const typing = targetOf(event).closest?.("input:not([type=checkbox], [type=range]), select");
+    const typing = targetOf(event).closest?.(
+      "input:not([type=checkbox], [type=range]), select, textarea",
+    );
     if ((typing && event.key !== "Escape") || event.ctrlKey || event.metaKey || event.altKey)
       return;
     if (byId("help", HTMLDialogElement).open) return;
     const control = targetOf(event).closest?.("button, summary, a, input");
-    if (control && (event.key === "Enter" || event.key.startsWith("Arrow"))) return;
+    if (control && (OF_CONTROLS.includes(event.key) || event.key.startsWith("Arrow"))) return;
     const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;
     event.preventDefault();

@@ -1,27 +1,44 @@
 // The page of the map: the delivered points in 3-D. The address of the page is the state.
 
 import { idHere } from "../shared/address.js";
-import { pointReader, projectUrl, readMapIndex, readMapWalk, readProject } from "../shared/api.js";
+import {
+  pointReader,
+  projectUrl,
+  readMapIndex,
+  readMapWalk,
+  readProject,
+  stretchUrl,
+} from "../shared/api.js";
 import { attempt, byId, html, only, render, say, showError, svg } from "../shared/dom.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
+import { aimOf } from "./aim.js";
 import { drawBar, drawHelp, drawStatus } from "./bar.js";
 import { between, panned, pixelM, rayAt, zoomed } from "./camera.js";
 import { moveByGestures } from "./controls.js";
-import { positionAt, standingAt, walking } from "./flight.js";
+import { flightOf } from "./flying.js";
 import { listenToKeys } from "./keys.js";
+import { markingOf } from "./marking.js";
 import { MapCanvas } from "./map_canvas.js";
-import { toCsv } from "./measure.js";
 import { overlay } from "./overlay.js";
 import * as shown from "./page.js";
+import { notesOf } from "./notes.js";
 import { drawPanel } from "./panel.js";
+import { lineOf, timesOf } from "./places.js";
+import { drawProfile, profileOf } from "./profile.js";
+import { followJobs, takeNews } from "./rebuilt.js";
+import { savedOf, share } from "./saved.js";
 import { format, parse } from "./state.js";
 import { choose, clicked, dragged, face, finish, target } from "./tools.js";
-import { VIEWS, savedViews, saveViews, viewOf } from "./views.js";
+import { togglesOf } from "./toggles.js";
+import { VIEWS, viewOf } from "./views.js";
+import { downloadMeasurements } from "./measured_panel.js";
+import { askVolumes, volumeOf } from "./volumes.js";
 
 /**
  * @import {Camera} from "./camera.js"
+ * @import {Measurement} from "./measure.js"
  * @import {MapState} from "./state.js"
  */
 
@@ -32,9 +49,8 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const TURN_MS = 450;
 const ADDRESS_MS = 250;
 const PANEL_PX = 320;
-const NAME_AGAIN_MS = 1500;
 /** What runs: the canvas, the timer of the address, the turn of the camera. */
-const run = { canvas: /** @type {MapCanvas | null} */ (null), address: 0, turn: 0, flown: 0 };
+const run = { canvas: /** @type {MapCanvas | null} */ (null), address: 0, turn: 0 };
 const place = () => byId("map", HTMLCanvasElement);
 const screen = () => run.canvas?.screen ?? { width: 1, height: 1 };
 const camera = () => page.state.camera ?? all("oblique", false);
@@ -121,6 +137,8 @@ function draw() {
   document.body.classList.toggle("with-panel", page.panel);
   drawBar(byId("bar"), act);
   drawPanel(byId("panel"), act);
+  drawProfile(byId("profile"), profile);
+  askVolumes(draw);
   drawOver();
   drawCaption();
 }
@@ -134,9 +152,14 @@ function drawOver() {
       draft: draft.map(({ p }) => p),
       clip: state.clip,
       heights: shown.heightsShown(),
-      findings: state.layers.includes("findings") ? shown.findingPlaces() : [],
-      drag,
+      pins: shown.pinsShown(),
+      chosen: page.chosen,
+      times: state.mark ? timesOf(state.mark) : "",
+      stretch: state.mark ? lineOf(state.mark, page.walk) : [],
+      drag: drag ?? aim.dragShown(),
+      aim: page.aim.on,
       tool,
+      volumeOf,
     },
   );
   const over = /** @type {unknown} */ (document.getElementById("overlay"));
@@ -163,7 +186,14 @@ const stage = {
   flyTo,
   draw,
   view: (/** @type {string} */ name, /** @type {boolean} */ parallel) => view(name, parallel),
+  stop: () => cancelAnimationFrame(run.turn),
 };
+const { fly, seek } = flightOf(stage);
+const toggles = togglesOf(change);
+const marking = markingOf(stage);
+const notes = notesOf(draw);
+const saved = savedOf(draw);
+const profile = profileOf({ draw, dark: () => dark.matches, change: widened });
 
 function view(/** @type {string} */ name, parallel = camera().parallel) {
   change({ standing: false });
@@ -177,73 +207,16 @@ function fit() {
   flyTo(fitted(camera(), parallel));
 }
 
-function walkOn() {
-  const { flight, walk, state } = page;
-  const last = walk?.t_s.at(-1) ?? 0;
-  if (!flight.on || !walk || flight.time >= last) {
-    flight.on = false;
-    return draw();
-  }
-  const now = performance.now();
-  flight.time = Math.min(last, flight.time + ((now - run.flown) / 1000) * flight.speed);
-  run.flown = now;
-  change({ camera: walking(walk, flight.time, state.camera ?? camera()), standing: true });
-  requestAnimationFrame(walkOn);
-}
-
-function fly() {
-  const { flight, walk } = page;
-  if (!walk?.t_s.length) return;
-  cancelAnimationFrame(run.turn);
-  flight.on = !flight.on;
-  run.flown = performance.now();
-  if (flight.time >= (walk.t_s.at(-1) ?? 0)) flight.time = 0;
-  seek(flight.time);
-  walkOn();
-}
-
-/** Stands on the walk at a time. */
-function seek(/** @type {number} */ time) {
-  const { walk, state } = page;
-  if (!walk) return;
-  page.flight.time = time;
-  const { target: to } = walking(walk, time, camera());
-  const here = positionAt(walk, time);
-  const yaw = Math.atan2(to[0] - here[0], to[1] - here[1]);
-  const clip = { ...state.clip, heights: /** @type {[null, null]} */ ([null, null]) };
-  change({ camera: standingAt(here, yaw, -0.08), standing: true, clip, cutCeiling: false });
-}
-
-async function share() {
-  history.replaceState(null, "", `?${format(page.state)}`);
-  // Browsers have a clipboard on https and on this computer only.
-  await navigator.clipboard?.writeText(location.href);
-  page.reading = navigator.clipboard
-    ? "The link to this view is copied"
-    : "The address of this page is the link to this view: copy it there";
-  draw();
-}
-
-function csv() {
-  const text = toCsv(page.state.measurements, page.index?.crs ?? "");
-  const file = document.createElement("a");
-  file.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
-  file.download = `${id}-measurements.csv`;
-  file.click();
-  setTimeout(() => URL.revokeObjectURL(file.href), NAME_AGAIN_MS);
-}
-
-function save() {
-  const name = `View ${page.saved.length + 1}, ${new Date().toLocaleString()}`;
-  page.saved = [...page.saved, { name, query: format(page.state) }];
-  saveViews(id, page.saved);
-  draw();
-}
-
-function forget(/** @type {string} */ name) {
-  page.saved = page.saved.filter((one) => one.name !== name);
-  saveViews(id, page.saved);
-  draw();
+/**
+ * A profile with another width, also in the list.
+ * @param {Measurement} of
+ * @param {number} width
+ */
+function widened(of, width) {
+  const next = { ...of, figure: width };
+  const { measurements } = page.state;
+  change({ measurements: measurements.map((one) => (one.points === of.points ? next : one)) });
+  return next;
 }
 
 function open(/** @type {string} */ query) {
@@ -254,24 +227,14 @@ function open(/** @type {string} */ query) {
 const goTo = (/** @type {number[]} */ p) =>
   flyTo({ ...camera(), target: [p[0], p[1], p[2]], distance: Math.min(camera().distance, 6) });
 
-function nextColor() {
-  if (!page.index) return;
-  const able = shown.colorsOf(page.index);
-  const next = able[(able.indexOf(shown.colorShown()) + 1) % able.length];
-  change({ color: next, lo: null, hi: null });
-}
+const aim = aimOf(stage, click);
 
-function ceilings() {
-  const { clip, cutCeiling } = page.state;
-  if (!cutCeiling) return change({ cutCeiling: true });
-  change({ cutCeiling: false, clip: { ...clip, heights: [null, null] } });
+/** A click: on a pin if no tool is chosen, else on the map. */
+function click(/** @type {number[]} */ at) {
+  const pin = page.tool === "" ? marking.pinUnder(at) : undefined;
+  if (pin) return marking.choosePin(pin);
+  clicked(at, { ...stage, note: notes.place, profile: profile.show }).catch(showProblem);
 }
-
-const toggleWalk = () => {
-  const { layers } = page.state;
-  const without = layers.filter((one) => one !== "walk");
-  change({ layers: without.length < layers.length ? without : [...layers, "walk"] });
-};
 
 /** @type {import("./bar.js").Act} */
 const act = {
@@ -279,17 +242,25 @@ const act = {
   fit,
   fly,
   seek,
-  share: () => attempt(byId("message"), share),
-  save,
+  share: () => attempt(byId("message"), share).then(draw),
+  save: (name) => attempt(byId("message"), () => saved.keep(name)),
   open,
-  forget,
-  csv,
+  forget: (view) => attempt(byId("message"), () => saved.remove(view)),
+  notes,
+  profile,
+  csv: downloadMeasurements,
   change,
   goTo,
+  choosePin: marking.choosePin,
   parallel: () =>
     change({ camera: { ...camera(), parallel: !camera().parallel }, standing: false }),
   tool: (tool, kind) => choose(tool, stage, kind),
   faceSection: () => face(stage),
+  snapping: () => {
+    page.snapping = !page.snapping;
+    page.reading = page.snapping ? "Picks snap to corners, edges and planes" : "Picks do not snap";
+    draw();
+  },
   whole: () =>
     document.fullscreenElement
       ? document.exitFullscreen()
@@ -305,8 +276,8 @@ const act = {
 function end() {
   page.flight.on = false;
   if (page.tool) choose("", stage);
-  Object.assign(page, { reading: "", draft: [], drag: null });
-  change({ standing: false });
+  Object.assign(page, { reading: "", draft: [], drag: null, chosen: null });
+  change({ standing: false, mark: null });
 }
 
 /** Moves by a part of the image. */
@@ -336,7 +307,7 @@ function listen() {
     dragging: () => page.tool === "box" || page.tool === "section",
     move,
     under,
-    click: (at) => clicked(at, stage).catch(showProblem),
+    click,
     drag: (from, to, done) => dragged(from, to, { ...stage, done }),
     cancel: () => {
       page.drag = null;
@@ -348,43 +319,56 @@ function listen() {
   });
   dark.addEventListener("change", draw);
   listenToKeys(act, {
-    color: nextColor,
-    ceilings,
-    walk: toggleWalk,
+    ...toggles,
     end,
     step,
+    press: aim.press,
     finish: () => finish(stage).catch(showProblem),
     zoom: (times) => move(zoomed(camera(), times)),
   });
+  place().addEventListener("pointerdown", aim.end);
   addEventListener("popstate", () => open(location.search));
+  addEventListener("focus", () => notes.read().catch(showProblem)); // others change them, too
+  only("map-verdict").addEventListener("click", marking.followLinks);
+}
+
+/** A project without points in 3-D shows what it has on its own page, also where a link leads. */
+function passOn() {
+  const { span, place } = Object.fromEntries(new URLSearchParams(location.search));
+  const stretch = [span && `span=${span}`, place && `place=${place}`].filter(Boolean).join("&");
+  if (stretch) return location.replace(stretchUrl(id, stretch));
+  say(
+    byId("message"),
+    html`This project has no points in 3-D. <a href=${projectUrl(id)}>Its page</a> shows what there
+      is.`,
+  );
 }
 
 async function begin() {
   drawHelp(byId("help"));
-  page.saved = savedViews(id);
   const project = await readProject(id);
   page.project = project;
   only("page-head").name = project.name;
   only("map-verdict").facts = factsIn(project.summary);
   document.title = `Map · ${project.name} · recon4`;
-  if (!project.stages.some(({ stage: name }) => name === "map"))
-    return say(
-      byId("message"),
-      html`This project has no points in 3-D. <a href=${projectUrl(id)}>Its page</a> shows what
-        there is.`,
-    );
+  if (!project.stages.some(({ stage: name }) => name === "map")) return passOn();
   const index = (page.index = await readMapIndex(id));
   if (page.state.cutCeiling) page.state.clip.heights = shown.usualHeights(index);
-  run.canvas = new MapCanvas(place(), index, pointReader(id, index.key));
+  run.canvas = new MapCanvas(place(), index, pointReader(id, index));
   run.canvas.onDrawn = drawCaption;
   run.canvas.tiles.onProblem = showProblem;
   new ResizeObserver(draw).observe(place());
   listen();
+  if (takeNews()) page.reading = "The map was made again: this is the new one";
+  followJobs(byId("news"));
   draw();
   place().focus({ preventScroll: true });
   await run.canvas.tiles.readSample(storedOf(shown.colorShown()));
-  const walk = (page.walk = await readMapWalk(id));
+  const lists = [notes, saved].map((one) => one.read().catch(showProblem));
+  const [walk] = await Promise.all([readMapWalk(id), ...lists]);
+  page.walk = walk;
   run.canvas.layers(walk.positions_m, walk.nodes_m);
+  if (page.state.mark && !page.state.camera) marking.mark(page.state.mark);
   draw();
 }
 

@@ -3,13 +3,16 @@
 import { add, dot, lengthOf, minus } from "./camera.js";
 
 /**
- * @typedef {"point" | "distance" | "height" | "angle" | "area"} MeasureKind
+ * @import {MapVolume} from "../shared/http_types"
+ * @typedef {"point" | "distance" | "height" | "angle" | "area" | "profile" | "volume"} MeasureKind
  * @typedef {object} Measurement
  * @property {MeasureKind} kind
  * @property {number[][]} points in the map [m]
  * @property {string} name
  * @property {number[]} [sd] standard deviations of the points' places [m]; NaN = not stated
  * @property {number[][]} [crs] the points in the map's CRS [m]
+ * @property {string[]} [snaps] what each point snapped to; "" = nothing
+ * @property {number | null} [figure] width of a profile, height of the base of a volume [m]
  */
 
 /** @type {Record<MeasureKind, {text: string, least: number, most: number, hint: string}>} */
@@ -19,7 +22,16 @@ export const KINDS = {
   height: { text: "Height", least: 2, most: 2, hint: "Click two points, the lower one first" },
   angle: { text: "Angle", least: 3, most: 3, hint: "Click an end, the corner, the other end" },
   area: { text: "Area", least: 3, most: Infinity, hint: "Click the corners, then press Enter" },
+  profile: { text: "Profile", least: 2, most: 2, hint: "Click where it begins and ends" },
+  volume: {
+    text: "Volume",
+    least: 3,
+    most: 500,
+    hint: "Click the corners around it, then press Enter",
+  },
 };
+export const PROFILE_M = 0.2; // usual width of the strip of a profile
+const VOLUME = { above_m3: NaN, below_m3: NaN, sd_m3: NaN };
 
 const meters = (/** @type {number} */ m) => `${m.toFixed(3)} m`;
 
@@ -61,9 +73,14 @@ export function areaOf(/** @type {number[][]} */ points) {
 export const sdOf = (/** @type {Measurement} */ { sd }) =>
   sd?.length === 2 ? Math.hypot(sd[0], sd[1]) : NaN;
 
-/** What a measurement says, as the figure and its parts. */
-export function resultOf(/** @type {Measurement} */ measurement) {
+/**
+ * What a measurement says, as the figure and its parts.
+ * @param {Measurement} measurement
+ * @param {MapVolume | null} [volume] of a volume, when the server has computed it
+ */
+export function resultOf(measurement, volume = null) {
   const { kind, points } = measurement;
+  if (kind === "volume") return volumeText(volume);
   if (kind === "point") return { value: points[0].map((x) => x.toFixed(3)).join(" "), parts: "" };
   if (kind === "angle") return { value: `${angleOf(points).toFixed(2)}°`, parts: "" };
   if (kind === "area") {
@@ -72,12 +89,29 @@ export function resultOf(/** @type {Measurement} */ measurement) {
     return { value: `${area.toFixed(3)} m²`, parts };
   }
   const { length, horizontal, vertical } = distanceParts(points[0], points[1]);
+  if (kind === "profile") {
+    const width = meters(measurement.figure ?? PROFILE_M);
+    const parts = `strip ${width}, ends ${meters(vertical)} apart in height`;
+    return { value: meters(horizontal), parts };
+  }
   const sd = sdOf(measurement);
-  const known = Number.isFinite(sd) ? `, σ ${(1000 * sd).toFixed(1)} mm by the poses` : "";
+  const known = Number.isFinite(sd) ? `, σ ${(1000 * sd).toFixed(1)} mm` : "";
   if (kind === "height")
     return { value: meters(vertical), parts: `horizontal ${meters(horizontal)}${known}` };
   const parts = `horizontal ${meters(horizontal)}, vertical ${meters(vertical)}${known}`;
   return { value: meters(length), parts };
+}
+
+function volumeText(/** @type {MapVolume | null} */ found) {
+  if (!found) return { value: "…", parts: "" };
+  const cubic = (/** @type {number} */ m3) => `${m3.toFixed(Math.abs(m3) < 10 ? 3 : 2)} m³`;
+  const { above_m3, below_m3, sd_m3, area_m2, unseen_m2, base_m, cell_m } = found;
+  const parts = [
+    `${cubic(below_m3)} below, σ of the difference ${cubic(sd_m3)}`,
+    `area ${area_m2.toFixed(2)} m², of these ${unseen_m2.toFixed(2)} m² not seen`,
+    `base at ${meters(base_m)}, cells of ${(100 * cell_m).toFixed(0)} cm`,
+  ];
+  return { value: `${cubic(above_m3)} above`, parts: parts.join(", ") };
 }
 
 /** A cell of a CSV file; a spreadsheet does not take a name for a formula. */
@@ -86,15 +120,30 @@ function cell(/** @type {string} */ text) {
   return /[",\r\n]/.test(safe) ? `"${safe.replaceAll('"', '""')}"` : safe;
 }
 
-const FIGURES = ["length_m", "horizontal_m", "vertical_m", "sd_m", "angle_deg", "area_m2"];
+const FIGURES = [
+  ...["length_m", "horizontal_m", "vertical_m", "sd_m", "angle_deg", "area_m2"],
+  ...["width_m", "above_m3", "below_m3", "sd_m3"],
+];
 
-/** @returns {Record<string, number>} */
-function figuresOf(/** @type {Measurement} */ measurement) {
+/**
+ * @param {Measurement} measurement
+ * @param {MapVolume | null} volume
+ * @returns {Record<string, number>}
+ */
+function figuresOf(measurement, volume) {
   const { kind, points } = measurement;
+  if (kind === "volume") {
+    const { above_m3, below_m3, sd_m3 } = volume ?? VOLUME;
+    return { above_m3, below_m3, sd_m3 };
+  }
   if (kind === "angle") return { angle_deg: angleOf(points) };
   if (kind === "area") return { area_m2: areaOf(points).area };
   if (kind === "point") return {};
   const { length, horizontal, vertical } = distanceParts(points[0], points[1]);
+  if (kind === "profile") {
+    const width_m = measurement.figure ?? PROFILE_M;
+    return { horizontal_m: horizontal, vertical_m: vertical, width_m };
+  }
   return {
     length_m: length,
     horizontal_m: horizontal,
@@ -107,13 +156,14 @@ function figuresOf(/** @type {Measurement} */ measurement) {
  * All measurements as CSV: a row for each point, the figures in the first one of each.
  * @param {Measurement[]} measurements
  * @param {string} crs
+ * @param {(one: Measurement) => MapVolume | null} [volumeOf] of a volume
  */
-export function toCsv(measurements, crs) {
+export function toCsv(measurements, crs, volumeOf = () => null) {
   const places = ["x_m", "y_m", "z_m", ...(crs ? ["crs", "e", "n", "h"] : [])];
-  const head = ["name", "kind", "point", ...places, ...FIGURES];
+  const head = ["name", "kind", "point", ...places, "snapped_to", ...FIGURES];
   const rows = measurements.flatMap((one) =>
     one.points.map((p, k) => {
-      const figures = k ? {} : figuresOf(one);
+      const figures = k ? {} : figuresOf(one, volumeOf(one));
       const at = one.crs?.[k];
       const there = crs ? [crs, ...(at ? at.map((x) => x.toFixed(4)) : ["", "", ""])] : [];
       return [
@@ -122,6 +172,7 @@ export function toCsv(measurements, crs) {
         k + 1,
         ...p.map((x) => x.toFixed(4)),
         ...there,
+        one.snaps?.[k] ?? "",
         ...FIGURES.map((name) => {
           const value = /** @type {Record<string, number>} */ (figures)[name];
           return value === undefined || Number.isNaN(value) ? "" : value.toFixed(4);

@@ -10,21 +10,20 @@ import { resultOf } from "./measure.js";
  * @import {Clip} from "./clip.js"
  * @import {Measurement} from "./measure.js"
  * @import {Content} from "../shared/dom.js"
- * @typedef {object} Place a finding
- * @property {number[]} p
- * @property {string} text
- * @property {string} level
+ * @import {Pin} from "./places.js"
  */
 
 const EDGES = [0, 1, 2].flatMap((axis) =>
   [0, 1, 2, 3, 4, 5, 6, 7].filter((k) => !((k >> axis) & 1)).map((k) => [k, k | (1 << axis)]),
 );
 const NEAR_M = 0.06;
+const MOST_SHOWN = 60; // characters of a text beside a pin
 
 /**
  * @param {{camera: Camera, screen: Screen}} view
  * @param {{measurements: Measurement[], draft: number[][], clip: Clip, heights: [number, number],
- *   findings: Place[], drag: number[][] | null, tool: string}} shown
+ *   pins: Pin[], chosen: Pin | null, stretch: number[][], drag: number[][] | null,
+ *   times: string, aim: boolean, tool: string, volumeOf: (one: Measurement) => any}} shown
  * @returns {Content}
  */
 export function overlay({ camera, screen }, shown) {
@@ -54,20 +53,42 @@ export function overlay({ camera, screen }, shown) {
       const next = points[k + 1] ?? (closed && points.length > 2 ? points[0] : null);
       return next ? line(p, next, "measure") : nothing;
     });
-  const { measurements, draft, clip, findings, drag, tool } = shown;
+  /** A needle with a head; its text if it is chosen. */
+  const pin = (/** @type {Pin} */ { kind, name, p, level, text: words }) => {
+    const to = at(p);
+    if (!to) return nothing;
+    const here = shown.chosen?.kind === kind && shown.chosen.name === name;
+    return svg`<g class="pin ${kind} ${level} ${here ? "chosen" : ""}"
+      transform="translate(${to.x} ${to.y})">
+      <path d="M0 0 L-6 -12 A7 7 0 1 1 6 -12 Z" />
+      ${here ? svg`<text x="12" y="-12">${headOf(words)}</text>` : nothing}</g>`;
+  };
+  const { measurements, draft, clip, pins, stretch, drag, tool } = shown;
   const section = clip.section ? sectionLines(clip.section, shown.heights) : [];
   const corners = clip.box ? cornersOfBox(clip.box) : [];
   return svg`${clip.box ? EDGES.map(([a, b]) => line(corners[a], corners[b], "clip")) : nothing}
     ${section.map(([a, b]) => line(a, b, "clip"))}
     ${measurements.map((one) => [
-      path(one.points, one.kind === "area"),
+      path(one.points, one.kind === "area" || one.kind === "volume"),
       one.points.map((p) => dot(p, "measure")),
-      text(middleOf(one.points), `${one.name}  ${resultOf(one).value}`),
+      text(middleOf(one.points), `${one.name}  ${resultOf(one, shown.volumeOf(one)).value}`),
     ])}
     ${path(draft, false)}${draft.map((p) => dot(p, "draft"))}
-    ${findings.map(({ p, text: words, level }) => [dot(p, `finding ${level}`), text(p, words)])}
-    ${drag ? dragged(drag, tool) : nothing}`;
+    ${stretch.slice(1).map((p, k) => line(stretch[k], p, "stretch"))}
+    ${[...stretch.slice(0, 1), ...stretch.slice(-1)].map((p) => dot(p, "stretch"))}
+    ${stretch.length ? text(stretch[stretch.length >> 1], shown.times) : nothing}
+    ${pins.map(pin)}
+    ${drag ? dragged(drag, tool) : nothing}${shown.aim ? cross(screen) : nothing}`;
 }
+
+/** The begin of a text, as long as one reads it beside a pin. */
+const headOf = (/** @type {string} */ text) =>
+  text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)}…` : text;
+
+/** What is picked by keyboard. */
+const cross = (/** @type {Screen} */ { width, height }) =>
+  svg`<path class="cross" transform="translate(${width / 2} ${height / 2})"
+    d="M-14 0h28M0 -14v28" />`;
 
 const middleOf = (/** @type {number[][]} */ points) =>
   points.reduce((sum, p) => add(sum, p), [0, 0, 0]).map((x) => x / points.length);

@@ -2,12 +2,18 @@
 
 import { parse } from "./state.js";
 import { planesOf } from "./clip.js";
+import { lineOf } from "./places.js";
 
 /**
- * @import {MapIndex, MapWalk, ProjectView, Storey} from "../shared/http_types"
+ * @import {
+ *   MapIndex, MapNote, MapVolume, MapWalk, ProjectView, SavedMapView, Storey
+ * } from "../shared/http_types"
  * @import {ColorBy} from "./state.js"
- * @import {SavedView} from "./views.js"
- * @typedef {"" | "measure" | "box" | "section" | "stand"} Tool
+ * @import {MapFinding} from "../shared/verdict.js"
+ * @import {Pin} from "./places.js"
+ * @import {ProfileView} from "./profile.js"
+ * @import {NoteDraft} from "./notes.js"
+ * @typedef {"" | "measure" | "box" | "section" | "stand" | "note"} Tool
  */
 
 const CUT_M = 2.2; // above the floor: frames of rooms stay, ceilings go
@@ -25,14 +31,29 @@ export const page = {
   tool: "",
   /** @type {import("./measure.js").MeasureKind} */
   measuring: "distance",
-  /** @type {Array<{p: number[], sd: number, crs: number[] | null}>} */
+  /** @type {Array<{p: number[], sd: number, crs: number[] | null, snap: string}>} */
   draft: [],
+  snapping: true,
+  /** By keyboard: whether the cross is shown, and where a drag began [m]. */
+  aim: { on: false, from: /** @type {number[] | null} */ (null) },
+  /** @type {Record<string, MapVolume | Error | null>} by their points and base; null = asked for */
+  volumes: {},
+  /** @type {ProfileView | null} */
+  profile: null,
   /** @type {number[][] | null} */
   drag: null,
   reading: "",
+  /** @type {Pin | null} */
+  chosen: null,
   panel: innerWidth > 800,
-  /** @type {SavedView[]} */
-  saved: [],
+  saved: { all: /** @type {SavedMapView[]} */ ([]), may: false },
+  notes: {
+    all: /** @type {MapNote[]} */ ([]),
+    may: false,
+    filter: "",
+    draft: /** @type {NoteDraft | null} */ (null),
+    problem: /** @type {unknown} */ (null),
+  },
   flight: { on: false, time: 0, speed: 4 },
 };
 
@@ -96,19 +117,54 @@ export function endsShown() {
   return { ends, unit };
 }
 
-/** The findings with a place, at its middle. */
-export function findingPlaces() {
-  /** @type {Array<{place_m?: number[][] | null, level: string, title: string}>} */
+/** The findings with a place, at its middle. @returns {Pin[]} */
+export function findingPins() {
+  /** @type {MapFinding[]} */
   const found = /** @type {any} */ (page.project?.summary.findings ?? []);
-  return found.flatMap(({ place_m, level, title }) =>
-    place_m
-      ? [
-          {
-            p: [0, 1, 2].map((k) => (place_m[0][k] + place_m[1][k]) / 2),
-            level: level.replaceAll(" ", "-"),
-            text: title,
-          },
-        ]
-      : [],
-  );
+  return found.flatMap(({ place_m, span_s, level, title, text }, k) => {
+    const mark = { span: span_s, place: place_m ?? [] };
+    const line = lineOf(mark, page.walk);
+    if (!line.length) return [];
+    const p = line[line.length >> 1];
+    const about = { level: level.replaceAll(" ", "-"), text: `${title}: ${text}` };
+    return [{ kind: "finding", p, ...about, name: `${title} ${k}`, mark }];
+  });
+}
+
+/** What the operator marked. @returns {Pin[]} */
+export const operatorPins = () =>
+  (page.walk?.marks ?? []).map(({ t_s, p_map, text, who }, k) => ({
+    kind: "mark",
+    p: p_map,
+    level: "",
+    text: [text || "Mark of the operator", who, `${t_s.toFixed(1)} s`].filter(Boolean).join(" · "),
+    name: String(k),
+    mark: { span: [t_s, t_s], place: [p_map, p_map] },
+  }));
+
+/** The notes that the filter leaves. */
+export const notesListed = () => {
+  const { all, filter } = page.notes;
+  return all.filter(({ status }) => !filter || status === filter);
+};
+
+/** Notes that are listed, at their places. @returns {Pin[]} */
+export const notePins = () =>
+  notesListed().map(({ id, p_map, status, text }) => ({
+    kind: "note",
+    p: p_map,
+    level: status,
+    text,
+    name: id,
+    mark: { span: null, place: [p_map, p_map] },
+  }));
+
+/** The pins of the layers that are shown. */
+export function pinsShown() {
+  const { layers } = page.state;
+  return [
+    ...(layers.includes("findings") ? findingPins() : []),
+    ...(layers.includes("marks") ? operatorPins() : []),
+    ...(layers.includes("notes") ? notePins() : []),
+  ];
 }

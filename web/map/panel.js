@@ -1,19 +1,15 @@
 // The panel of the map: colors, layers, clip, measurements, views.
 
-import { html, nothing, render, repeat, targetOf } from "../shared/dom.js";
+import { html, nothing, render, targetOf } from "../shared/dom.js";
 import { slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
+import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
-import { resultOf } from "./measure.js";
-import {
-  colorShown,
-  colorsOf,
-  endsShown,
-  findingPlaces,
-  heightsOf,
-  heightsShown,
-  page,
-} from "./page.js";
+import { measuredSection } from "./measured_panel.js";
+import { notesSection } from "./notes.js";
+import { colorShown, colorsOf, endsShown, heightsOf, heightsShown, page } from "./page.js";
+import { placesSections } from "./places_panel.js";
+import { savedSection } from "./saved.js";
 import { COLORS, LAYERS } from "./state.js";
 
 /**
@@ -39,37 +35,10 @@ export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */
         <h2 id="layers-title">Layers</h2>
         ${layers(act)}
       </section>
-      <section aria-labelledby="measured-title">
-        <h2 id="measured-title">Measurements</h2>
-        ${measurements(act)}
-      </section>
-      <section aria-labelledby="views-title">
-        <h2 id="views-title">Saved views</h2>
-        ${views(act)}
-      </section>`,
+      ${placesSections(act)} ${measuredSection(act)} ${notesSection(act)} ${savedSection(act)}`,
     element,
   );
 }
-
-/** A field for a number; empty = null. */
-const field = (
-  /** @type {string} */ label,
-  /** @type {number | null} */ value,
-  /** @type {(value: number | null) => void} */ set,
-  { step = 0.1, usual = "" } = {},
-) =>
-  html`<label
-    ><span>${label}</span
-    ><input
-      type="number"
-      step=${step}
-      placeholder=${usual}
-      .value=${value === null ? "" : String(Number(value.toFixed(4)))}
-      @change=${(/** @type {Event} */ event) => {
-        const text = targetOf(event).value;
-        set(text === "" || !Number.isFinite(Number(text)) ? null : Number(text));
-      }}
-  /></label>`;
 
 function colors(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   const { state } = page;
@@ -238,7 +207,6 @@ function layers(/** @type {Act} */ act) {
         : [...state.layers, layer],
     });
   const names = /** @type {Array<[Layer, string]>} */ (Object.entries(LAYERS));
-  const places = findingPlaces();
   return html`${names.map(
     ([layer, text]) =>
       html`<label class="check"
@@ -246,19 +214,9 @@ function layers(/** @type {Act} */ act) {
           type="checkbox"
           .checked=${state.layers.includes(layer)}
           @change=${() => toggle(layer)}
-        /><span>${text}${layer === "findings" ? ` (${places.length})` : ""}</span></label
+        /><span>${text}</span></label
       >`,
   )}
-  ${
-    state.layers.includes("findings") && places.length
-      ? html`<ul class="rows">
-          ${places.map(
-            ({ p, text }) =>
-              html`<li><button type="button" @click=${() => act.goTo(p)}>${text}</button></li>`,
-          )}
-        </ul>`
-      : nothing
-  }
   ${
     walk?.t_s.length
       ? html`<label
@@ -274,52 +232,3 @@ function layers(/** @type {Act} */ act) {
       : nothing
   }`;
 }
-
-function measurements(/** @type {Act} */ act) {
-  const { measurements: all } = page.state;
-  const set = (/** @type {typeof all} */ next) => act.change({ measurements: next });
-  if (!all.length) return html`<p class="quiet">None yet: press M and click two points.</p>`;
-  const rows = all.map((one, k) => ({ one, k }));
-  return html`<ol class="rows">
-      ${repeat(
-        rows,
-        ({ k }) => k,
-        ({ one, k }) => {
-          const { value, parts } = resultOf(one);
-          const rename = (/** @type {Event} */ event) =>
-            set(all.map((each, n) => (n === k ? { ...each, name: targetOf(event).value } : each)));
-          return html`<li>
-            <input aria-label="Name" .value=${one.name} maxlength="80" @change=${rename} />
-            <b class="value">${value}</b><small>${parts}</small>
-            <span class="buttons"
-              ><button type="button" @click=${() => act.goTo(one.points[0])}>Go to</button
-              ><button type="button" @click=${() => set(all.filter((_, n) => n !== k))}>
-                Remove
-              </button></span
-            >
-          </li>`;
-        },
-      )}
-    </ol>
-    <div class="buttons">
-      <button type="button" @click=${act.csv}>Download CSV</button
-      ><button type="button" @click=${() => set([])}>Remove all</button>
-    </div>`;
-}
-
-const views = (/** @type {Act} */ act) =>
-  html`<ul class="rows">
-      ${page.saved.map(
-        ({ name, query }) =>
-          html`<li>
-            <button type="button" @click=${() => act.open(query)}>${name}</button
-            ><button type="button" aria-label="Remove ${name}" @click=${() => act.forget(name)}>
-              ×
-            </button>
-          </li>`,
-      )}
-    </ul>
-    <div class="buttons">
-      <button type="button" @click=${act.save}>Save this view</button>
-    </div>
-    <p class="quiet">Kept by this browser. A link holds the whole view, for anybody.</p>`;

@@ -6,9 +6,10 @@ import { KINDS } from "./measure.js";
  * @import {Camera, Xyz} from "./camera.js"
  * @import {Clip} from "./clip.js"
  * @import {Measurement, MeasureKind} from "./measure.js"
+ * @import {Mark} from "./places.js"
  * @typedef {"height" | "intensity" | "normalized" | "class" | "time" | "uncertainty"
  *   | "thickness" | "plain"} ColorBy
- * @typedef {"walk" | "nodes" | "findings"} Layer
+ * @typedef {"findings" | "marks" | "notes" | "walk" | "nodes"} Layer
  * @typedef {object} MapState
  * @property {Camera | null} camera null = all of the map
  * @property {ColorBy | null} color null = the usual one of the map
@@ -21,6 +22,7 @@ import { KINDS } from "./measure.js";
  * @property {number} size points are drawn this many times as large as they are apart
  * @property {boolean} standing whether a drag looks around
  * @property {Measurement[]} measurements
+ * @property {Mark | null} mark the stretch or place that is marked
  */
 
 /** @type {Record<ColorBy, string>} */
@@ -35,7 +37,15 @@ export const COLORS = {
   plain: "Shape only",
 };
 /** @type {Record<Layer, string>} */
-export const LAYERS = { walk: "Walk", nodes: "Nodes", findings: "Findings" };
+export const LAYERS = {
+  findings: "Findings",
+  marks: "Operator's marks",
+  notes: "Notes",
+  walk: "Walk",
+  nodes: "Nodes",
+};
+/** @type {Layer[]} */
+const USUAL_LAYERS = ["findings", "marks", "notes"];
 const MOST_MEASUREMENTS = 100;
 const MOST_M = 1e7;
 
@@ -66,11 +76,12 @@ export const usualState = () => ({
   hi: null,
   clip: { heights: [null, null], box: null, section: null },
   cutCeiling: true,
-  layers: [],
+  layers: [...USUAL_LAYERS],
   depth: true,
   size: 1,
   standing: false,
   measurements: [],
+  mark: null,
 });
 
 /** The state in the query of an address; what is not valid becomes the usual. */
@@ -98,14 +109,26 @@ export function parse(/** @type {string} */ query) {
   const cut = numbers(given.get("section"), 5);
   if (cut && cut[4] > 0 && (cut[0] !== cut[2] || cut[1] !== cut[3]))
     state.clip.section = { a: [cut[0], cut[1]], b: [cut[2], cut[3]], thickness: cut[4] };
-  const layers = (given.get("layers") ?? "").split(",");
+  const layers = given.get("layers")?.split(",") ?? USUAL_LAYERS;
   state.layers = /** @type {Layer[]} */ (Object.keys(LAYERS).filter((one) => layers.includes(one)));
   state.depth = given.get("depth") !== "0";
   const size = number(given.get("size"));
   if (size !== null) state.size = Math.min(4, Math.max(0.25, size));
   state.standing = given.get("standing") === "1" && !state.camera?.parallel;
   state.measurements = given.getAll("m").slice(0, MOST_MEASUREMENTS).flatMap(measurementOf);
+  state.mark = markOf(given);
   return state;
+}
+
+/** The stretch or place that a link marks, as of a finding; null = none. @returns {Mark | null} */
+function markOf(/** @type {URLSearchParams} */ given) {
+  const span = numbers(given.get("span"), 2);
+  const place = numbers(given.get("place"), 6);
+  if (!span && !place) return null;
+  return {
+    span: span ? /** @type {[number, number]} */ (span.sort((a, b) => a - b)) : null,
+    place: place ? [place.slice(0, 3), place.slice(3)] : [],
+  };
 }
 
 /** @returns {Camera | null} */
@@ -124,9 +147,10 @@ function cameraOf(/** @type {string | null} */ text) {
   };
 }
 
-/** A measurement "kind;x,y,z;…;name" as a list of one, or none if it is not valid. */
+/** A measurement "kind:figure;x,y,z;…;name" as a list of one, or none if it is not valid. */
 function measurementOf(/** @type {string} */ text) {
-  const [kind, ...rest] = text.split(";");
+  const [head, ...rest] = text.split(";");
+  const [kind, given] = head.split(":");
   const name = rest.pop() ?? "";
   const points = rest.map((part) => numbers(part, 3));
   if (!Object.hasOwn(KINDS, kind)) return [];
@@ -138,9 +162,24 @@ function measurementOf(/** @type {string} */ text) {
       kind: /** @type {MeasureKind} */ (kind),
       points: /** @type {number[][]} */ (points),
       name: name.slice(0, 80),
+      ...(given === undefined ? {} : { figure: figureOf(kind, given) }),
     },
   ];
 }
+
+/**
+ * Width of a profile, or height of the base of a volume [m]; null = the usual.
+ * @param {string} kind
+ * @param {string} text
+ */
+function figureOf(kind, text) {
+  const value = number(text);
+  if (kind === "profile") return value !== null && value > 0 && value <= 100 ? value : null;
+  return kind === "volume" ? value : null;
+}
+
+const headOf = (/** @type {string} */ kind, /** @type {number | null | undefined} */ figure) =>
+  figure === null || figure === undefined ? kind : `${kind}:${short(figure)}`;
 
 /** The query of an address that shows this state. */
 export function format(/** @type {MapState} */ state) {
@@ -167,11 +206,16 @@ export function format(/** @type {MapState} */ state) {
     const { a, b, thickness } = clip.section;
     query.set("section", list([...a, ...b, thickness]));
   }
-  if (state.layers.length) query.set("layers", state.layers.join(","));
+  if (state.layers.join() !== USUAL_LAYERS.join()) query.set("layers", state.layers.join(","));
   if (!state.depth) query.set("depth", "0");
   if (state.size !== 1) query.set("size", short(state.size, 2));
   if (state.standing) query.set("standing", "1");
-  for (const { kind, points, name } of state.measurements)
-    query.append("m", [kind, ...points.map((p) => list(p)), name.replaceAll(";", " ")].join(";"));
-  return query.toString().replaceAll("%2C", ",").replaceAll("%3B", ";");
+  if (state.mark?.span) query.set("span", list(state.mark.span));
+  if (state.mark?.place.length) query.set("place", list(state.mark.place.flat()));
+  for (const { kind, points, name, figure } of state.measurements)
+    query.append(
+      "m",
+      [headOf(kind, figure), ...points.map((p) => list(p)), name.replaceAll(";", " ")].join(";"),
+    );
+  return query.toString().replaceAll("%2C", ",").replaceAll("%3B", ";").replaceAll("%3A", ":");
 }

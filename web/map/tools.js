@@ -9,10 +9,10 @@ import { KINDS, resultOf } from "./measure.js";
 import { heightsShown, page, planes } from "./page.js";
 
 /**
- * @import {HitPoint} from "../shared/http_types"
+ * @import {HitPoint, RayHit, SnapPoint} from "../shared/http_types"
  * @import {Camera, Screen} from "./camera.js"
  * @import {MapState} from "./state.js"
- * @import {MeasureKind} from "./measure.js"
+ * @import {Measurement, MeasureKind} from "./measure.js"
  * @typedef {object} Stage
  * @property {() => Camera} camera
  * @property {() => Screen} screen
@@ -20,11 +20,15 @@ import { heightsShown, page, planes } from "./page.js";
  * @property {(camera: Camera) => void} flyTo
  * @property {(name: string, parallel: boolean) => void} view
  * @property {() => void} draw
+ * @property {(found: HitPoint) => void} [note] begins one there
+ * @property {(of: Measurement) => void} [profile] shows it
  */
 
 const id = idHere();
 const BEHIND_M = 2000;
 const PICK_PX = 2;
+const SNAP_PX = 14; // corners, edges and planes this near to the pointer attract it
+const MOST_SNAP = { rad: 0.1, m: 0.25 };
 const STAND_AWAY = 0.15; // a click beside the walk stands on it up to this angle away [rad]
 const EYES_M = 1.6;
 
@@ -37,15 +41,17 @@ async function pointAt(at, { camera, screen }) {
   const view = camera();
   const { origin, direction } = rayAt(view, screen(), at, BEHIND_M);
   const pixel = pixelM(view, screen());
-  const answer = await pickOnMap(id, {
+  const reach = page.tool === "measure" && page.snapping ? SNAP_PX : 0;
+  return pickOnMap(id, {
     key: page.index?.key ?? "",
     origin_m: origin,
     direction,
     pixel_rad: view.parallel ? 0 : pixel / view.distance,
     point_m: view.parallel ? PICK_PX * pixel : 0.01,
     planes: /** @type {[number, number, number, number][]} */ (planes()),
+    snap_rad: view.parallel ? 0 : Math.min((reach * pixel) / view.distance, MOST_SNAP.rad),
+    snap_m: view.parallel ? Math.min(reach * pixel, MOST_SNAP.m) : 0,
   });
-  return answer.point;
 }
 
 /** What is known of a point, in words. */
@@ -92,16 +98,32 @@ function inTurn(/** @type {() => void | Promise<void>} */ next) {
   return done;
 }
 
+/** What a point that was picked is for a measurement: where it snapped to, if it did. */
+function ended(/** @type {HitPoint} */ point, /** @type {SnapPoint | null} */ snap) {
+  const sd = point.position_sd_m === null ? NaN : Math.hypot(point.position_sd_m, snap?.sd_m ?? 0);
+  const { p_map: p, p_crs: crs } = snap ?? point;
+  return { p, sd, crs, snap: snap?.kind ?? "" };
+}
+
 /**
- * @param {HitPoint | null} found
+ * @param {RayHit} hit
  * @param {Stage} stage
  */
-function take(found, stage) {
+function take({ point: found, snap }, stage) {
   if (!found) return read("No point of the map here", stage);
+  if (page.tool === "note") {
+    choose("", stage);
+    return stage.note?.(found);
+  }
   if (page.tool !== "measure") return read(pointText(found), stage);
-  page.draft.push({ p: found.p_map, sd: found.position_sd_m ?? NaN, crs: found.p_crs });
+  const one = ended(found, snap);
+  page.draft.push(one);
   if (page.draft.length >= KINDS[page.measuring].most) finishMeasurement(stage);
-  else read(pointText(found), stage);
+  else
+    read(
+      [one.snap && `Snapped to a ${one.snap}`, pointText(found)].filter(Boolean).join("\n"),
+      stage,
+    );
 }
 
 /**
@@ -110,7 +132,7 @@ function take(found, stage) {
  * @param {Stage} stage
  */
 export async function target(at, stage) {
-  const found = await pointAt(at, stage);
+  const { point: found } = await pointAt(at, stage);
   if (!found) return;
   const camera = stage.camera();
   stage.flyTo({ ...camera, target: found.p_map, distance: Math.max(camera.distance / 2.5, 1.5) });
@@ -133,12 +155,14 @@ function finishMeasurement(/** @type {Stage} */ stage) {
     points: draft.map(({ p }) => p),
     name: `${KINDS[measuring].text} ${same}`,
     sd: draft.map(({ sd }) => sd),
+    snaps: draft.map(({ snap }) => snap),
     ...(crs.length === draft.length ? { crs } : {}),
   };
   page.draft = [];
   const { value, parts } = resultOf(made);
   page.reading = [`${made.name}: ${value}`, parts].filter(Boolean).join("\n");
   stage.change({ measurements: [...state.measurements, made] });
+  if (made.kind === "profile") stage.profile?.(made);
 }
 
 /**
@@ -192,7 +216,7 @@ export function face(/** @type {Stage} */ stage) {
  * @param {number[]} at
  * @param {Stage} stage
  */
-function onLevel(at, { camera, screen }) {
+export function onLevel(at, { camera, screen }) {
   const { origin, direction } = rayAt(camera(), screen(), at);
   const [, , z] = camera().target;
   const along = Math.abs(direction[2]) < 1e-6 ? 0 : (z - origin[2]) / direction[2];
@@ -209,7 +233,7 @@ async function stand(at, stage) {
   const ray = rayAt(stage.camera(), stage.screen(), at, BEHIND_M);
   const { yaw } = stage.camera();
   const near = walk?.t_s.length ? nearestTo(walk, ray) : null;
-  const found = await pointAt(at, stage);
+  const { point: found } = await pointAt(at, stage);
   const depth = found ? dot(minus(found.p_map, ray.origin), ray.direction) : BEHIND_M;
   const onWalk = near && (stage.camera().parallel ? near.away * depth < 1 : near.away < STAND_AWAY);
   if (near && onWalk) page.flight.time = near.time;
@@ -232,6 +256,7 @@ async function stand(at, stage) {
  * @param {MeasureKind} [kind]
  */
 export function choose(tool, stage, kind = page.measuring) {
+  if (tool === "note" && !page.notes.may) return read("You may look at this project only", stage);
   const same = tool === page.tool && (tool !== "measure" || kind === page.measuring);
   Object.assign(page, { tool: same ? "" : tool, measuring: kind, draft: [], drag: null });
   const hints = {
@@ -240,6 +265,7 @@ export function choose(tool, stage, kind = page.measuring) {
     box: "Drag a rectangle around what is to stay",
     section: "Drag the line of the section",
     stand: "Click a place of the walk to stand there",
+    note: "Click the place of the note",
   };
   page.reading = hints[page.tool];
   const above = Math.abs(stage.camera().pitch + Math.PI / 2) < 0.02 && stage.camera().parallel;

@@ -1,17 +1,14 @@
-// Views by name: the usual ones, and those that this browser keeps.
+// The usual views, by name.
 
-import { keep, kept } from "../shared/address.js";
 import { fitted } from "./camera.js";
 
 /**
  * @import {MapIndex} from "../shared/http_types"
  * @import {Camera, Screen} from "./camera.js"
  * @typedef {{text: string, key: string, yaw: number, pitch: number, parallel?: boolean}} NamedView
- * @typedef {{name: string, query: string}} SavedView
  */
 
 const DEG = Math.PI / 180;
-const MOST_SAVED = 50;
 
 /** @type {Record<string, NamedView>} */
 export const VIEWS = {
@@ -34,28 +31,3 @@ export function viewOf({ yaw, pitch }, { index, screen, heights, parallel }) {
   const high = [index.high_m[0], index.high_m[1], Math.min(index.high_m[2], heights[1])];
   return fitted({ yaw, pitch, parallel }, screen, { low, high });
 }
-
-const keyOf = (/** @type {string} */ project) => `map-views.${project}`;
-
-/**
- * The views that this browser keeps of a project.
- * @param {string} project
- * @returns {SavedView[]}
- */
-export function savedViews(project) {
-  try {
-    const found = JSON.parse(kept(keyOf(project)) ?? "[]");
-    const sound = (/** @type {any} */ one) =>
-      typeof one?.name === "string" && typeof one?.query === "string";
-    return Array.isArray(found) ? found.filter(sound) : [];
-  } catch {
-    return []; // what is kept there is not ours
-  }
-}
-
-/**
- * @param {string} project
- * @param {SavedView[]} views
- */
-export const saveViews = (project, views) =>
-  keep(keyOf(project), JSON.stringify(views.slice(-MOST_SAVED)));

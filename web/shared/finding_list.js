@@ -6,6 +6,8 @@ import { idHere } from "./address.js";
 import {
   acknowledge,
   findingHelpUrl,
+  mapPlaceUrl,
+  mapUrl,
   projectUrl,
   readAcknowledgments,
   slicesUrl,
@@ -206,24 +208,34 @@ const item = (finding, notes, { hidden, form }) =>
     </p>
     <p>${finding.text}</p>
     ${finding.remedy ? html`<p class="remedy">${finding.remedy}</p>` : nothing}
-    ${placeLink(finding)} ${sliceLink(finding)} ${notes.map(noteLine)} ${form}
+    ${placeLinks(finding)} ${sliceLink(finding)} ${notes.map(noteLine)} ${form}
   </li>`;
 
 /**
- * A link to the stretch in the viewer of the project's page, which opens beside any other page;
- * nothing without a stretch.
+ * Links to the stretch in the map and in the graph, which open beside a page that may have fields
+ * filled in; nothing without a stretch.
  */
-function placeLink(/** @type {MapFinding} */ finding) {
+function placeLinks(/** @type {MapFinding} */ finding) {
   const stretch = stretchOf(finding);
   if (!stretch) return nothing;
-  const here = location.pathname === projectUrl(idHere());
+  const pages = [projectUrl(idHere()), mapUrl(idHere())];
+  const beside = pages.includes(location.pathname) ? nothing : "_blank";
+  const rel = beside === nothing ? nothing : "noopener";
   return html`<a
-    class="button stretch"
-    href=${stretchUrl(idHere(), stretch)}
-    target=${here ? nothing : "_blank"}
-    rel=${here ? nothing : "noopener"}
-    >Show in the map: ${stretchText(finding)}</a
-  >`;
+      class="button stretch"
+      href=${mapPlaceUrl(idHere(), stretch)}
+      target=${beside}
+      rel=${rel}
+      >Show in the map: ${stretchText(finding)}</a
+    >
+    <a
+      class="button stretch"
+      href=${stretchUrl(idHere(), stretch)}
+      target=${beside}
+      rel=${rel}
+      aria-label="In the graph: ${stretchText(finding)}"
+      >In the graph</a
+    >`;
 }
 
 /** On the page of slices a link to the slice at the place of a finding. */

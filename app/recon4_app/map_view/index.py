@@ -13,7 +13,7 @@ from recon4.model.classes import CLASSES, PointClass
 from recon4.slices.map_crs import MapFrame
 from recon4_app.map_view.model import ColumnName, MapColumn, MapIndex, MapTile, Storey
 from recon4_app.map_view.points import FIELD_OF, read_shown, sample_sizes, steps_of, values_of
-from recon4_app.map_view.tuning import FIRST_VIEW
+from recon4_app.map_view.tuning import FIRST_VIEW, MAP_CHUNKS
 from recon4_app.viewer.cloud.parts import Cloud
 
 Columns = dict[str, NDArray[Any]]
@@ -35,6 +35,7 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
     codes = np.unique(found["classification"]) if "classification" in found else ()
     return MapIndex(
         key=key,
+        version=MAP_CHUNKS.version,
         points=len(tiles),
         low_m=_xyz(low),
         high_m=_xyz(high),

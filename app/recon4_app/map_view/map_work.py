@@ -14,12 +14,28 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import Tile
 from recon4.pose_graph.files import load_graph
+from recon4.products.terrain import TerrainPart, spacing_m, terrain
+from recon4.products.tuning import TERRAIN
+from recon4.products.volume import volume
 from recon4.review.evidence import Evidence
+from recon4.slices.pick import points_near
+from recon4.slices.points import SliceWindow
+from recon4.slices.snap import PickRay, radius_around, snap
 from recon4.store.atomic import atomic_file, write_json
 from recon4_app.map_view.index import class_name, index_of
-from recon4_app.map_view.model import HitPoint, MapWalk, RayHit, RayRequest, Stored
+from recon4_app.map_view.model import (
+    HitPoint,
+    MapVolume,
+    MapWalk,
+    RayHit,
+    RayRequest,
+    SnapPoint,
+    Stored,
+    VolumeRequest,
+)
+from recon4_app.map_view.operator_marks import operator_marks
 from recon4_app.map_view.points import FIELD_OF, encoded, sample
-from recon4_app.map_view.tuning import MAP_WALK
+from recon4_app.map_view.tuning import MAP_PICKS, MAP_VOLUMES, MAP_WALK
 from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, tiles_of
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.cloud.pick import Ray, hit_point
@@ -65,17 +81,20 @@ def chunk(
     return encoded(tiles, row, stored, rows=slice(start, stop))
 
 
-def walk(artifacts: Artifacts) -> MapWalk:
-    """The walk, and the nodes of the pose graph."""
+def walk(artifacts: Artifacts, marks_file: str) -> MapWalk:
+    """The walk, the nodes of the pose graph, and marks of the operator (empty = there are none)."""
     path = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
     if path is None or not len(path):
         return MapWalk(t_s=[], positions_m=[], nodes_m=[])
     step = max(1, -(-len(path) // MAP_WALK.most_positions))
     t_s = (path.t_ns[::step] - path.t_ns[0]) / 1e9
+    marks, left_out = operator_marks(Path(marks_file), path) if marks_file else ([], 0)
     return MapWalk(
         t_s=np.round(t_s, 3).tolist(),
         positions_m=_rows(path.T_a_b.t[::step]),
         nodes_m=_rows(_nodes(artifacts)),
+        marks=marks,
+        marks_left_out=left_out,
     )
 
 
@@ -97,7 +116,59 @@ def hit(artifacts: Artifacts, ask: RayRequest) -> RayHit:
         planes=np.array(ask.planes).reshape(-1, 4),
     )
     found = hit_point(_cloud(artifacts["map"]), ray)
-    return RayHit(point=None if found is None else _described(artifacts, *found))
+    if found is None:
+        return RayHit(point=None)
+    point = _described(artifacts, *found)
+    return RayHit(point=point, snap=_snapped(artifacts, ask, ray, hit=np.array(point.p_map)))
+
+
+def _snapped(artifacts: Artifacts, ask: RayRequest, ray: Ray, *, hit: Array) -> SnapPoint | None:
+    """Where a hit snaps to, by the points around it that are shown."""
+    depth = float((hit - ray.origin_m) @ ray.direction)
+    reach = min(ask.snap_m + ask.snap_rad * depth, MAP_PICKS.max_snap_m)
+    if reach <= 0.0:
+        return None
+    points = points_near(tiles_of(artifacts["map"]), hit, radius_around(reach))
+    shown = (ray.planes[:, :3] @ points.T + ray.planes[:, 3:] >= 0.0).all(axis=0)
+    pick = PickRay(ray.origin_m, ray.direction, hit, reach)
+    found = snap(points[shown], pick, rng=np.random.default_rng(1))
+    if found is None:
+        return None
+    to_crs = map_frame(artifacts).to_crs
+    p_crs = _xyz(to_crs(found.p_map[None])[0]) if to_crs else None
+    return SnapPoint(kind=found.kind, p_map=_xyz(found.p_map), p_crs=p_crs, sd_m=found.sd_m)
+
+
+def map_volume(artifacts: Artifacts, ask: VolumeRequest) -> MapVolume:
+    """What lies over a plane inside of a polygon.
+
+    Raises:
+        ConfigError: If the polygon encloses no area, or nothing was seen in it.
+    """
+    corners = np.array(ask.polygon)
+    low, high = corners.min(axis=0) - TERRAIN.border_m, corners.max(axis=0) + TERRAIN.border_m
+    part = TerrainPart(
+        SliceWindow(*low.tolist(), *high.tolist()),
+        -np.inf if ask.low_m is None else ask.low_m,
+        np.inf if ask.high_m is None else ask.high_m,
+    )
+    tiles = tiles_of(artifacts["map"])
+    cell_m = max(
+        MAP_VOLUMES.cell_m,
+        MAP_VOLUMES.cell_times * spacing_m(tiles, part),
+        float(np.sqrt(np.prod(high - low) / MAP_VOLUMES.most_cells)),
+    )
+    heights = terrain(tiles, "dsm", cell_m=cell_m, part=part)
+    found = volume(heights, corners, base_m=ask.base_m)
+    return MapVolume(
+        above_m3=found.above_m3,
+        below_m3=found.below_m3,
+        sd_m3=found.sd_m3,
+        area_m2=found.area_m2,
+        unseen_m2=found.unseen_m2,
+        base_m=found.base_m,
+        cell_m=cell_m,
+    )
 
 
 @lru_cache(maxsize=2)

@@ -6,8 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field
 
+from recon4.slices.snap import SnapKind
 from recon4_app.map_view.tuning import MAP_PICKS
-from recon4_app.slices.model import Part, Strict, Xyz
+from recon4_app.slices.model import Coordinate, Part, Strict, Xy, Xyz
 
 ColumnName = Literal["intensity", "normalized", "time", "uncertainty", "thickness"]
 """Values that are stored for each point; height and class come with the positions."""
@@ -15,6 +16,10 @@ Stored = Literal["xyz", "intensity", "normalized", "time", "uncertainty", "thick
 """What a chunk is read of: positions with normals and classes, or one kind of value."""
 Plane = tuple[Part, Part, Part, Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]]
 """A clip plane (n, d): points with n · p + d < 0 are not shown."""
+
+
+Version = Annotated[int, Field(ge=0, le=1 << 31)]
+"""Of the layout of samples and chunks, as the index of the page said."""
 
 
 class MapTile(BaseModel):
@@ -58,6 +63,8 @@ class MapIndex(BaseModel):
 
     key: str
     """The map's artifact: chunks of a key never change."""
+    version: int
+    """Of the layout of samples and chunks: part of their addresses."""
     points: int
     low_m: Xyz
     """Extent of nearly all points [m]: few stray ones do not decide it."""
@@ -75,19 +82,39 @@ class MapIndex(BaseModel):
     seconds: float
 
 
+class OperatorMark(BaseModel):
+    """What the operator of a live capture marked."""
+
+    t_s: float
+    """After the first pose [s]."""
+    p_map: Xyz
+    """Where the walk was then [m]."""
+    text: str
+    who: str
+
+
 class MapWalk(BaseModel):
-    """The walk and the nodes of the pose graph."""
+    """The walk, the nodes of the pose graph, and the marks of the operator."""
 
     t_s: list[float]
     """Times after the first pose [s]."""
     positions_m: list[Xyz]
     nodes_m: list[Xyz]
+    marks: list[OperatorMark] = []
+    marks_left_out: int = 0
+    """Marks that cannot be read, or are of no time of the walk."""
 
 
-class ChunkQuery(Strict):
-    """Which points of the map a response has."""
+class SampleQuery(Strict):
+    """Which values a sample of the whole map has."""
 
     stored: Stored
+    version: Version
+
+
+class ChunkQuery(SampleQuery):
+    """Which points of the map a response has."""
+
     tile: int = Field(ge=0, le=1 << 32)
     """Row in the index."""
     start: int = Field(ge=0, le=1 << 40)
@@ -108,6 +135,10 @@ class RayRequest(Strict):
     """Radius in which points are hit at the ray's origin, too [m]."""
     planes: list[Plane] = Field(default=[], max_length=MAP_PICKS.max_planes)
     """Points outside of one are not shown, and not hit."""
+    snap_rad: float = Field(default=0.0, ge=0.0, le=MAP_PICKS.max_snap_rad, allow_inf_nan=False)
+    """Corners, edges and planes this near to the ray attract it [rad]."""
+    snap_m: float = Field(default=0.0, ge=0.0, le=MAP_PICKS.max_snap_m, allow_inf_nan=False)
+    """The same as a distance; both are added, and 0 = no snapping [m]."""
 
 
 class HitPoint(BaseModel):
@@ -130,7 +161,46 @@ class HitPoint(BaseModel):
     """Standard deviation of the returns across its surface [m]; None = not stated."""
 
 
+class SnapPoint(BaseModel):
+    """Where a click snapped to, by the points around what it hit."""
+
+    kind: SnapKind
+    p_map: Xyz
+    p_crs: Xyz | None
+    sd_m: float
+    """Standard deviation (1 σ) by the scatter of the points about their planes [m]."""
+
+
 class RayHit(BaseModel):
     """What a click hit."""
 
     point: HitPoint | None
+    snap: SnapPoint | None = None
+    """None = it was not asked for, or there is no plane."""
+
+
+class VolumeRequest(Strict):
+    """What lies over a plane inside of a polygon, of the heights that are shown."""
+
+    key: str = Field(max_length=64)
+    polygon: list[Xy] = Field(min_length=3, max_length=MAP_PICKS.max_corners)
+    """Corners, seen from above [m]."""
+    base_m: Coordinate | None = None
+    """Height of a level plane [m]; None = a plane fitted to the surface along the border."""
+    low_m: Coordinate | None = None
+    """Points below are left out [m]."""
+    high_m: Coordinate | None = None
+    """Points above are left out, as a ceiling [m]."""
+
+
+class MapVolume(BaseModel):
+    """A volume, as `recon4.products.volume` computes it."""
+
+    above_m3: float
+    below_m3: float
+    sd_m3: float
+    area_m2: float
+    unseen_m2: float
+    base_m: float
+    cell_m: float
+    """Edge of the cells that were added up [m]."""

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import StoreError
+from recon4.live.session import CaptureSession
 from recon4.review.evidence import Evidence
 from recon4.untrusted.bounded import read_json_object
 from recon4_app.access.people import Permission, needs
@@ -22,10 +23,12 @@ from recon4_app.map_view import map_work
 from recon4_app.map_view.model import (
     ChunkQuery,
     MapIndex,
+    MapVolume,
     MapWalk,
     RayHit,
     RayRequest,
-    Stored,
+    SampleQuery,
+    VolumeRequest,
 )
 from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.network.request_caller import CalledBy
@@ -71,10 +74,19 @@ async def read_index(project_id: str, server: Server, caller: CalledBy) -> MapIn
 
 @router.get("/walk", summary="The walk and the nodes of the graph")
 async def read_walk(project_id: str, server: Server, caller: CalledBy) -> MapWalk:
-    """Positions with times after the first pose; a long walk is thinned out."""
+    """Positions with times after the first pose, and marks of the operator of a live capture.
+
+    A long walk is thinned out.
+    """
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     terms = server.slices.terms(project_id, caller.name)
-    return await caller.wait(server.slices.run_interactive(terms, map_work.walk, artifacts))
+    marks = CaptureSession(project=server.projects.folder(project_id)).marks
+    if not marks.is_file() or marks.is_symlink():
+        return await caller.wait(server.slices.run_interactive(terms, map_work.walk, artifacts, ""))
+    terms = replace(terms, access=replace(terms.access, read=(*terms.access.read, marks)))
+    return await caller.wait(
+        server.slices.run_interactive(terms, map_work.walk, artifacts, str(marks))
+    )
 
 
 @router.post(
@@ -85,17 +97,23 @@ async def read_walk(project_id: str, server: Server, caller: CalledBy) -> MapWal
 async def pick(project_id: str, ask: RayRequest, *, server: Server, caller: CalledBy) -> RayHit:
     """Of all points of the map that the clip planes leave, not only of those on screen."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    if Path(artifacts["map"]).name != ask.key:  # its place in the CRS may be another
-        raise Conflict("the map was made again meanwhile: reload the page to measure in it")
+    _check_key(artifacts, ask.key)
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(server.slices.run_interactive(terms, map_work.hit, artifacts, ask))
 
 
 @router.get("/{key}/sample", response_class=FileResponse, summary="A sample of the whole map")
 async def read_sample(
-    project_id: str, key: str, stored: Stored, *, server: Server, caller: CalledBy
+    project_id: str,
+    key: str,
+    *,
+    part: Annotated[SampleQuery, Query()],
+    server: Server,
+    caller: CalledBy,
 ) -> FileResponse:
     """The first points of every tile, as many as the index says; ranges of bytes are allowed."""
+    _check_version(part.version)
+    stored = part.stored
     slices, source = server.slices, f"map:{key}"
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
     evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
@@ -124,6 +142,7 @@ async def read_points(
     caller: CalledBy,
 ) -> Response:
     """Binary, as `recon4_app.map_view.points` says; the response may be kept for ever."""
+    _check_version(part.version)
     if not 0 < part.stop - part.start <= MAP_CHUNKS.max_chunk_points:
         raise BadRequest(
             f"expected 1 to {MAP_CHUNKS.max_chunk_points} points, got {part.start} to {part.stop}"
@@ -143,6 +162,37 @@ async def read_points(
         )
     )
     return Response(data, media_type="application/octet-stream", headers=headers)
+
+
+@router.post(
+    "/volume",
+    summary="A volume over a plane",
+    responses={409: {"model": ProblemDetail}},
+)
+async def read_volume(
+    project_id: str, ask: VolumeRequest, *, server: Server, caller: CalledBy
+) -> MapVolume:
+    """What lies above and below a plane inside of a polygon, of the heights that are shown."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    _check_key(artifacts, ask.key)
+    terms = server.slices.terms(project_id, caller.name)
+    return await caller.wait(
+        server.slices.run_interactive(terms, map_work.map_volume, artifacts, ask)
+    )
+
+
+def _check_key(artifacts: dict[str, str], key: str) -> None:
+    """Refuse what was asked of an earlier map: its place in the CRS may be another."""
+    if Path(artifacts["map"]).name != key:
+        raise Conflict("the map was made again meanwhile: reload the page to measure in it")
+
+
+def _check_version(version: int) -> None:
+    """Refuse a page that an earlier recon4 sent: it would take the bytes for something else."""
+    if version != MAP_CHUNKS.version:
+        raise Conflict(
+            f"expected layout {MAP_CHUNKS.version} of points, got {version}: reload the page"
+        )
 
 
 def _kept_name(artifacts: dict[str, str], evidence: Evidence | None, ending: str) -> str:

@@ -67,6 +67,10 @@ class MapWalkTuning:
     """A longer walk is thinned out."""
     most_nodes: int = 20_000
     """More nodes of the graph are thinned out."""
+    max_marks_bytes: int = 1 << 20
+    """A larger file of marks was not written by us."""
+    marks_s: float = 1.0
+    """A mark this long before or after the walk is at its end [s]."""
 
 
 MAP_WALK = MapWalkTuning()
@@ -82,6 +86,27 @@ class MapPickLimits:
     """Largest angle of a pixel [rad]."""
     max_point_m: float = 5.0
     """Largest point on screen [m]."""
+    max_snap_m: float = 0.25
+    """Farthest that a pick is attracted [m]."""
+    max_corners: int = 500
+    """Of a polygon."""
+    max_snap_rad: float = 0.1
+    """Largest angle in which a pick is attracted [rad]."""
 
 
 MAP_PICKS = MapPickLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapVolumeTuning:
+    """Volumes over a plane."""
+
+    cell_m: float = 0.02
+    """Smallest edge of a cell [m]."""
+    cell_times: float = 3.0
+    """A cell is at least as many times as wide as points are apart: it has points then."""
+    most_cells: int = 400_000
+    """In the box of a polygon; a larger one has larger cells."""
+
+
+MAP_VOLUMES = MapVolumeTuning()

@@ -3,7 +3,7 @@
 import { at } from "../address.js";
 import { name, readBytes, request } from "../http.js";
 
-/** @import {RayRequest} from "../http_types" */
+/** @import {MapIndex, RayRequest, VolumeRequest} from "../http_types" */
 
 const map = (/** @type {string} */ id) => at(`/api/projects/${name(id)}/map`);
 
@@ -17,24 +17,38 @@ export const readMapWalk = (/** @type {string} */ project_id) =>
  */
 export const pickOnMap = (project_id, ray) =>
   request("POST /api/projects/{project_id}/map/pick", { path: { project_id }, body: ray });
+/**
+ * @param {string} project_id
+ * @param {VolumeRequest} volume
+ */
+export const readVolume = (project_id, volume) =>
+  request("POST /api/projects/{project_id}/map/volume", { path: { project_id }, body: volume });
 
 /**
- * Reads the binary points of a map; the addresses name the map's hash, so browsers keep them.
+ * Reads the binary points of a map. The addresses name the map's hash and the layout of the bytes,
+ * so browsers keep them, and never take those of another layout.
  * @param {string} id
- * @param {string} key
+ * @param {Pick<MapIndex, "key" | "version">} index
  */
-export const pointReader = (id, key) => ({
+export const pointReader = (id, { key, version }) => ({
   sample: (/** @type {string} */ stored) =>
-    readBytes(`${map(id)}/${name(key)}/sample?stored=${stored}`),
+    readBytes(`${map(id)}/${name(key)}/sample?stored=${stored}&version=${version}`),
   part: (
     /** @type {string} */ stored,
     /** @type {number} */ tile,
     /** @type {{start: number, stop: number}} */ { start, stop },
   ) =>
     readBytes(
-      `${map(id)}/${name(key)}/points?stored=${stored}&tile=${tile}&start=${start}&stop=${stop}`,
+      `${map(id)}/${name(key)}/points?stored=${stored}&version=${version}` +
+        `&tile=${tile}&start=${start}&stop=${stop}`,
     ),
 });
 
 /** The page of the map. */
 export const mapUrl = (/** @type {string} */ id) => at(`/projects/${name(id)}/map/`);
+/**
+ * The page of the map at a stretch or place, as of a finding.
+ * @param {string} id
+ * @param {string} stretch
+ */
+export const mapPlaceUrl = (id, stretch) => `${mapUrl(id)}?${stretch}`;

@@ -1,0 +1,25 @@
+"""Limits of notes and saved views."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AnnotationLimits:
+    """What people may pin to a map."""
+
+    format: int = 1
+    """Of the files."""
+    max_file_bytes: int = 16 << 20
+    """A larger file was not written by us."""
+    max_notes: int = 5000
+    """Notes of a project."""
+    max_note_characters: int = 500
+    max_views: int = 200
+    """Saved views of a project."""
+    max_query_characters: int = 8000
+    """State of a view, as in the address of the page."""
+
+
+ANNOTATIONS = AnnotationLimits()

@@ -1,0 +1,101 @@
+// The list of measurements in the panel of the map, and as a file.
+
+import { idHere } from "../shared/address.js";
+import { html, nothing, repeat, targetOf } from "../shared/dom.js";
+import { resultOf, toCsv } from "./measure.js";
+import { numberField } from "./number_field.js";
+import { page } from "./page.js";
+import { volumeOf, volumeProblem } from "./volumes.js";
+
+/**
+ * @import {Act} from "./bar.js"
+ * @import {Measurement} from "./measure.js"
+ */
+
+const SAVED_MS = 1500; // until then a browser has begun to save
+
+/** Saves all measurements as CSV. */
+export function downloadMeasurements() {
+  const text = toCsv(page.state.measurements, page.index?.crs ?? "", volumeOf);
+  const file = document.createElement("a");
+  file.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
+  file.download = `${idHere()}-measurements.csv`;
+  file.click();
+  setTimeout(() => URL.revokeObjectURL(file.href), SAVED_MS);
+}
+
+/** The section of the panel. */
+export function measuredSection(/** @type {Act} */ act) {
+  const { measurements: all } = page.state;
+  const set = (/** @type {Measurement[]} */ next) => act.change({ measurements: next });
+  const rows = all.map((one, k) => ({ one, k }));
+  return html`<section aria-labelledby="measured-title">
+    <h2 id="measured-title">Measurements</h2>
+    <label class="check"
+      ><input type="checkbox" .checked=${page.snapping} @change=${act.snapping} /><span
+        >Snap to corners, edges, planes</span
+      ></label
+    >
+    ${
+      all.length
+        ? html`<ol class="rows">
+              ${repeat(
+                rows,
+                ({ k }) => k,
+                ({ one, k }) => row(one, k, act),
+              )}
+            </ol>
+            <div class="buttons">
+              <button type="button" @click=${act.csv}>Download CSV</button
+              ><button type="button" @click=${() => set([])}>Remove all</button>
+            </div>`
+        : html`<p class="quiet">None yet: press M and click two points.</p>`
+    }
+  </section>`;
+}
+
+/**
+ * @param {Measurement} one
+ * @param {number} at
+ * @param {Act} act
+ */
+function row(one, at, act) {
+  const all = page.state.measurements;
+  const set = (/** @type {Partial<Measurement>} */ next) =>
+    act.change({ measurements: all.map((each, k) => (k === at ? { ...each, ...next } : each)) });
+  const { value, parts } = resultOf(one, volumeOf(one));
+  const problem = volumeProblem(one);
+  return html`<li>
+    <input
+      aria-label="Name"
+      .value=${one.name}
+      maxlength="80"
+      @change=${(/** @type {Event} */ event) => set({ name: targetOf(event).value })}
+    />
+    ${
+      problem
+        ? html`<small class="error">${problem}</small>`
+        : html`<b class="value">${value}</b><small>${parts}</small>`
+    }
+    ${
+      one.kind === "volume"
+        ? numberField("Height of the base [m]", one.figure ?? null, (figure) => set({ figure }), {
+            usual: "plane fitted to the border",
+          })
+        : nothing
+    }
+    <span class="buttons"
+      >${
+        one.kind === "profile"
+          ? html`<button type="button" @click=${() => act.profile.show(one)}>Show</button>`
+          : nothing
+      }<button type="button" @click=${() => act.goTo(one.points[0])}>Go to</button
+      ><button
+        type="button"
+        @click=${() => act.change({ measurements: all.filter((_, k) => k !== at) })}
+      >
+        Remove
+      </button></span
+    >
+  </li>`;
+}

@@ -1,0 +1,156 @@
+// The profile of a strip of the map between two points, as a plot below the map.
+
+import { idHere } from "../shared/address.js";
+import { readSlice, sliceFileUrl } from "../shared/api.js";
+import { asError, byId, html, nothing, render, svg, targetOf } from "../shared/dom.js";
+import { askFirst } from "../shared/download.js";
+import { count } from "../shared/format.js";
+import { roundStep } from "../shared/scale_bar.js";
+import { PROFILE_M } from "./measure.js";
+import { heightsShown, page } from "./page.js";
+
+/**
+ * @import {SliceImageView, WindowSpec} from "../shared/http_types"
+ * @import {Measurement} from "./measure.js"
+ * @typedef {object} ProfileView
+ * @property {Measurement} of
+ * @property {SliceImageView | null} image
+ * @property {string} problem
+ */
+
+const id = idHere();
+const WIDE_PX = 1200;
+const TALL_PX = [120, 420];
+const MARGIN = { left: 46, bottom: 24, top: 8, right: 12 };
+const TICKS = 8;
+const BEYOND_M = 0.05;
+
+/** The strip of a profile, as the slices take it: u counts from the first point. */
+export function stripOf(/** @type {Measurement} */ { points: [a, b], figure }) {
+  const [low, high] = heightsShown();
+  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
+  return {
+    plane: {
+      kind: /** @type {const} */ ("vertical"),
+      a_m: /** @type {[number, number]} */ ([a[0], a[1]]),
+      b_m: /** @type {[number, number]} */ ([b[0], b[1]]),
+      thickness_m: figure ?? PROFILE_M,
+    },
+    window: { left: 0, right: length, bottom: low - BEYOND_M, top: high + BEYOND_M },
+  };
+}
+
+/**
+ * What shows a profile.
+ * @param {{draw: () => void, dark: () => boolean,
+ *   change: (of: Measurement, width: number) => Measurement}} on
+ */
+export function profileOf({ draw, dark, change }) {
+  async function show(/** @type {Measurement} */ of) {
+    const shown = (page.profile = /** @type {ProfileView} */ ({ of, image: null, problem: "" }));
+    draw();
+    try {
+      const { plane, window } = stripOf(of);
+      const tall = (WIDE_PX * (window.top - window.bottom)) / window.right;
+      shown.image = await readSlice(id, {
+        plane,
+        window,
+        color: "intensity",
+        width: WIDE_PX,
+        height: Math.round(Math.min(TALL_PX[1], Math.max(TALL_PX[0], tall))),
+        ground: dark() ? "dark" : "light",
+      });
+    } catch (error) {
+      shown.problem = asError(error).message;
+    }
+    draw();
+  }
+  return {
+    show,
+    close() {
+      page.profile = null;
+      draw();
+    },
+    widen: (/** @type {number} */ width) => page.profile && show(change(page.profile.of, width)),
+  };
+}
+
+/**
+ * Draws the plot; without a profile nothing.
+ * @param {HTMLElement} element
+ * @param {ReturnType<typeof profileOf>} act
+ */
+export function drawProfile(element, act) {
+  const { profile } = page;
+  element.hidden = !profile;
+  if (!profile) return render(nothing, element);
+  const { of, image, problem } = profile;
+  const ask = { ...stripOf(of), flat: true };
+  const places = () => ({ message: byId("message"), status: byId("status") });
+  const link = (/** @type {string} */ ending, /** @type {string} */ text) =>
+    html`<a class="button" href=${sliceFileUrl(id, ending, ask)} download @click=${askFirst(places)}
+      >${text}</a
+    >`;
+  return render(
+    html`<h2 id="profile-title">${of.name}</h2>
+      <div class="buttons">
+        <label
+          ><span>Width of the strip [m]</span
+          ><input
+            type="number"
+            min="0.01"
+            max="100"
+            step="0.05"
+            .value=${String(of.figure ?? PROFILE_M)}
+            @change=${(/** @type {Event} */ event) => {
+              const width = Number(targetOf(event).value);
+              if (width > 0 && width <= 100) act.widen(width);
+            }}
+        /></label>
+        ${link("csv", "CSV")} ${link("dxf", "DXF")}
+        <button type="button" @click=${act.close}>Close</button>
+      </div>
+      ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
+      ${image ? plot(image) : problem ? nothing : html`<p class="quiet">Drawing…</p>`}`,
+    element,
+  );
+}
+
+/** The image with its axes: distance from the first point, and height. */
+function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
+  const [wide, tall] = [
+    (window.right - window.left) / pixel_m,
+    (window.top - window.bottom) / pixel_m,
+  ];
+  const { left, right, top, bottom } = MARGIN;
+  const x = (/** @type {number} */ u) => left + (u - window.left) / pixel_m;
+  const y = (/** @type {number} */ z) => top + (window.top - z) / pixel_m;
+  const step = roundStep((window.right - window.left) / TICKS);
+  const ticks = (/** @type {number} */ from, /** @type {number} */ to) =>
+    Array.from(
+      { length: Math.max(0, Math.floor(to / step) - Math.ceil(from / step) + 1) },
+      (_, k) => Number(((Math.ceil(from / step) + k) * step).toFixed(6)),
+    );
+  const text = (/** @type {number} */ value) => Number(value.toPrecision(6));
+  return html`<svg
+      viewBox="0 0 ${wide + left + right} ${tall + top + bottom}"
+      role="img"
+      aria-label="Profile: ${count(points)} points, ${rangeText(window)}"
+    >
+      <image x=${left} y=${top} width=${wide} height=${tall} href="data:image/png;base64,${png}" />
+      ${ticks(window.left, window.right).map(
+        (u) =>
+          svg`<line x1=${x(u)} x2=${x(u)} y1=${top} y2=${top + tall + 5} />
+            <text x=${x(u)} y=${top + tall + 19} text-anchor="middle">${text(u)}</text>`,
+      )}
+      ${ticks(window.bottom, window.top).map(
+        (z) =>
+          svg`<line x1=${left - 5} x2=${left + wide} y1=${y(z)} y2=${y(z)} />
+            <text x=${left - 8} y=${y(z) + 4} text-anchor="end">${text(z)}</text>`,
+      )}
+    </svg>
+    <p class="quiet">Distance and height [m]; ${count(points)} points of the strip.</p>`;
+}
+
+const rangeText = (/** @type {WindowSpec} */ { right, left, bottom, top }) =>
+  `${(right - left).toFixed(2)} m long, heights ${bottom.toFixed(2)} to ${top.toFixed(2)} m`;

@@ -1,0 +1,61 @@
+// The page while its map is made again: it says so, and shows the new one when it is there.
+
+import { idHere } from "../shared/address.js";
+import { readMapIndex, watchJobs } from "../shared/api.js";
+import { html, only, render } from "../shared/dom.js";
+import { page } from "./page.js";
+import { format } from "./state.js";
+
+/** @import {JobView} from "../shared/http_types" */
+
+const id = idHere();
+const AGAIN = "map made again"; // in the history of the tab: it has just been loaded again
+
+/** Whether this page was loaded again because of a new map; says so once. */
+export function takeNews() {
+  const news = history.state === AGAIN;
+  if (news) history.replaceState(null, "");
+  return news;
+}
+
+/** Whether something is being done that a new page would lose. */
+const isBusy = () => page.draft.length > 0 || page.notes.draft !== null || page.drag !== null;
+
+/** Loads the page again, with its view and its measurements. */
+export function reload() {
+  history.replaceState(AGAIN, "", `?${format(page.state)}`);
+  location.reload();
+}
+
+/**
+ * Follows the jobs of the project.
+ * @param {HTMLElement} element where the page says what happens
+ */
+export function followJobs(element) {
+  const followed = { running: "", ended: "" };
+
+  async function look() {
+    const { key, version } = await readMapIndex(id);
+    if (key === page.index?.key && version === page.index.version) return render("", element);
+    if (!isBusy()) return reload();
+    render(
+      html`The map was made again.
+        <button type="button" @click=${reload}>Show the new map</button>`,
+      element,
+    );
+  }
+
+  const onJob = (/** @type {JobView} */ { job }) => {
+    if (job.project !== id) return;
+    if (!job.finished) {
+      followed.running = job.id;
+      render("This map is being made again. You see the one before.", element);
+    } else if (followed.running === job.id && followed.ended !== job.id) {
+      followed.ended = job.id;
+      look().catch(() => render("", element)); // it has no map now: what is shown stays
+    }
+  };
+  watchJobs(onJob, (linked) => {
+    only("page-head").linked = linked;
+  });
+}

@@ -1,0 +1,90 @@
+// Views of the map that people saved on the server, and the link to what is shown.
+
+import { idHere } from "../shared/address.js";
+import { readMapViews, removeMapView, saveMapView } from "../shared/api.js";
+import { html, nothing, targetOf, within } from "../shared/dom.js";
+import { when } from "../shared/format.js";
+import { page } from "./page.js";
+import { format } from "./state.js";
+
+/** @import {Act} from "./bar.js" */
+
+const id = idHere();
+
+/**
+ * What is done with saved views; a refusal is shown by the caller.
+ * @param {() => void} draw the page
+ */
+export function savedOf(draw) {
+  async function read() {
+    const { may_change, views } = await readMapViews(id);
+    Object.assign(page.saved, { all: views, may: may_change });
+    draw();
+  }
+  return {
+    read,
+    async keep(/** @type {string} */ name) {
+      await saveMapView(id, { name, query: format(page.state) });
+      await read();
+    },
+    async remove(/** @type {string} */ view) {
+      await removeMapView(id, view).finally(read);
+    },
+  };
+}
+
+/** Copies the link to what is shown, or says that it stands above. */
+export async function share() {
+  history.replaceState(null, "", `?${format(page.state)}`);
+  // Browsers have a clipboard on https and on this computer only.
+  await navigator.clipboard?.writeText(location.href);
+  page.reading = navigator.clipboard
+    ? "The link to this view is copied"
+    : "The address of this page is the link to this view: copy it there";
+}
+
+/** The section of the panel. */
+export function savedSection(/** @type {Act} */ act) {
+  const { all, may } = page.saved;
+  const submit = (/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const field = within(targetOf(event), "input", HTMLInputElement);
+    if (!field.value.trim()) return;
+    act.save(field.value.trim());
+    field.value = "";
+  };
+  return html`<section aria-labelledby="views-title">
+    <h2 id="views-title">Saved views</h2>
+    <ul class="rows">
+      ${all.map(
+        ({ id: view, name, query, who, time }) =>
+          html`<li>
+            <button type="button" class="place" @click=${() => act.open(query)}>
+              ${name} <small>${who}, ${when(time)}</small></button
+            >${
+              may
+                ? html`<button
+                    type="button"
+                    aria-label="Remove ${name}"
+                    @click=${() => act.forget(view)}
+                  >
+                    ×
+                  </button>`
+                : nothing
+            }
+          </li>`,
+      )}
+    </ul>
+    ${
+      may
+        ? html`<form class="line" @submit=${submit}>
+            <label
+              ><span>Name of this view</span><input maxlength="100" required autocomplete="off"
+            /></label>
+            <button>Save this view</button>
+          </form>`
+        : nothing
+    }
+    <p class="quiet">Kept on the server, for all of this project. A link holds the view, too.</p>
+  </section>`;
+}
