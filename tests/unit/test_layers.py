@@ -100,6 +100,8 @@ MAY_IMPORT = {
     "recon4/export/map_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
     | {"recon4.pose_graph.files", "recon4.recording.formats.poses"},
+    "recon4/export/geojson.py": STAGE | {"recon4.georeference"},
+    "recon4/export/notes.py": STAGE | {"recon4.export", "recon4.georeference"},
     "recon4/export/findings.py": STAGE
     | {
         "recon4.export",

@@ -276,7 +276,7 @@ const act = {
 function end() {
   page.flight.on = false;
   if (page.tool) choose("", stage);
-  Object.assign(page, { reading: "", draft: [], drag: null, chosen: null });
+  Object.assign(page, { reading: "", draft: [], drag: null, chosen: null, profile: null });
   change({ standing: false, mark: null });
 }
 

@@ -154,11 +154,11 @@ function form({ id: note, p, text }, act) {
  * @param {Act} act
  */
 function row(note, act) {
-  const { id: name, text, status, who, time, changed_by, changed, key } = note;
+  const { id: name, text, status, who, changed_by, changed, key } = note;
   const pin = notePins().find((one) => one.name === name);
   const { may } = page.notes;
-  const history =
-    changed === time ? `${who}, ${when(time)}` : `${who}; ${changed_by}, ${when(changed)}`;
+  const last = changed_by === who ? "" : `; ${changed_by}`;
+  const history = `${who}${last}, ${when(changed)}`;
   const earlier = key === page.index?.key ? "" : " · placed in an earlier map";
   return html`<li class=${status}>
     <button

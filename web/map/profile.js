@@ -22,7 +22,7 @@ const id = idHere();
 const WIDE_PX = 1200;
 const TALL_PX = [120, 420];
 const MARGIN = { left: 46, bottom: 24, top: 8, right: 12 };
-const TICKS = 8;
+const TICKS = { across: 8, up: 3 };
 const BEYOND_M = 0.05;
 
 /** The strip of a profile, as the slices take it: u counts from the first point. */
@@ -125,12 +125,15 @@ function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
   const { left, right, top, bottom } = MARGIN;
   const x = (/** @type {number} */ u) => left + (u - window.left) / pixel_m;
   const y = (/** @type {number} */ z) => top + (window.top - z) / pixel_m;
-  const step = roundStep((window.right - window.left) / TICKS);
-  const ticks = (/** @type {number} */ from, /** @type {number} */ to) =>
-    Array.from(
-      { length: Math.max(0, Math.floor(to / step) - Math.ceil(from / step) + 1) },
-      (_, k) => Number(((Math.ceil(from / step) + k) * step).toFixed(6)),
-    );
+  const ticks = (
+    /** @type {number} */ from,
+    /** @type {number} */ to,
+    /** @type {number} */ most,
+  ) => {
+    const step = roundStep((to - from) / most);
+    const [first, last] = [Math.ceil(from / step), Math.floor(to / step)];
+    return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => (first + k) * step);
+  };
   const text = (/** @type {number} */ value) => Number(value.toPrecision(6));
   return html`<svg
       viewBox="0 0 ${wide + left + right} ${tall + top + bottom}"
@@ -138,12 +141,12 @@ function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
       aria-label="Profile: ${count(points)} points, ${rangeText(window)}"
     >
       <image x=${left} y=${top} width=${wide} height=${tall} href="data:image/png;base64,${png}" />
-      ${ticks(window.left, window.right).map(
+      ${ticks(window.left, window.right, TICKS.across).map(
         (u) =>
           svg`<line x1=${x(u)} x2=${x(u)} y1=${top} y2=${top + tall + 5} />
             <text x=${x(u)} y=${top + tall + 19} text-anchor="middle">${text(u)}</text>`,
       )}
-      ${ticks(window.bottom, window.top).map(
+      ${ticks(window.bottom, window.top, TICKS.up).map(
         (z) =>
           svg`<line x1=${left - 5} x2=${left + wide} y1=${y(z)} y2=${y(z)} />
             <text x=${left - 8} y=${y(z) + 4} text-anchor="end">${text(z)}</text>`,

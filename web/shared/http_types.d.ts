@@ -562,6 +562,7 @@ export interface MapFacts {
 
 export interface MapIndex {
   key: string;
+  version: number;
   points: number;
   low_m: [number, number, number];
   high_m: [number, number, number];
@@ -573,6 +574,19 @@ export interface MapIndex {
   frame: string;
   surface: string;
   seconds: number;
+}
+
+export interface MapNote {
+  id: string;
+  p_map: [number, number, number];
+  key: string;
+  text: string;
+  status: "open" | "done";
+  who: string;
+  time: string;
+  changed_by: string;
+  changed: string;
+  revision: number;
 }
 
 export interface MapTile {
@@ -589,10 +603,27 @@ export interface MapVerdict {
   unobserved: Array<Unobserved>;
 }
 
+export interface MapViewsView {
+  may_change: boolean;
+  views: Array<SavedMapView>;
+}
+
+export interface MapVolume {
+  above_m3: number;
+  below_m3: number;
+  sd_m3: number;
+  area_m2: number;
+  unseen_m2: number;
+  base_m: number;
+  cell_m: number;
+}
+
 export interface MapWalk {
   t_s: Array<number>;
   positions_m: Array<[number, number, number]>;
   nodes_m: Array<[number, number, number]>;
+  marks: Array<OperatorMark>;
+  marks_left_out: number;
 }
 
 export interface Me {
@@ -658,10 +689,21 @@ export interface NewKey {
   public_key: string;
 }
 
+export interface NewMapView {
+  name: string;
+  query: string;
+}
+
 export interface NewMark {
   what?: "point" | "place";
   text?: string;
   ago_s?: number;
+}
+
+export interface NewNote {
+  p_map: [number, number, number];
+  text: string;
+  key: string;
 }
 
 export interface NewPassword {
@@ -710,6 +752,24 @@ export interface NewWebhook {
 export interface NewWebhookView {
   webhook: Webhook;
   secret: string;
+}
+
+export interface NoteChange {
+  revision: number;
+  text?: string | null;
+  status?: "open" | "done" | null;
+}
+
+export interface NotesView {
+  may_change: boolean;
+  notes: Array<MapNote>;
+}
+
+export interface OperatorMark {
+  t_s: number;
+  p_map: [number, number, number];
+  text: string;
+  who: string;
 }
 
 export interface OtherMap {
@@ -857,6 +917,7 @@ export interface ProjectView {
 
 export interface RayHit {
   point: HitPoint | null;
+  snap: SnapPoint | null;
 }
 
 export interface RayRequest {
@@ -866,6 +927,8 @@ export interface RayRequest {
   pixel_rad: number;
   point_m: number;
   planes?: Array<[number, number, number, number]>;
+  snap_rad?: number;
+  snap_m?: number;
 }
 
 export type Reason = "" | "overlap < t_o" | "error > limit" | "not converged" | "too few segments match" | "degenerate" | "free space contradicts it" | "neighboring places do not confirm it" | "ambiguous: places look alike" | "verification median > limit" | "outlier in the robust solution" | "operator";
@@ -1063,6 +1126,14 @@ export interface SaidFinding {
   values: Record<string, boolean | number | string | null>;
 }
 
+export interface SavedMapView {
+  id: string;
+  name: string;
+  query: string;
+  who: string;
+  time: string;
+}
+
 export interface SavedRig {
   id: string;
   version: number;
@@ -1218,6 +1289,13 @@ export interface SlicePlaneSpec {
   thickness_m?: number;
 }
 
+export interface SnapPoint {
+  kind: "corner" | "edge" | "plane";
+  p_map: [number, number, number];
+  p_crs: [number, number, number] | null;
+  sd_m: number;
+}
+
 export interface StageStatus {
   stage: string;
   state: string;
@@ -1327,6 +1405,14 @@ export type Usability = "good" | "check" | "do not use";
 
 export type Verdict = "accepted" | "rejected" | "unverified";
 
+export interface VolumeRequest {
+  key: string;
+  polygon: Array<[number, number]>;
+  base_m?: number | null;
+  low_m?: number | null;
+  high_m?: number | null;
+}
+
 export interface WalkStretch {
   positions_m: Array<[number, number, number]>;
 }
@@ -1372,12 +1458,20 @@ export interface Operations {
     path: { project_id: string };
     response: Deleted;
   };
+  "DELETE /api/projects/{project_id}/notes/{note_id}": {
+    path: { project_id: string; note_id: string };
+    response: string;
+  };
   "DELETE /api/projects/{project_id}/slices/control/site": {
     path: { project_id: string };
     response: string;
   };
   "DELETE /api/projects/{project_id}/slices/references/{reference_id}": {
     path: { project_id: string; reference_id: string };
+    response: string;
+  };
+  "DELETE /api/projects/{project_id}/views/{view_id}": {
+    path: { project_id: string; view_id: string };
     response: string;
   };
   "DELETE /api/recordings/{name}": {
@@ -1502,12 +1596,20 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/map/{key}/points": {
     path: { project_id: string; key: string };
-    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; tile: number; start: number; stop: number };
+    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; version: number; tile: number; start: number; stop: number };
     response: string;
   };
   "GET /api/projects/{project_id}/map/{key}/sample": {
     path: { project_id: string; key: string };
-    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness" };
+    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; version: number };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/notes": {
+    path: { project_id: string };
+    response: NotesView;
+  };
+  "GET /api/projects/{project_id}/notes.geojson": {
+    path: { project_id: string };
     response: string;
   };
   "GET /api/projects/{project_id}/report": {
@@ -1619,6 +1721,10 @@ export interface Operations {
     path: { project_id: string };
     response: string;
   };
+  "GET /api/projects/{project_id}/views": {
+    path: { project_id: string };
+    response: MapViewsView;
+  };
   "GET /api/recordings": {
     query?: { folder?: string };
     response: Array<FolderEntry>;
@@ -1694,6 +1800,11 @@ export interface Operations {
     path: { project_id: string };
     body: ProjectChanges;
     response: ProjectView;
+  };
+  "PATCH /api/projects/{project_id}/notes/{note_id}": {
+    path: { project_id: string; note_id: string };
+    body: NoteChange;
+    response: MapNote;
   };
   "PATCH /api/uploads/files/{file_id}": {
     path: { file_id: string };
@@ -1789,6 +1900,16 @@ export interface Operations {
     body: RayRequest;
     response: RayHit;
   };
+  "POST /api/projects/{project_id}/map/volume": {
+    path: { project_id: string };
+    body: VolumeRequest;
+    response: MapVolume;
+  };
+  "POST /api/projects/{project_id}/notes": {
+    path: { project_id: string };
+    body: NewNote;
+    response: MapNote;
+  };
   "POST /api/projects/{project_id}/remake": {
     path: { project_id: string };
     response: JobView;
@@ -1867,6 +1988,11 @@ export interface Operations {
     path: { project_id: string; reference_id: string };
     body: AlignRequest;
     response: ListedReference;
+  };
+  "POST /api/projects/{project_id}/views": {
+    path: { project_id: string };
+    body: NewMapView;
+    response: SavedMapView;
   };
   "POST /api/rigs": {
     body: NewRig;

@@ -32,7 +32,6 @@ router = APIRouter(
     tags=["notes"],
     responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
 )
-CONFLICT = {409: {"model": ProblemDetail}}
 
 
 @router.get("/notes", dependencies=LOOK, summary="Notes on a map")
@@ -52,7 +51,12 @@ def add_note(
     return note
 
 
-@router.patch("/notes/{note_id}", dependencies=PROCESS, responses=CONFLICT, summary="Change a note")
+@router.patch(
+    "/notes/{note_id}",
+    dependencies=PROCESS,
+    responses={409: {"model": ProblemDetail}},
+    summary="Change a note",
+)
 def change_note(
     project_id: str, note_id: EntryId, change: NoteChange, *, server: Server, request: Request
 ) -> MapNote:
