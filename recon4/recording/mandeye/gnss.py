@@ -69,30 +69,39 @@ def _row_of_cells(line: str, report: ImportReport) -> _Row | None:
     lat_deg, lon_deg, altitude_m = (parse_float(cell) for cell in cells[1:4])
     stated = cells[MANDEYE.quality_cell : MANDEYE.quality_cell + 1]
     quality = int(stated[0]) if stated else int(GnssQuality.SINGLE)
+    if quality not in set(GnssQuality):
+        quality = int(GnssQuality.SINGLE)
     if quality == GnssQuality.INVALID or not math.isfinite(lat_deg + lon_deg):
         report.count("gnss_no_fix")
         return None
     if not is_on_earth(lat_deg, lon_deg):
         raise ValueError("no place on earth")
     separation_m = parse_float(cells[6])
-    height_m = height_of_gga(
-        altitude_m, separation_m if math.isfinite(separation_m) else "", report
-    )
-    return _time_ns(cells[0]), lat_deg, lon_deg, height_m, min(max(quality, 0), 255)
+    separation = separation_m if math.isfinite(separation_m) else ""
+    height_m = math.nan
+    if math.isfinite(altitude_m):  # else there is no height
+        height_m = height_of_gga(altitude_m, separation, report)
+    return _time_ns(cells[0]), lat_deg, lon_deg, height_m, quality
 
 
 def _row_of_sentence(line: str, report: ImportReport) -> _Row | None:
     time, since_1970_ms, sentence = line.split(maxsplit=2)
     if sentence[3:6] != "GGA":
         return None
-    fix = parse_fix(sentence.strip().encode(), int(since_1970_ms) * 1_000_000, report)
+    near_ns = 1_000_000 * _whole(since_1970_ms, most=1e3 * MANDEYE.latest_s)
+    fix = parse_fix(sentence.strip().encode(), near_ns, report)
     if fix is None:
         return None
     return _time_ns(time), fix.lat_deg, fix.lon_deg, fix.height_m, int(fix.quality)
 
 
 def _time_ns(cell: str) -> int:
-    if not (cell.isascii() and cell.isdigit()) or int(cell) >= MANDEYE.latest_s * 1e9:
+    return _whole(cell, most=1e9 * MANDEYE.latest_s)
+
+
+def _whole(cell: str, *, most: float) -> int:
+    """A time as a whole number."""
+    if not (cell.isascii() and cell.isdigit() and len(cell) <= 19) or int(cell) >= most:
         raise ValueError("no time")
     return int(cell)
 
