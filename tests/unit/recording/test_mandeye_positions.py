@@ -97,3 +97,25 @@ def test_a_damaged_position_is_dropped_and_a_damaged_file_left_out(copy, line):
 
     assert len(fixes) == 40 and report.counts["gnss_lines_damaged"] == int(bool(line))
     assert report.counts["files_corrupt"] == 1
+
+
+def test_heights_that_are_none_and_unknown_qualities_are_not_trusted(copy):
+    write_positions(copy)
+    path = copy / "gnss0000.gnss"
+    text = path.read_text("utf-8").replace(" 250.5 ", " nan ").replace(" 4 ", " 77 ")
+    path.write_text(text, "utf-8")
+    (copy / "gnss0001.gnss").unlink()
+    fixes, _ = positions(copy)
+
+    assert len(fixes) == 10 and np.isnan(fixes.height_m).all()
+    assert set(fixes.quality.tolist()) == {1}
+
+
+def test_a_time_that_is_beyond_all_clocks_is_a_damaged_line(copy):
+    write_positions(copy, ending="nmea", fixes=40)
+    path = copy / "gnss0000.nmea"
+    path.write_text(path.read_text("utf-8") + f"{T0_NS} {'9' * 400} {gga(1)}\n", "utf-8")
+
+    _, report = positions(copy)
+
+    assert report.counts["gnss_lines_damaged"] == 1
