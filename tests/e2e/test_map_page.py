@@ -111,6 +111,7 @@ def test_a_measured_distance_is_that_of_the_walls(server, page):
 
 @looks("desktop light")
 def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(server, page, screenshot):
+    page.emulate_media(reduced_motion="reduce")  # flights take no time
     opened(page, server, f"?{TOP}&z=..")
     panel = page.locator("#panel")
     expect(panel.get_by_role("button", name="New note")).to_be_visible()

@@ -33,7 +33,7 @@ export const KINDS = {
 export const PROFILE_M = 0.2; // usual width of the strip of a profile
 const VOLUME = { above_m3: NaN, below_m3: NaN, sd_m3: NaN };
 
-const meters = (/** @type {number} */ m) => `${m.toFixed(3)} m`;
+const meters = (/** @type {number} */ m) => `${(Math.round(1000 * m) / 1000 + 0).toFixed(3)} m`;
 
 /**
  * The parts of a distance [m].

@@ -39,7 +39,7 @@ export function volumeProblem(/** @type {Measurement} */ one) {
   return found instanceof Error ? found.message : "";
 }
 
-/** Asks for the volumes that are not known yet. */
+/** Asks for the volumes that are not known yet; what was refused stays so until it is changed. */
 export function askVolumes(/** @type {() => void} */ draw) {
   for (const one of page.state.measurements.filter(({ kind }) => kind === "volume")) {
     const name = nameOf(one);
