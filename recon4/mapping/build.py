@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,8 +20,9 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs, MapNotes
 from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.threads import in_order
 from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
-from recon4.mapping.tile_memory import Scratch
+from recon4.mapping.tile_memory import Scratch, TileMeans
 from recon4.mapping.tile_writer import PackedTile, TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import BUCKETS, MAP_BUILD, TILE_SURFACES
@@ -33,10 +34,8 @@ from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
 from recon4.progress import Progress, Silent, track
+from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.settings import MapSettings
-
-Item = TypeVar("Item")
-Made = TypeVar("Made")
 
 
 class PointClasses(Protocol):
@@ -98,10 +97,7 @@ def build_map(
         paths = SensorPaths.of(starts, inputs.trajectory, rig)
         recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, inputs.covariances)
         with TileWriter(out, _fields(recipe), tile_m=grid.tile_m, paths=paths) as writer:
-            finish = partial(
-                _finish_tile, buckets=buckets, recipe=recipe, scratch=Scratch(), writer=writer
-            )
-            removed = _finish_tiles(buckets.tiles(), finish, writer, progress=progress)
+            removed = _finish_tiles(buckets, recipe, writer, progress=progress)
             writer.notes = MapNotes(
                 voxel_m=settings.voxel_m,
                 crs=inputs.crs,
@@ -150,44 +146,57 @@ def _distribute(
         for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
             buckets.add(part, pool)
         buckets.flush(pool)
+    return_freed_memory()
     return starts
 
 
 def _finish_tile(
-    tile: Tile, *, buckets: TileBuckets, recipe: Recipe, scratch: Scratch, writer: TileWriter
+    tile: Tile, records: Records, *, recipe: Recipe, means: TileMeans, writer: TileWriter
 ) -> tuple[PackedTile, Counter[str]]:
     """Make a tile and compress it; with what was removed from it."""
-    made = make_tile(buckets.read(tile), tile, recipe, scratch=scratch)
-    buckets.drop(tile)
-    return writer.pack(tile, made.blocks, points=made.points, strays=made.strays), made.removed
+    made = make_tile(records, tile, recipe, means=means)
+    packed = writer.pack(tile, made.blocks, points=made.points, strays=made.strays, each=means.each)
+    return packed, made.removed
 
 
 def _finish_tiles(
-    tiles: Sequence[Tile],
-    finish: Callable[[Tile], tuple[PackedTile, Counter[str]]],
-    writer: TileWriter,
-    *,
-    progress: Progress,
+    buckets: TileBuckets, recipe: Recipe, writer: TileWriter, *, progress: Progress
 ) -> Counter[str]:
+    """Write all tiles; what was removed from them."""
     removed: Counter[str] = Counter()
+    tiles = buckets.tiles()
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        made = in_order(pool, finish, tiles)
+        made = _made_tiles(buckets, pool, recipe=recipe, writer=writer)
         for packed, part in track(made, progress, what="map", unit="tiles", total=len(tiles)):
             writer.write(packed)
             removed += part
     return removed
 
 
-def in_order(
-    pool: ThreadPoolExecutor, work: Callable[[Item], Made], items: Iterable[Item]
-) -> Iterator[Made]:
-    """Results in the order of the items, at most one item per worker ahead."""
-    waiting: deque[Future[Made]] = deque()
+def _made_tiles(
+    buckets: TileBuckets, pool: ThreadPoolExecutor, *, recipe: Recipe, writer: TileWriter
+) -> Iterator[tuple[PackedTile, Counter[str]]]:
+    """Tiles in their order: several small ones at a time, of a large one several parts.
+
+    So there is never more than one large tile in memory.
+    """
+    finish = partial(_finish_tile, recipe=recipe, writer=writer)
+    small, large = TileMeans(Scratch()), TileMeans(None, partial(in_order, pool))
+    waiting: deque[Future[tuple[PackedTile, Counter[str]]]] = deque()
     try:
-        for item in items:
-            waiting.append(pool.submit(work, item))
-            if len(waiting) > MAP_BUILD.workers:
+        for tile in buckets.tiles():
+            records = buckets.read(tile)
+            buckets.drop(tile)
+            is_large = len(records) >= MAP_BUILD.large
+            if not is_large:
+                waiting.append(pool.submit(finish, tile, records, means=small))
+            while len(waiting) > (0 if is_large else MAP_BUILD.workers):
                 yield waiting.popleft().result()
+            if is_large:
+                small = TileMeans(Scratch())  # what the threads held is free
+                return_freed_memory()
+                yield finish(tile, records, means=large)
+            del records  # before the next ones are read
         while waiting:
             yield waiting.popleft().result()
     finally:

@@ -11,17 +11,17 @@ from recon4.kernels.surface_cells import number_cells
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, Views
 from recon4.mapping.surface_fit import TUNING, FittedSurfaces, Noise, fit_rows
-from recon4.mapping.tile_memory import Scratch
+from recon4.mapping.tile_memory import Scratch, TileMeans
 from recon4.mapping.tuning import SPARSE_SURFACES
 
 
 def with_sparse_places(
     records: Records,
     found: FittedSurfaces,
-    grid: Grid,
     *,
+    grid: Grid,
     noise_m: float,
-    scratch: Scratch | None = None,
+    means: TileMeans | None = None,
 ) -> FittedSurfaces:
     """Put points without a surface onto those fitted to windows three times as large.
 
@@ -33,22 +33,24 @@ def with_sparse_places(
         found: What it found; changed in place.
         grid: The grid.
         noise_m: Standard deviation of a range [m].
-        scratch: Memory to work in; None = fresh memory.
+        means: Memory to work in.
     """
     from scipy.ndimage import maximum_filter  # slow to import, and readers of maps need none
 
-    loose = ~found.on_surface & (found.support < SPARSE_SURFACES.few)
-    if loose.sum() <= SPARSE_SURFACES.share * len(records):
+    fitted = found.support > 0
+    loose = fitted & ~found.on_surface & (found.support < SPARSE_SURFACES.few)
+    if loose.sum() <= SPARSE_SURFACES.share * np.count_nonzero(fitted):
         return found
     scale = SPARSE_SURFACES.scale
     tile_cells = -(-grid.tile_cells // scale)
     coarse = Grid(grid.voxel_m, scale * grid.cell_voxels, tile_cells, grid.thin, 1)
-    array = (scratch or Scratch()).array
+    array = ((means and means.scratch) or Scratch()).array
     cell, xyz = array("coarse_cells", (len(records),), np.int32), Views.of(records).f4
     number_cells(xyz, coarse.cell_m, coarse.side_cells, coarse.halo_cells, cell)
     marked = np.zeros((coarse.side_cells,) * 3, np.bool_)
     marked.flat[cell[loose]] = True
-    wanted = np.flatnonzero(maximum_filter(marked, SPARSE_SURFACES.reach).ravel()[cell])
+    near = maximum_filter(marked, SPARSE_SURFACES.reach).ravel()[cell]
+    wanted = np.flatnonzero(near & fitted)
     rows = wanted[np.argsort(cell[wanted], kind="stable")]
     noise = Noise(noise_m, SPARSE_SURFACES.noise * noise_m)
     every = 0, coarse.side_cells

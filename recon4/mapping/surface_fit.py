@@ -127,29 +127,37 @@ class FittedSurfaces:
     stray: NDArray[np.bool_]
     """Returns of no surface, few beside those of the surfaces around them, (N,)."""
     support: NDArray[np.int32]
-    """Points in the 3 x 3 x 3 cells around, the point itself included, (N,)."""
+    """Points in the 3 x 3 x 3 cells around, the point itself included; 0 = the surfaces are not
+    fitted to it, (N,)."""
 
-    def copy(self, rows: slice, to: FittedSurfaces, to_rows: slice, *, first: int) -> None:
-        """Copy what is known of some points, whose surfaces are in ``to`` from row ``first`` on."""
-        to.shift_m[to_rows] = self.shift_m[rows]
-        to.stray[to_rows] = self.stray[rows]
-        to.support[to_rows] = self.support[rows]
-        np.add(self.surface_of[rows], first, out=to.surface_of[to_rows])
+    def clear(self) -> NDArray[np.float32]:
+        """State that no point has a surface; the row that says so is the first, (1, 6)."""
+        for values in (self.shift_m, self.surface_of, self.stray, self.support):
+            values.fill(0)
+        return np.array([[0.0, 0.0, 0.0, np.nan, 0.0, 0.0]], np.float32)
 
-    def among(self, rows: NDArray[np.bool_]) -> FittedSurfaces:
-        """The same as of some of more points; the others have no surface and are no stray returns.
+    def copy(
+        self,
+        begin: int,
+        to: FittedSurfaces,
+        to_rows: slice,
+        *,
+        among: NDArray[np.bool_],
+    ) -> None:
+        """Copy what is known of points that lie one after the other.
 
         Args:
-            rows: Which of all points these are, (M,).
+            begin: Row of the first.
+            to: Receives it, with the same rows of surfaces.
+            to_rows: Rows of ``to`` that they are of.
+            among: Which rows of ``to`` they are, in their order, (M,).
         """
-        none = np.array([[0.0, 0.0, 0.0, np.nan, 0.0, 0.0]], np.float32)
-        shift_m = np.zeros((len(rows), 3), np.float32)
-        surface_of = np.full(len(rows), len(self.surfaces), np.int32)
-        stray, support = np.zeros(len(rows), np.bool_), np.zeros(len(rows), np.int32)
-        shift_m[rows], surface_of[rows] = self.shift_m, self.surface_of
-        stray[rows], support[rows] = self.stray, self.support
-        surfaces = np.concatenate([self.surfaces, none])
-        return FittedSurfaces(shift_m, surface_of, surfaces, stray, support)
+        of = among[to_rows]
+        rows = slice(begin, begin + int(np.count_nonzero(of)))
+        to.shift_m[to_rows][of] = self.shift_m[rows]
+        to.stray[to_rows][of] = self.stray[rows]
+        to.support[to_rows][of] = self.support[rows]
+        to.surface_of[to_rows][of] = self.surface_of[rows]
 
     @property
     def on_surface(self) -> NDArray[np.bool_]:

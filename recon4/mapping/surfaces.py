@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,54 +12,124 @@ from numpy.typing import NDArray
 from recon4.kernels import surface_cells
 from recon4.kernels.surface_records import SURFACE
 from recon4.mapping.grid import Grid
-from recon4.mapping.records import RECORD, Records, Views, joined
+from recon4.mapping.records import RECORD, Records, Views, chosen_records, gathered
 from recon4.mapping.surface_fit import FittedSurfaces, Noise, fit_rows
-from recon4.mapping.tile_memory import Scratch
+from recon4.mapping.tile_memory import Scratch, TileMeans
 from recon4.mapping.tuning import TILE_SURFACES
 
 
 def fit_surfaces(
-    records: Records, grid: Grid, *, noise_m: float, scratch: Scratch | None = None
+    records: Records,
+    grid: Grid,
+    *,
+    noise_m: float,
+    stands: NDArray[np.bool_] | None = None,
+    means: TileMeans | None = None,
 ) -> FittedSurfaces:
     """Fit the surfaces of a tile, some rows of cells at a time.
+
+    Only the records that are fitted at once are copied, not the tile.
 
     Args:
         records: In the order of their voxels, with the halo, (N,).
         grid: The grid.
         noise_m: Standard deviation of a range [m].
-        scratch: Holds the result and what it is computed from; None = fresh memory.
+        stands: Records that surfaces are fitted to; the others have none, (N,). None = all.
+        means: Memory in which they are computed, and threads.
     """
-    n, array = len(records), (scratch or Scratch()).array
+    n, means = len(records), means or TileMeans()
+    stands = np.ones(n, np.bool_) if stands is None else stands
     found = FittedSurfaces(
-        array("shift_m", (n, 3), np.float32),
-        array("surface_of", (n,), np.int32),
+        np.empty((n, 3), np.float32),
+        np.empty(n, np.int32),
         np.empty((0, SURFACE), np.float32),
-        array("stray", (n,), np.bool_),
-        array("support", (n,), np.int32),
+        np.empty(n, np.bool_),
+        np.empty(n, np.int32),
     )
-    noise = Noise(noise_m, noise_m)
-    if n < TILE_SURFACES.slab + TILE_SURFACES.slab // 2:
-        every = slice(0, n)
-        part = fit_rows(records, grid, (0, grid.side_cells), noise=noise, array=array)
-        part.copy(every, found, every, first=0)
-        return replace(found, surfaces=part.surfaces.copy())
-    firsts = _first_of_rows(records, grid)
-    surfaces, count = [], 0
-    for low, high in _slabs(np.diff(firsts).reshape(-1, grid.side_cells).sum(axis=0)):
-        own = _runs(firsts, grid, (low, high))
-        rows = max(low - TILE_SURFACES.margin, 0), min(high + TILE_SURFACES.margin, grid.side_cells)
-        runs = _runs(firsts, grid, rows)
-        slab = array("slab", (sum(run.stop - run.start for run in runs),), RECORD)
-        joined([records[run] for run in runs], slab)
-        part = fit_rows(slab, grid, rows, noise=noise, array=array)
-        begin = 0
-        for run, mine in zip(runs, own, strict=True):
-            at = begin + mine.start - run.start
-            part.copy(slice(at, at + mine.stop - mine.start), found, mine, first=count)
-            begin += run.stop - run.start
-        surfaces.append(part.surfaces.copy())
-        count += len(part.surfaces)
+    surfaces = [found.clear()]
+    slabs = list(_slabs(records, grid, stands))
+    fit = partial(
+        _fit_slab,
+        tile=_Tile(records, stands, grid),
+        noise=Noise(noise_m, noise_m),
+        scratch=means.scratch or Scratch(),
+        found=found,
+    )
+    count = len(surfaces[0])
+    for slab, made in zip(slabs, means.each(fit, slabs), strict=True):
+        for run in slab.runs:
+            found.surface_of[run.own][stands[run.own]] += count
+        surfaces.append(made)
+        count += len(made)
     return replace(found, surfaces=np.concatenate(surfaces))
+
+
+@dataclass(frozen=True, slots=True)
+class _Tile:
+    """A tile, and which of its records surfaces are fitted to."""
+
+    records: Records
+    stands: NDArray[np.bool_]
+    grid: Grid
+
+    def count(self, rows: slice) -> int:
+        """How many of some rows surfaces are fitted to."""
+        return int(np.count_nonzero(self.stands[rows]))
+
+    def gathered(self, slab: _Slab, scratch: Scratch) -> Records:
+        """The records of a slab that surfaces are fitted to."""
+        parts = (
+            chosen_records(self.records[run.every], self.stands[run.every]) for run in slab.runs
+        )
+        if len(slab.runs) == 1:
+            return next(parts)
+        counts = [self.count(run.every) for run in slab.runs]
+        return gathered(parts, scratch.array("slab", (sum(counts),), RECORD))
+
+
+def _fit_slab(
+    slab: _Slab, *, tile: _Tile, noise: Noise, scratch: Scratch, found: FittedSurfaces
+) -> NDArray[np.float32]:
+    """Fit a slab; its surfaces, (K, 6), whose rows in ``found`` are counted from 0."""
+    records = tile.gathered(slab, scratch)
+    fitted = fit_rows(records, tile.grid, slab.rows, noise=noise, array=scratch.array)
+    begin = 0
+    for run in slab.runs:
+        margin = tile.count(slice(run.every.start, run.own.start))
+        fitted.copy(begin + margin, found, run.own, among=tile.stands)
+        begin += tile.count(run.every)
+    return fitted.surfaces.copy()
+
+
+@dataclass(frozen=True, slots=True)
+class _Run:
+    """Records of a tile that lie one after the other."""
+
+    every: slice
+    own: slice
+    """Without those of the margins of a slab."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Slab:
+    """What is fitted at once."""
+
+    rows: tuple[int, int]
+    """First row of cells along y, margins included, and the first beyond."""
+    runs: list[_Run]
+
+
+def _slabs(records: Records, grid: Grid, stands: NDArray[np.bool_]) -> Iterator[_Slab]:
+    n, moves = len(records), np.flatnonzero(~stands)
+    if n - len(moves) < TILE_SURFACES.slab + TILE_SURFACES.slab // 2:
+        yield _Slab((0, grid.side_cells), [_Run(slice(0, n), slice(0, n))])
+        return
+    firsts, side = _first_of_rows(records, grid), grid.side_cells
+    standing = np.diff(firsts - np.searchsorted(moves, firsts))
+    for low, high in _row_spans(standing.reshape(-1, side).sum(axis=0)):
+        rows = max(low - TILE_SURFACES.margin, 0), min(high + TILE_SURFACES.margin, side)
+        every, own = _runs(firsts, grid, rows), _runs(firsts, grid, (low, high))
+        yield _Slab(rows, [_Run(*pair) for pair in zip(every, own, strict=True)])
 
 
 def _first_of_rows(records: Records, grid: Grid) -> NDArray[np.int64]:
@@ -81,7 +152,7 @@ def _runs(firsts: NDArray[np.int64], grid: Grid, rows: tuple[int, int]) -> list[
     return [slice(firsts[k * side + low], firsts[k * side + high]) for k in range(side)]
 
 
-def _slabs(counts: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
+def _row_spans(counts: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
     """First and last row (not included) of parts of about `TILE_SURFACES.slab` records.
 
     Slabs are upright: a floor would put most of a tile into one of layers.

@@ -21,11 +21,19 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.intensity import normalized_intensity
 from recon4.mapping.neighborhood_classes import mark_noise
 from recon4.mapping.normals import Normals, local_normals
-from recon4.mapping.records import Records, Tile, Views, classes_of, is_own, to_sensor_m
+from recon4.mapping.records import (
+    Records,
+    Tile,
+    Views,
+    chosen_records,
+    classes_of,
+    is_own,
+    to_sensor_m,
+)
 from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
-from recon4.mapping.tile_memory import Scratch
+from recon4.mapping.tile_memory import TileMeans
 from recon4.mapping.tile_order import stored_blocks
 from recon4.mapping.tuning import TILES
 from recon4.model.classes import PointClass, is_delivered
@@ -89,23 +97,22 @@ class MadeTile:
     """Columns of a tile, and counts of removed points by reason."""
 
     removed: Counter[str]
-    blocks: Iterator[Columns]
-    """The columns, block by block, each in spatial order; valid until the thread makes its next
-    tile."""
+    blocks: Iterator[Callable[[], Columns]]
+    """Makes the columns, block by block, each in spatial order."""
     points: int
     """Rows of the first blocks."""
     strays: int = 0
     """Rows of the other blocks, left out of the map: stray returns, the carrier, what moves."""
 
 
-def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch) -> MadeTile:
+def make_tile(records: Records, tile: Tile, recipe: Recipe, *, means: TileMeans) -> MadeTile:
     """Remove noise from the records of a tile and compute the columns of the rest.
 
     Args:
         records: In the order of their voxels, thinned, with the halo.
         tile: Index of the tile.
         recipe: Parameters.
-        scratch: Memory to work in.
+        means: Memory to work in, and threads.
     """
     settings = recipe.settings
     removed: Counter[str] = Counter()
@@ -113,7 +120,7 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch)
         records, removed["far"] = _without_far(records, settings.far_ratio)
     own, classes = is_own(records), classes_of(records)
     if settings.surface == "fitted":
-        surfaces = _surfaces(records, classes, recipe, scratch=scratch)
+        surfaces = _surfaces(records, classes, recipe, means=means)
         mark_noise(classes, surfaces, settings.min_neighborhood)
         columns = partial(_fitted_columns, records, surfaces, recipe=recipe)
     else:
@@ -125,40 +132,36 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch)
         columns = partial(_raw_columns, records, normals, recipe=recipe)
     delivered = is_delivered(classes)
     points, left_out = np.flatnonzero(own & delivered), np.flatnonzero(own & ~delivered)
+    block = partial(_block, columns_of=columns, classes=classes, tile=tile, recipe=recipe)
     rows = chain(stored_blocks(points), stored_blocks(left_out))
-    blocks = _blocks(rows, columns, classes=classes, tile=tile, recipe=recipe)
+    blocks = (partial(block, part) for part in rows)
     return MadeTile(removed, blocks, len(points), len(left_out))
 
 
-def _blocks(
-    blocks: Iterator[NDArray[np.intp]],
-    columns_of: Callable[[NDArray[np.intp]], Columns],
+def _block(
+    rows: NDArray[np.intp],
     *,
+    columns_of: Callable[[NDArray[np.intp]], Columns],
     classes: NDArray[np.uint8],
     tile: Tile,
     recipe: Recipe,
-) -> Iterator[Columns]:
-    origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
-    for rows in blocks:
-        columns = columns_of(rows)
-        columns["classification"] = classes[rows]
-        if recipe.covariances:
-            p_map = columns["xyz"] + origin_m
-            columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
-        yield columns
+) -> Columns:
+    columns = columns_of(rows)
+    columns["classification"] = classes[rows]
+    if recipe.covariances:
+        p_map = columns["xyz"] + np.array(tile, dtype=np.float64) * recipe.grid.tile_m
+        columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
+    return columns
 
 
 def _surfaces(
-    records: Records, classes: NDArray[np.uint8], recipe: Recipe, *, scratch: Scratch
+    records: Records, classes: NDArray[np.uint8], recipe: Recipe, *, means: TileMeans
 ) -> FittedSurfaces:
     """The surfaces of what stands; nothing is fitted to what moves, or is no surface."""
     grid, noise_m = recipe.grid, recipe.noise_m
     stands = classes == PointClass.UNCLASSIFIED
-    all_stand = bool(stands.all())
-    standing = records if all_stand else np.compress(stands, records)
-    found = fit_surfaces(standing, grid, noise_m=noise_m, scratch=scratch)
-    found = with_sparse_places(standing, found, grid, noise_m=noise_m, scratch=scratch)
-    return found if all_stand else found.among(stands)
+    found = fit_surfaces(records, grid, noise_m=noise_m, stands=stands, means=means)
+    return with_sparse_places(records, found, grid=grid, noise_m=noise_m, means=means)
 
 
 def _normals(records: Records, classes: NDArray[np.uint8], cell_m: float) -> Normals:
@@ -207,7 +210,7 @@ def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
     keep = own.copy()
     range_m = np.linalg.norm(to_sensor_m(records), axis=1)
     seen_from_far(np.ascontiguousarray(records["xyz"]), range_m, TILES.far_cell_m, ratio, keep)
-    return np.compress(keep | ~own, records), int(own.sum() - keep.sum())
+    return chosen_records(records, keep | ~own), int(own.sum() - keep.sum())
 
 
 def _columns(

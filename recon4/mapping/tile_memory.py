@@ -1,13 +1,16 @@
-"""Memory that is used again for the next tile."""
+"""Memory that is used again for the next tile, and threads for the parts of one."""
 
 from __future__ import annotations
 
 import math
 import threading
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
+
+from recon4.mapping.threads import Each, in_turn
 
 
 class ScratchArray(Protocol):
@@ -46,3 +49,13 @@ class Scratch(threading.local):
             if fresh is not None:
                 held.fill(fresh)
         return held[:size].view(dtype).reshape(shape)
+
+
+@dataclass(frozen=True, slots=True)
+class TileMeans:
+    """What a tile is made with."""
+
+    scratch: Scratch | None = None
+    """Memory in which surfaces are fitted; None = fresh memory, free again afterwards."""
+    each: Each = in_turn
+    """Threads for its parts."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
@@ -12,10 +13,12 @@ from typing import BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.se3 import Array
 from recon4.kernels.normals import bounds
 from recon4.mapping.columns import BLOCKS, PATHS, index_dtype
 from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.threads import Each, in_turn
 from recon4.mapping.tile import Columns
 from recon4.mapping.tile_order import spatial_order, stored_blocks
 from recon4.mapping.tile_packing import as_stored, pack
@@ -39,14 +42,11 @@ class _TileRow:
     time_ns: list[int] = field(default_factory=list)
     """Times of its first and last point [ns], (2,)."""
 
-    def extend(self, xyz: NDArray[np.float32], t_ns: NDArray[np.int64]) -> None:
-        """Extend the bounds by some points: by their coordinates as they will be read."""
-        corners = np.empty((2, 3))
-        bounds(np.ascontiguousarray(xyz, np.float32), *corners)
-        low, high = as_stored("xyz", corners) + np.array(self.origin_m)
-        self.low_m = np.fmin(self.low_m, low).tolist()
-        self.high_m = np.fmax(self.high_m, high).tolist()
-        times = [*self.time_ns, int(t_ns.min()), int(t_ns.max())]
+    def extend(self, block: _Block) -> None:
+        """Extend the bounds by the points of a block."""
+        self.low_m = np.fmin(self.low_m, block.low_m).tolist()
+        self.high_m = np.fmax(self.high_m, block.high_m).tolist()
+        times = [*self.time_ns, *block.time_ns]
         self.time_ns = [min(times), max(times)]
 
 
@@ -59,6 +59,11 @@ class _Block:
     """Of each field."""
     width: list[int]
     """Bytes of a number of each field."""
+    low_m: Array
+    high_m: Array
+    """Bounds of its points in the map, as they will be read [m], (3,)."""
+    time_ns: tuple[int, int]
+    """Times of its first and last point [ns]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,47 +135,59 @@ class TileWriter:
         """
         points = len(columns["xyz"]) - strays
         parts = spatial_order(points), points + spatial_order(strays)
-        blocks = (
-            {name: np.take(values, rows, axis=0) for name, values in columns.items()}
-            for rows in chain(*map(stored_blocks, parts))
-        )
+        blocks = (partial(_rows_of, columns, rows) for rows in chain(*map(stored_blocks, parts)))
         self.write(self.pack(ijk, blocks, points=points, strays=strays))
 
     def pack(
         self,
         ijk: tuple[int, int, int],
-        blocks: Iterable[Columns],
+        blocks: Iterable[Callable[[], Columns]],
         *,
         points: int,
         strays: int,
+        each: Each = in_turn,
     ) -> PackedTile:
         """Compress a tile.
 
         Args:
             ijk: Index in the grid of tiles.
-            blocks: Its fields, ``xyz`` and ``t_ns`` among them, block by block in the order of
-                `stored_blocks`: first those of the points, then those of the stray returns.
+            blocks: Make its fields, ``xyz`` and ``t_ns`` among them, block by block in the order
+                of `stored_blocks`: first those of the points, then those of the stray returns.
             points: Rows of all blocks but those of stray returns.
             strays: Stray returns.
+            each: Threads for the blocks.
         """
-        row = _TileRow(ijk=list(ijk), origin_m=(np.array(ijk) * self._tile_m).tolist())
+        origin_m = np.array(ijk) * self._tile_m
+        row = _TileRow(ijk=list(ijk), origin_m=origin_m.tolist())
         row.strays = strays
         packed: list[_Block] = []
         first = 0
-        for columns in blocks:
-            began_ns = self._began_ns(columns)
-            within_ns = columns["t_ns"] - began_ns
+        for block in each(partial(self._block, origin_m=origin_m), blocks):
             # A tile of strays only has their bounds: every tile has some.
             if first < points or not points:
-                row.extend(columns["xyz"], began_ns + as_stored("t_ns", within_ns))
-            packed.append(self._block(columns | {"t_ns": within_ns}))
-            first += packed[-1].count
+                row.extend(block)
+            packed.append(block)
+            first += block.count
         return PackedTile(row, first, packed)
 
-    def _block(self, columns: Columns) -> _Block:
+    def _block(self, make: Callable[[], Columns], *, origin_m: Array) -> _Block:
+        columns = make()
+        began_ns = self._began_ns(columns)
+        within_ns = columns["t_ns"] - began_ns
+        corners = np.empty((2, 3))
+        bounds(np.ascontiguousarray(columns["xyz"], np.float32), *corners)
+        low_m, high_m = as_stored("xyz", corners) + origin_m
+        t_ns = began_ns + as_stored("t_ns", within_ns)
+        columns = columns | {"t_ns": within_ns}
         made = [pack(name, columns[name]) for name in self._fields]
-        count = len(columns["xyz"])
-        return _Block(count, [data for data, _ in made], [width for _, width in made])
+        return _Block(
+            len(columns["xyz"]),
+            [data for data, _ in made],
+            [width for _, width in made],
+            low_m,
+            high_m,
+            (int(t_ns.min()), int(t_ns.max())),
+        )
 
     def _began_ns(self, columns: Columns) -> Times:
         """Start of the multiframe of each point [ns], (N,); a reference has no multiframes."""
@@ -213,6 +230,10 @@ class TileWriter:
         facts["time_ns"] = [min(times), max(times)] if times else None
         facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": list(_listed(rows))}
         write_json(self._folder / "tiles.json", facts)
+
+
+def _rows_of(columns: Columns, rows: NDArray[np.intp]) -> Columns:
+    return {name: np.take(values, rows, axis=0) for name, values in columns.items()}
 
 
 def _listed(rows: Iterable[_TileRow]) -> Iterator[dict[str, object]]:

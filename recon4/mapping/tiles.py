@@ -133,7 +133,9 @@ class Tile:
 
     def xyz_m(self, *, limit: int | None = None) -> Array:
         """Points in the map [m], float64 (N, 3)."""
-        return self.read(["xyz"], limit=limit)["xyz"].astype(np.float64) + self.origin_m
+        xyz = self.read(["xyz"], limit=limit)["xyz"].astype(np.float64)
+        xyz += self.origin_m
+        return xyz
 
     def as_measured(self) -> Tile:
         """The same points where they were measured."""

@@ -11,8 +11,8 @@ import numpy as np
 class BucketTuning:
     """Records of each tile on disk."""
 
-    burst: int = 6_000_000
-    """Records held in memory before they are thinned and written (192 MB)."""
+    burst: int = 3_000_000
+    """Records held in memory before they are thinned and written (96 MB)."""
 
 
 BUCKETS = BucketTuning()
@@ -24,6 +24,8 @@ class MapBuildTuning:
 
     workers: int = 2
     """Threads; the kernels do not hold Python's lock."""
+    large: int = 600_000
+    """A tile of as many records, which is fitted in parts, is made alone by all threads."""
 
 
 MAP_BUILD = MapBuildTuning()
@@ -173,7 +175,12 @@ class VoxelRunTuning:
     """Runs of records that are merged."""
 
     buffer: int = 8192
-    """Records of each run in memory."""
+    """Most records of a run in memory."""
+    together: int = 400_000
+    """Most records of all runs in memory (13 MB): a tile has one run for each burst that saw it, so
+    their number grows with the walk."""
+    least: int = 64
+    """A run has at least this many: reading fewer costs more than it saves."""
 
 
 VOXEL_RUNS = VoxelRunTuning()

@@ -24,11 +24,12 @@ def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
         grid: The grid, which thins.
     """
     runs = len(counts)
+    room = min(VOXEL_RUNS.buffer, max(VOXEL_RUNS.least, VOXEL_RUNS.together // max(1, runs)))
     left = np.array(counts, np.int64)
     at = np.cumsum(left) - left
-    head = VOXEL_RUNS.buffer * np.arange(runs)
+    head = room * np.arange(runs)
     stop, keys, state = head.copy(), np.full(runs, -1), np.array([0, -1])
-    buffer = np.empty(runs * VOXEL_RUNS.buffer, RECORD)
+    buffer = np.empty(runs * room, RECORD)
     memory = buffer.view(np.uint8).data
     views, out = Views.of(buffer), np.empty(max(VOXEL_RUNS.buffer, int(left.max())), RECORD)
     cells = grid.voxel_m, grid.cell_voxels, grid.side_cells, grid.halo_cells
@@ -46,9 +47,9 @@ def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
                 # Large arrays grow without being copied.
                 out.resize(len(out) + len(out) // 4, refcheck=False)
                 continue
-            count = min(VOXEL_RUNS.buffer, int(left[run]))
+            count = min(room, int(left[run]))
             file.seek(int(at[run]) * RECORD.itemsize)
-            head[run] = run * VOXEL_RUNS.buffer
+            head[run] = run * room
             stop[run] = head[run] + count
             file.readinto(memory[head[run] * RECORD.itemsize : stop[run] * RECORD.itemsize])
             at[run] += count

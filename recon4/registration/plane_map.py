@@ -144,6 +144,7 @@ class PlaneMap:
         """Drop cubes that became empty; double the tables if that is not enough."""
         alive = int(np.count_nonzero(self._sums[:, 0] > 0.5))
         capacity = len(self._keys) * (2 if 4 * alive > len(self._keys) else 1)
+        self._fits = np.empty((0, CUBE.fits))  # made again: not beside both tables of sums
         self._keys, self._sums, self._used = planes.rehash(self._keys, self._sums, capacity)
         self._make_room_for_fits()
 

@@ -274,7 +274,6 @@ def _map(
     from recon4.store.frames import open_frames
     from recon4.workflows.result_files import covariances_of
 
-    return_freed_memory()
     store = open_frames(frames, calibration, odometry)
     covariances_at = covariances_of(level)
     inputs = MapInputs(
@@ -286,6 +285,7 @@ def _map(
     )
     tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
     crs = read_crs(level)
+    return_freed_memory()
     export_laz(
         context.out,
         context.out / "map.laz",
@@ -334,5 +334,5 @@ REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)
 LEVEL = Stage("level", 31, LevelReads, _level, LevelFigures)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures)
 INTENSITY: Stage[IntensityReads, Figures] = Stage("intensity", 2, IntensityReads, _intensity)
-CLASSES = Stage("classes", 3, ReadsNothing, _classes, ClassFigures)
+CLASSES = Stage("classes", 4, ReadsNothing, _classes, ClassFigures)
 MAP = Stage("map", 13, MapReads, _map, MapFigures)

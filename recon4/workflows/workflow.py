@@ -8,6 +8,7 @@ from typing import Any
 
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.review.decisions import NOTHING_DECIDED, Decided
+from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.store.stage import Input, Stage, StageRunner
 from recon4.workflows.publish import Results
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
@@ -24,6 +25,9 @@ class Run:
     def stage(self, stage: Stage[Any, Any], **inputs: str | Input | None) -> None:
         """Run a stage, or reuse its artifact.
 
+        What earlier stages left free goes back to the system first: the largest stage would
+        otherwise stand on top of it.
+
         Args:
             stage: The stage.
             inputs: Argument of its function -> name of the stage whose artifact it is given, or a
@@ -34,6 +38,7 @@ class Run:
             argument: runs[one].artifact if isinstance(one, str) else one
             for argument, one in inputs.items()
         }
+        return_freed_memory()
         self.runner.run(stage, **given)
 
     def review(self) -> None:

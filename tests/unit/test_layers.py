@@ -94,6 +94,7 @@ MAY_IMPORT = {
     | {f"recon4.findings.{name}" for name in ("summary_notes", "review_problems", "wording")},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.mapping"},
+    "recon4/mapping/build.py": STAGE | {"recon4.mapping", "recon4.sandbox.freed_memory"},
     "recon4/classes": STAGE | {"recon4.mapping", "recon4.classes"},
     "recon4/export": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},

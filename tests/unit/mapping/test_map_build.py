@@ -11,12 +11,13 @@ import pytest
 from recon4.errors import OutOfRange, StoreError
 from recon4.export.laz import export_laz
 from recon4.mapping import build as map_build
+from recon4.mapping import voxel_runs
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs
 from recon4.mapping.tile import FIELDS, STORED, SURFACE_FIELDS
 from recon4.mapping.tiles import TileSet
-from recon4.mapping.tuning import MAP_BUILD
+from recon4.mapping.tuning import MAP_BUILD, VOXEL_RUNS
 from recon4.mapping.undistort import place
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
@@ -108,7 +109,8 @@ def voxels_of(p_map):
     return np.floor(at + 1e-6).astype(int), (np.abs(at - np.rint(at)) > 0.003).all(axis=1)
 
 
-def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path):
+def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path, monkeypatch):
+    monkeypatch.setattr(voxel_runs, "VOXEL_RUNS", replace(VOXEL_RUNS, together=1, least=7))
     walk = room_walk(frames=15)
     settings = MapSettings(voxel_m=0.05)
 

@@ -276,12 +276,29 @@ def test_a_wall_fitted_in_parts_is_that_fitted_at_once(rng, monkeypatch):
     )
 
 
+@pytest.mark.parametrize("parts", [1, 6])
+def test_what_moves_changes_no_surface_and_has_none(rng, monkeypatch, parts):
+    across = rectangle(rng, [2.033, 1.5, 1.5], [0, 1.6, 0], [0, 0, 1.2], DENSITY / 4)
+    records = in_voxel_order(returns(rng, across, np.array([1.0, 2.3, 2.2])), GRID)
+    stands = rng.random(len(records)) > 0.2
+    slabs = replace(surfaces_module.TILE_SURFACES, slab=len(records) // parts)
+    monkeypatch.setattr(surfaces_module, "TILE_SURFACES", slabs)
+
+    among = fit_surfaces(records, GRID, noise_m=NOISE_M, stands=stands)
+    alone = fit_surfaces(records[stands], GRID, noise_m=NOISE_M)
+
+    for name in ("shift_m", "support", "stray", "normal", "on_surface"):
+        of_all = getattr(among, name)
+        np.testing.assert_array_equal(of_all[stands], getattr(alone, name))
+        assert not of_all[~stands].any()
+
+
 def test_a_sparse_wall_becomes_flat_at_the_larger_scale(rng):
     records = in_voxel_order(returns(rng, wall(rng, WALL_M, 120)), GRID)
     before = fit_surfaces(records, GRID, noise_m=NOISE_M)
     assert not before.shift_m.any()
 
-    after = with_sparse_places(records, before, GRID, noise_m=NOISE_M)
+    after = with_sparse_places(records, before, grid=GRID, noise_m=NOISE_M)
 
     raw = records["xyz"].astype(float)
     k = inside(raw)
@@ -296,7 +313,7 @@ def test_two_sparse_sheets_stay_two(rng):
     records = in_voxel_order(np.concatenate([*sheets, returns(rng, floor)]), GRID)
 
     after = with_sparse_places(
-        records, fit_surfaces(records, GRID, noise_m=NOISE_M), GRID, noise_m=NOISE_M
+        records, fit_surfaces(records, GRID, noise_m=NOISE_M), grid=GRID, noise_m=NOISE_M
     )
 
     y = (records["xyz"] + after.shift_m)[inside(records["xyz"].astype(float)), 1]
