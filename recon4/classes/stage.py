@@ -22,8 +22,8 @@ from recon4.classes.views import RegularViews
 from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
 from recon4.kernels.seen_through import Cubes, RangeViews, find_seen_through, spread_to_neighbors
-from recon4.mapping.build import in_order
 from recon4.mapping.mirrors import Mirror, Sight
+from recon4.mapping.threads import in_order
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.mapping.undistort import place, place_with_origins
 from recon4.model.classes import CLASSES, PointClass
@@ -155,7 +155,7 @@ class KnownPlaces:
 
     def __init__(self) -> None:
         self.held = np.zeros(1 << KNOWN_PLACES.bits, np.int64)
-        moving, met = np.empty((2, *KNOWN_PLACES.cubes), np.int16)
+        moving, met = np.empty((2, *KNOWN_PLACES.cubes), np.int32)
         self.cubes = Cubes(moving, met, np.empty(KNOWN_PLACES.cubes[:2], np.float32))
 
 

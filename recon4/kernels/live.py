@@ -48,8 +48,8 @@ def trace(
     ends: NDArray[np.float64],
     ranges: NDArray[np.float64],
     solid: NDArray[np.bool_],
-    free: NDArray[np.uint16],
-    hits: NDArray[np.uint16],
+    free: NDArray[np.uint32],
+    hits: NDArray[np.uint32],
     nearest: NDArray[np.float32],
 ) -> None:
     """Trace rays from the sensor to their ends through the cells of a plan.
@@ -59,8 +59,9 @@ def trace(
         ends: Cells of the ends, float64 (N, 2); all inside the grid, like the start.
         ranges: Lengths of the rays [m], float64 (N,).
         solid: Whether the ray ended at an obstacle, bool (N,).
-        free: Number of rays that passed a cell, uint16 (H, W), limited to 65535.
-        hits: Number of rays that ended in a cell at an obstacle, uint16 (H, W).
+        free: Number of rays that passed a cell, uint32 (H, W). Its ratio to ``hits`` counts, so
+            neither may end before the other.
+        hits: Number of rays that ended in a cell at an obstacle, uint32 (H, W).
         nearest: Shortest of these rays [m], float32 (H, W).
     """
     for n in range(len(ends)):
@@ -70,11 +71,10 @@ def trace(
         for k in range(steps):
             a = int(start[0] + d0 * k / steps)
             b = int(start[1] + d1 * k / steps)
-            if (a != last_a or b != last_b) and free[a, b] < 65535:
-                free[a, b] += 1
+            if a != last_a or b != last_b:
+                free[a, b] += np.uint32(1)
         if solid[n]:
-            if hits[last_a, last_b] < 65535:
-                hits[last_a, last_b] += 1
+            hits[last_a, last_b] += np.uint32(1)
             nearest[last_a, last_b] = min(nearest[last_a, last_b], ranges[n])
-        elif free[last_a, last_b] < 65535:
-            free[last_a, last_b] += 1
+        else:
+            free[last_a, last_b] += np.uint32(1)

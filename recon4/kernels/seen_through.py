@@ -197,9 +197,10 @@ class SpreadRules(NamedTuple):
 class Cubes(NamedTuple):
     """Cubes around the body, which is in the middle."""
 
-    moving: NDArray[np.int16]
-    met: NDArray[np.int16]
-    """Points in them that move, and that others meet, (I, J, K)."""
+    moving: NDArray[np.int32]
+    met: NDArray[np.int32]
+    """Points in them that move, and that others meet, (I, J, K): all points of a scan may lie in
+    one cube."""
     low_m: NDArray[np.float32]
     """Lowest point of each column [m], (I, J)."""
 
@@ -268,7 +269,7 @@ def _by_neighbors(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _around(count: NDArray[np.int16], at: NDArray[np.int64]) -> int:
+def _around(count: NDArray[np.int32], at: NDArray[np.int64]) -> int:
     """Points in the 27 cubes around one."""
     found: Any = 0
     for i in range(at[0] - 1, at[0] + 2):

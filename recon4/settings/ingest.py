@@ -38,7 +38,13 @@ class IngestSettings(Checked):
     """Topic of the 2-D laser in a bag of one alone. Empty = chosen by content."""
 
     def check(self) -> None:
-        """Limits of the range in their order."""
+        """Limits of the range in their order; multiframes not longer than the times of points."""
+        # Points have their times from the start of a multiframe in 32 bits: 2.1 s.
+        require(
+            self.rate_hz == 0.0 or self.rate_hz >= 0.5,
+            "rate_hz must be 0 or at least 0.5",
+            self.rate_hz,
+        )
         require(
             self.min_range_m < self.max_range_m,
             "min_range_m must be below max_range_m",

@@ -83,6 +83,7 @@ def test_every_kind_of_value_is_understood(text, value):
             r"graph\.mode must be one of 10, overlap, verification, beyond, got '11'",
         ),
         ("ingest.rate_hz=1000", "rate_hz must be 0 to 100, got 1000"),
+        ("ingest.rate_hz=0.1", "rate_hz must be 0 or at least 0.5, got 0.1"),
         ("__class__.x=1", "no setting group '__class__'"),
     ],
 )

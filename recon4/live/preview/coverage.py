@@ -25,8 +25,8 @@ from recon4.live.preview.tuning import PLAN_TILES
 
 _FAR = 1e9
 _LAYERS = {
-    "free": ("u2", 0),
-    "hits": ("u2", 0),
+    "free": ("u4", 0),
+    "hits": ("u4", 0),
     "nearest_m": ("f4", _FAR),
     "away_m": ("f4", _FAR),
     "seen": ("u1", 0),

@@ -5,9 +5,12 @@ from collections import deque
 import numpy as np
 import pytest
 
-from recon4.classes.stage import _compared_spans, classify, write_classes
+from recon4.classes.stage import KnownPlaces, _compared_spans, classify, write_classes
+from recon4.classes.tuning import SPREAD
 from recon4.classes.views import RegularViews
 from recon4.errors import StoreError
+from recon4.kernels.free_space import VERDICT
+from recon4.kernels.seen_through import spread_to_neighbors
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.classes import PointClass, is_delivered
 from recon4.store.classes import StoredClasses
@@ -152,3 +155,14 @@ def test_images_of_scans_stay_as_they_are_while_threads_read_them_across_a_gap()
             rows = np.unique(np.concatenate([views.asked, views.before, views.after]))
             in_work.append((views.sights.images, rows, views.sights.images[rows].copy()))
     assert len(in_work) == MAP_BUILD.workers
+
+
+def test_all_points_of_a_dense_scan_may_lie_in_one_cube():
+    """A hand before the sensor: more points than 16 bits count."""
+    p = np.full((40_000, 3), 1.05)
+    verdict = np.full(len(p), VERDICT.met, np.int8)
+    verdict[:5000] = VERDICT.seen_through
+
+    spread_to_neighbors(p, np.zeros(3), SPREAD, KnownPlaces().cubes, verdict)
+
+    assert (verdict == VERDICT.met).all()

@@ -336,3 +336,14 @@ def test_the_work_of_a_second_and_the_memory_of_a_plan_follow_what_was_seen():
     _, cells = tiles.whole("seen")
     assert cells.sum() == 10
     assert max(cells.shape) <= 12 * PLAN_TILES.tile
+
+
+def test_free_space_stays_free_however_long_one_stands_before_it():
+    """The ratio of rays that end to those that pass counts, after minutes too."""
+    coverage = Coverage()
+    beyond, here = np.array([[4.1, 0.1, 0.0]]), np.array([[2.1, 0.1, 0.0]])
+
+    look(coverage, (0.1, 0.1), np.repeat(beyond, 20_000, axis=0), times=10)
+    look(coverage, (0.1, 0.1), np.repeat(here, 9000, axis=0), times=1)
+
+    assert seen_at(coverage, 2.1, 0.1) == CoverageClass.FREE
