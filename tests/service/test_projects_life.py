@@ -192,8 +192,13 @@ def test_a_thousand_projects_are_listed_in_half_a_second(tmp_path):
         cold_s, first = timed(lambda: server.get("/api/projects"))
         warm_s, _ = timed(lambda: server.get("/api/projects"))
 
-    assert len(first.json()) == 1000
+    with server_thread(tmp_path) as server:  # has the index of the one before
+        server.get("/healthz")
+        again_s, second = timed(lambda: server.get("/api/projects"))
+
+    assert len(first.json()) == 1000 and second.json() == first.json()
     assert cold_s < 2.5, cold_s
+    assert again_s < 0.5, again_s
     assert warm_s < cold_s
 
 

@@ -37,13 +37,19 @@ class LookTools:
 
     async def list_projects(
         self,
-        search: Annotated[str, Field(description="Part of a name; empty = all.")] = "",
+        search: Annotated[str, Field(description="Part of a name or a tag; empty = all.")] = "",
+        archived: Annotated[bool, Field(description="Also those that people archived.")] = False,
         most: Annotated[int, Field(ge=1, le=ASSISTANT.most_projects)] = 50,
     ) -> ProjectList:
         """List projects, the newest first: verdict, size, approval of each."""
         rows = await self._server.get("api/projects", list[ProjectRow])
         wanted = search.strip().lower()
-        found = [row for row in rows if wanted in f"{row.name} {row.id}".lower()]
+        found = [
+            row
+            for row in rows
+            if wanted in " ".join([row.name, row.id, *row.tags]).lower()
+            and (archived or not row.archived)
+        ]
         return ProjectList(total=len(found), projects=found[:most])
 
     async def project_summary(self, project: ProjectId) -> ProjectReading:

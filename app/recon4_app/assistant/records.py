@@ -37,6 +37,10 @@ class ProjectRow:
     points: int | None
     usability: str
     """Verdict: good, check or do not use; empty = not known."""
+    tags: list[str]
+    archived: bool
+    recording: str
+    """SHA-256 of its first recording: equal ones are runs of the same walk; empty = not known."""
     approval: ApprovalLine
     problem: str
     """What of its files cannot be read; empty = nothing."""
