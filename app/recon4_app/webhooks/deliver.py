@@ -128,7 +128,7 @@ class Webhooks:
             self.store.delivered(one.number)
         if one.attempts and problem:
             return  # the first failure is in the log
-        what = f"{one.kind} {one.event} to {one.url}"
+        what = f"{one.kind} {one.event} to {target_of(one.url).authority}"  # paths hold secrets
         outcome = "failed" if problem else "done"
         with contextlib.suppress(AppError):  # a full disk; the server's log has it
             self._log.add("server", "", action="post webhook", what=what, outcome=outcome)

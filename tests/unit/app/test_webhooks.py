@@ -114,7 +114,7 @@ def added(parts, url, events=ALL):
 
 def test_a_finished_job_is_posted_once_with_a_signature(started, receiver):
     with started() as parts:
-        webhook = added(parts, receiver.url)
+        added(parts, receiver.url)
         job = parts.end_job()
         parts.round()
         parts.round()
@@ -131,7 +131,7 @@ def test_a_finished_job_is_posted_once_with_a_signature(started, receiver):
     assert (record["type"], record["data"]["state"]) == ("job.finished", "failed")
     assert record["data"]["job"] == job.id and headers["webhook-id"] == f"job-{job.id}"
     assert (entry.action, entry.outcome) == ("post webhook", "done")
-    assert webhook.url in entry.object
+    assert "127.0.0.1" in entry.object and "hook?a=1" not in entry.object
 
 
 def test_a_server_that_was_killed_loses_no_event(started, receiver):
