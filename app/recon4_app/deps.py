@@ -10,6 +10,7 @@ from starlette.requests import HTTPConnection
 
 from recon4_app.access.login.login_service import Access
 from recon4_app.compute_pool.pool import ComputePool
+from recon4_app.exports.kept import KeptExports
 from recon4_app.jobs.store import JobStore
 from recon4_app.jobs.supervisor import Supervisor
 from recon4_app.live.current_capture import CurrentCapture
@@ -49,6 +50,7 @@ class ServerParts:
     checks: ApprovalChecks
     reviews: Reviews
     slices: Slices
+    exports: KeptExports
     rigs: RigStore
     rig_uses: RigUses
     calibrations: Calibrations

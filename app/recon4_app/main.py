@@ -36,6 +36,8 @@ from recon4_app.access.startup_notice import startup_notice
 from recon4_app.annotations import routes as annotation_routes
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.deps import Server, ServerParts
+from recon4_app.exports import routes as export_routes
+from recon4_app.exports.kept import KeptExports
 from recon4_app.jobs import choices
 from recon4_app.jobs import routes as job_routes
 from recon4_app.jobs.store import JobStore
@@ -159,6 +161,7 @@ def _routes() -> list[BaseRoute]:
         pairing_routes,
         project_routes,
         map_routes,
+        export_routes,
         report_file,
         job_routes,
     ):
@@ -291,6 +294,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         checks=checks,
         reviews=Reviews(pool),
         slices=Slices(pool, projects, checks, settings=settings),
+        exports=KeptExports(jobs, settings.state),
         rigs=rigs,
         rig_uses=uses,
         calibrations=Calibrations(projects, uses),
@@ -308,6 +312,7 @@ async def _maintain(parts: ServerParts) -> None:
             lambda: parts.uploads.sweep(time.time()),
             lambda: parts.trash.sweep(time.time()),
             lambda: parts.slices.exports.sweep(time.time()),
+            lambda: parts.exports.sweep(time.time()),
             parts.webhooks.store.sweep,
             parts.projects.cards.save,
             parts.webhooks.wake,

@@ -41,6 +41,8 @@ class ServerSettings:
     """Folders a job may read recordings from, besides ``root``."""
     max_running_jobs: int = 1
     """Jobs that run at the same time; the others wait."""
+    max_running_exports: int = 1
+    """Exports that run at the same time, beside the jobs; the others wait."""
     max_job_attempts: int = 3
     """A job whose worker died this many times fails."""
     hung_after_s: float = 120.0

@@ -10,7 +10,9 @@ from typing import Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
+from recon4.cli.slices import numbers
 from recon4.cli.terminal import write
+from recon4.export.options import Box, ExportOptions, classes_named, option_text
 
 exports = typer.Typer()
 
@@ -20,7 +22,7 @@ DraftOption = Annotated[
 
 
 @exports.command()
-def export(
+def export(  # noqa: PLR0913 - options of a command
     project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
     file: Annotated[
         Path,
@@ -31,43 +33,36 @@ def export(
         ),
     ],
     *,
-    crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
-    raw: Annotated[
-        bool, typer.Option("--raw", help="Points where they were measured, not on surfaces.")
-    ] = False,
+    crs: Annotated[str, typer.Option(help=option_text("crs"))] = "",
+    classes: Annotated[
+        str, typer.Option(help=f"{option_text('classes')} As ground,building or 2,6.")
+    ] = "",
+    box: Annotated[str, typer.Option(help=option_text("box_m"))] = "",
+    storey: Annotated[str, typer.Option(help=option_text("storey"))] = "",
+    thin: Annotated[float, typer.Option(help=option_text("thin_m"))] = 0.0,
+    raw: Annotated[bool, typer.Option("--raw", help=option_text("raw"))] = False,
     all_points: Annotated[
-        bool,
-        typer.Option(
-            "--all-points", help="Also noise, the carrier and what moves, by class; not as E57."
-        ),
+        bool, typer.Option("--all-points", help=option_text("all_points"))
     ] = False,
     draft: DraftOption = False,
 ) -> None:
     """Write the map of a project, in any CRS when it is georeferenced, its poses or findings.
 
-    Says whether the map is approved. An approval that cannot be trusted is refused.
+    Says whether the map is approved. An approval that cannot be trusted is refused. Every file of
+    points is read again and compared with what was meant.
     """
     confine_command(write=[file.parent])
-    from recon4.cli.terminal import watcher
-    from recon4.export.findings import ENDINGS
-    from recon4.export.map_files import MapExport, export_map
-    from recon4.export.scan_files import export_3dtk
-
-    ending = file.suffix.lower()
-    if ending in (".txt", *ENDINGS):
-        if crs:
-            raise typer.BadParameter("--crs is for maps, as .laz")
-        _export_text(project, file, draft=draft)
-        return
-    with watcher() as progress:
-        if ending == ".3dtk":
-            points = export_3dtk(project, file, progress=progress, draft=draft)
-            write(f"{points} points in {file}")
-            _write_approval(project, draft=draft)
-            return
-        wanted = MapExport(crs=crs, raw=raw, all_points=all_points, draft=draft)
-        made = export_map(project, file, wanted, progress=progress)
-    write(f"{made.text} in {file}\n{made.approval.text}")
+    wanted = ExportOptions(
+        crs=crs,
+        raw=raw,
+        all_points=all_points,
+        classes=classes_named(classes),
+        box_m=_box(box),
+        storey=storey,
+        thin_m=thin,
+        draft=draft,
+    )
+    _write_export(project, file, wanted)
 
 
 @exports.command()
@@ -91,6 +86,36 @@ def convert(
         made = run(sources, out, progress=progress)
     write(f"{made.points} points and {made.samples} IMU samples in {out}")
     write("\n".join(f"lost: {text}" for text in made.lost) + "\n" * bool(made.lost), end="")
+
+
+def _box(text: str) -> Box | None:
+    """Six numbers with commas between them; None = no box."""
+    if not text:
+        return None
+    x1, y1, z1, x2, y2, z2 = numbers(text, 6)
+    return x1, y1, z1, x2, y2, z2
+
+
+def _write_export(project: Path, file: Path, wanted: ExportOptions) -> None:
+    from recon4.cli.terminal import watcher
+    from recon4.export.findings import ENDINGS
+    from recon4.export.map_files import export_map
+    from recon4.export.scan_files import export_3dtk
+
+    ending = file.suffix.lower()
+    if ending in (".txt", ".3dtk", *ENDINGS) and set(wanted.changed) - {"draft"}:
+        raise typer.BadParameter(f"{ending} is written as it is: only --draft can be given")
+    if ending in (".txt", *ENDINGS):
+        _export_text(project, file, draft=wanted.draft)
+        return
+    with watcher() as progress:
+        if ending == ".3dtk":
+            points = export_3dtk(project, file, progress=progress, draft=wanted.draft)
+            write(f"{points} points in {file}")
+            _write_approval(project, draft=wanted.draft)
+            return
+        made = export_map(project, file, wanted, progress=progress)
+    write(f"{made.text} in {file}\n{made.approval.text}")
 
 
 def _write_approval(project: Path, *, draft: bool) -> None:

@@ -6,7 +6,7 @@ import shutil
 import stat
 import tempfile
 import zipfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -14,7 +14,9 @@ from pathlib import Path
 
 import recon4
 from recon4.delivery.check import CheckedFile, check_file
+from recon4.delivery.exports import WantedFile, write_kind
 from recon4.delivery.hostile_zip import unsafe_name
+from recon4.delivery.kinds import KINDS
 from recon4.delivery.manifest import MANIFEST, DeliveredFile, DeliveryManifest, manifest_text
 from recon4.delivery.pdf_signature import Organization
 from recon4.delivery.report_files import (
@@ -23,13 +25,10 @@ from recon4.delivery.report_files import (
     write_html,
     write_pdf,
 )
-from recon4.delivery.reread import compare_export
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import ConfigError, StoreError
-from recon4.export.clouds import CLOUD_FORMATS
-from recon4.export.findings import ENDINGS, export_findings
-from recon4.export.map_files import SCANS, MapExport, MapToExport, export_poses, map_to_export
-from recon4.export.map_files import write_map as write_export
+from recon4.export.map_files import MapToExport, map_to_export
+from recon4.export.options import ExportOptions
 from recon4.progress import Progress
 from recon4.report.client import Row
 from recon4.report.client_words import Words, words
@@ -44,12 +43,7 @@ from recon4.store.hashing import FileDigest
 from recon4.store.project import read_artifacts
 from recon4.untrusted.names import visible
 
-MAP_ENDINGS = (*CLOUD_FORMATS, SCANS)
-CHOICES = tuple(
-    [f"map{ending}" for ending in MAP_ENDINGS]
-    + ["poses.txt"]
-    + [f"findings{ending}" for ending in ENDINGS]
-)
+CHOICES = tuple(KINDS)
 """Files that a delivery may hold, by name."""
 USUAL = ("map.copc.laz", "findings.csv")
 REPORT_PDF, REPORT_HTML = "report.pdf", "report.html"
@@ -139,8 +133,8 @@ def chosen_files(given: Sequence[str]) -> tuple[str, ...]:
     out = []
     for word in (part.strip() for text in given for part in text.split(",")):
         fitting = [name for name in CHOICES if word in (name, name.partition(".")[2])]
-        if not fitting:
-            known = ", ".join(CHOICES)
+        if len(fitting) != 1:
+            known = ", ".join(fitting or CHOICES)
             raise ConfigError(f"--files {visible(word)!r}: expected some of {known}")
         out.append(fitting[0])
     return tuple(dict.fromkeys(out)) or USUAL
@@ -161,8 +155,8 @@ def _open(project: Path, wish: DeliveryWish) -> _Map:
         raise StoreError(f"{project} has no map yet: run recon4 process")
     state, approval = checked_approval(project, draft=False)
     evidence = approval.evidence if approval else None
-    wanted = MapExport(crs=wish.crs)
-    return _Map(project, state, approval, map_to_export(artifacts, evidence, wanted))
+    options = ExportOptions(crs=wish.crs)
+    return _Map(project, state, approval, map_to_export(artifacts, evidence, options))
 
 
 @contextmanager
@@ -191,7 +185,7 @@ def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Prog
     """The exports, each compared with the map, and the reports that list them."""
     draft = map_.approval is None
     for name in wish.files:
-        _writer(name, map_, progress)(folder / name)
+        _write_export(name, folder / name, map_, crs=wish.crs, progress=progress)
     rows = [Row(name, FileDigest.of(folder / name).sha256) for name in wish.files]
     if wish.license is not None:
         shutil.copyfile(wish.license, folder / LICENSE)
@@ -201,19 +195,13 @@ def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Prog
     write_html(map_.project, folder / REPORT_HTML, draft=draft)
 
 
-def _writer(name: str, map_: _Map, progress: Progress) -> Callable[[Path], object]:
-    """Who writes a file of the delivery."""
-    draft = map_.approval is None
-    if name.startswith("poses"):
-        return lambda path: export_poses(map_.project, path, draft=draft)
-    if name.startswith("findings"):
-        return lambda path: export_findings(map_.project, path)
-
-    def write_compared(path: Path) -> None:
-        write_export(map_.export, path, all_points=False, progress=progress)
-        compare_export(path, map_.export.tiles, map_.export.output)
-
-    return write_compared
+def _write_export(name: str, path: Path, map_: _Map, *, crs: str, progress: Progress) -> None:
+    """Write a file of the delivery."""
+    kind = KINDS[name]
+    options = ExportOptions(crs=crs if "crs" in kind.takes else "", draft=map_.approval is None)
+    evidence = map_.approval.evidence if map_.approval else None
+    wanted = WantedFile(map_.export.artifacts, evidence, options)
+    write_kind(map_.project, kind, path, wanted=wanted, progress=progress)
 
 
 def _manifest(map_: _Map, listed: dict[str, DeliveredFile]) -> DeliveryManifest:

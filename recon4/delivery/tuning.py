@@ -16,10 +16,6 @@ class DeliveryLimits:
     """In a delivery."""
     local_header_bytes: int = 30
     """Before the name of an entry of a ZIP file (APPNOTE 4.3.7)."""
-    compared_points: int = 100_000
-    """At a time, of an export and its map."""
-    same_point_m: float = 1e-4
-    """Rounding of text [m]."""
     block_bytes: int = 1 << 20
     """Read at a time."""
 

@@ -12,6 +12,7 @@ from recon4.export.names import COPC, check_name
 from recon4.export.pcd import export_pcd
 from recon4.export.ply import export_ply
 from recon4.export.points import CRS_OF_MAP, OutputCrs
+from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.xyz import export_xyz
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
@@ -26,7 +27,7 @@ class CloudWriter(Protocol):
         path: Path,
         output: OutputCrs = CRS_OF_MAP,
         *,
-        all_points: bool = False,
+        selection: PointSelection = DELIVERED,
         progress: Progress | None = None,
     ) -> int: ...
 

@@ -20,12 +20,21 @@ import lazrs  # type: ignore[import-untyped]
 import numpy as np
 
 from recon4.errors import StoreError
-from recon4.export.las_points import las_blocks, las_header, las_points, las_records
-from recon4.export.laz import ErrorKeepingWriter
+from recon4.export.account import PointAccount
+from recon4.export.las_points import (
+    add_records,
+    crs_text,
+    las_blocks,
+    las_header,
+    las_points,
+    las_records,
+)
+from recon4.export.laz import ErrorKeepingWriter, reading_las, writing_las
 from recon4.export.names import check_name
 from recon4.export.octree import Cube, Key, Octree, PointFiles, Records
 from recon4.export.points import CRS_OF_MAP, OutputCrs, PointSource
-from recon4.export.tuning import OCTREE
+from recon4.export.selection import DELIVERED, PointSelection
+from recon4.export.tuning import OCTREE, REREAD
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
@@ -75,7 +84,7 @@ def export_copc(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    all_points: bool = False,
+    selection: PointSelection = DELIVERED,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as COPC, streaming, and compare the whole file before it gets its name.
@@ -86,40 +95,40 @@ def export_copc(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.copc.laz``.
         output: CRS of the file.
-        all_points: Also the points that the map leaves out (`recon4.model.classes`).
+        selection: Which points are written.
         progress: Who watches.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points, or the name is not one of a COPC file.
+        ConfigError: If there are no points, or the name is not one of a COPC file.
         GeoreferenceError: If the CRS is not understood, or coordinates do not fit.
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".copc.laz")
-    source, watch = PointSource.of(map_, output, all_points=all_points), progress or Silent()
+    source, watch = PointSource.of(map_, output, selection), progress or Silent()
     header = las_header(source, scale_m=OCTREE.step_m)
     header.are_points_compressed = True
+    meant = PointAccount(crs=crs_text(header))
     with (
         tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder,
         atomic_file(path) as temporary,
-        ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file,
     ):
         stream = las_blocks(source, watch)
         files = PointFiles(Path(folder), header.point_format.dtype())
-        times_s = _sort_into(files, stream, header)
-        try:
+        times_s = _sort_into(files, stream, header, meant=meant)
+        with writing_las(temporary, path.name) as file:
             chunks = _write(file, header, files, times_s=times_s, progress=watch)
-            _check(temporary, chunks, header)
-        except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
-            if file.write_error:
-                raise file.write_error from error
-            raise StoreError(f"cannot write {path}: {error}") from error
-    return int(header.point_count)
+        source.seal(temporary)
+        with reading_las(path.name):
+            _check(temporary, chunks, header, meant=meant)
+    return meant.count
 
 
-def _sort_into(files: PointFiles, stream: Iterator[Any], header: Any) -> tuple[float, float]:
+def _sort_into(
+    files: PointFiles, stream: Iterator[Any], header: Any, *, meant: PointAccount
+) -> tuple[float, float]:
     """Sort all points by cubes, and count them in the header; first and last GPS time [s]."""
     low_s, high_s = np.inf, -np.inf
     header.partial_reset()
@@ -129,6 +138,7 @@ def _sort_into(files: PointFiles, stream: Iterator[Any], header: Any) -> tuple[f
         low_s = min(low_s, float(points.gps_time.min()))
         high_s = max(high_s, float(points.gps_time.max()))
         files.add(points.array)
+        meant.add(block.xyz, block.columns["classification"])
     return low_s, high_s
 
 
@@ -190,28 +200,30 @@ def _info(
     return _INFO.pack(*center, half_m, 2.0 * half_m / 2**OCTREE.side_bits, *place, *times_s)
 
 
-def _check(path: Path, chunks: list[_Chunk], header: Any) -> None:
-    """Read the file back and compare every node with what was written.
+def _check(path: Path, chunks: list[_Chunk], header: Any, *, meant: PointAccount) -> None:
+    """Read every node back, and compare all with what was written and meant.
 
     Raises:
         StoreError: If it differs.
     """
-    found = 0
+    found = PointAccount()
     with path.open("rb") as file:
         read = laspy.CopcReader(file)
+        found.crs = crs_text(read.header)
         compression = header.vlrs.get("LasZipVlr")[0].record_data
         for chunk in chunks:
             file.seek(chunk.offset)
-            points = np.empty(chunk.points * header.point_format.size, np.uint8)
+            packed = np.empty(chunk.points * header.point_format.size, np.uint8)
             lazrs.decompress_points_with_chunk_table(
-                file.read(chunk.size), compression, points, [(chunk.points, chunk.size)]
+                file.read(chunk.size), compression, packed, [(chunk.points, chunk.size)]
             )
-            if chunk.points and zlib.crc32(points.data) != chunk.crc:
+            if chunk.points and zlib.crc32(packed.data) != chunk.crc:
                 raise StoreError(f"{path.name} reads back wrong: the points of node {chunk.key}")
-            found += chunk.points
-        listed = sum(node.point_count for node in read.root_page.entries.values())
-    if not found == listed == read.header.point_count == header.point_count:
+            add_records(found, packed.view(header.point_format.dtype()), read.header)
+    listed = sum(node.point_count for node in read.root_page.entries.values())
+    if not found.count == listed == read.header.point_count:
         raise StoreError(
-            f"{path.name} reads back wrong: {found} points in nodes, {listed} listed, "
-            f"{read.header.point_count} in the header, expected {header.point_count}"
+            f"{path.name} reads back wrong: {found.count} points in nodes, {listed} listed, "
+            f"{read.header.point_count} in the header, expected {meant.count}"
         )
+    meant.compare(found, path.name, within_m=OCTREE.step_m / 2.0 + REREAD.bounds_m)

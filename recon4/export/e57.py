@@ -18,11 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import recon4
-from recon4.errors import StoreError
-from recon4.export.points import OutputCrs, PointSource
+from recon4.errors import ConfigError, StoreError
+from recon4.export.points import PointSource
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import SE3, Array
-from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import adjusted_gps_s, is_absolute
 from recon4.model.trajectory import Times
 from recon4.progress import Progress
@@ -45,54 +44,49 @@ class ScanPoses:
     """Description of each scan: the approval, for one."""
 
 
-def export_e57(
-    tiles: TileSet,
-    path: Path,
-    scans: ScanPoses,
-    *,
-    output: OutputCrs,
-    progress: Progress,
-) -> int:
+def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: Progress) -> int:
     """Write a map as E57, and read its points back.
 
     Intensity is the normalized one if the map has it. Memory grows with the points of one scan.
 
     Args:
-        tiles: The map.
+        source: The points, in the coordinates of the file.
         path: File to write.
         scans: Nodes of the pose graph.
-        output: CRS of the coordinates.
         progress: Who watches.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points.
+        ConfigError: If points are wanted that the map leaves out.
         StoreError: If the file cannot be written or does not read back.
     """
     from pye57 import libe57
 
-    source = PointSource.of(tiles, output)
+    if source.selection.left_out:
+        raise ConfigError(
+            f"E57 has no classes, so it cannot hold what the map leaves out: {path.name}"
+        )
     origins = source.transform(scans.T_map_body.t)
     with tempfile.TemporaryDirectory(prefix=".e57.", dir=path.parent) as folder:
         files = _sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
         try:
             image = libe57.ImageFile(str(path), "w")
             data = _head(image, source.crs)
-            progress.start("scans", len(tiles), "points")
+            progress.start("scans", source.count, "points")
             for number, file in files:
                 rows = np.fromfile(file, _ROW)
                 _write_scan(image, data, _Scan(number, rows, scans, origins[number]))
                 progress.advance(len(rows))
             image.close()
-            _check(path, {number: file for number, file in files})
+            _check(path, {number: file for number, file in files}, source)
         except libe57.E57Exception as error:
             reason = str(error).partition("\n")[0]  # it goes on for a page
             raise StoreError(
                 f"an E57 file cannot be written: {reason}; is the disk full?"
             ) from error
-    return len(tiles)
+    return source.count
 
 
 def _sort_by_scan(
@@ -226,7 +220,7 @@ def _guid(of: str) -> str:
     return f"{{{uuid.uuid5(uuid.NAMESPACE_URL, f'recon4 {of}')}}}"
 
 
-def _check(path: Path, files: dict[int, Path]) -> None:
+def _check(path: Path, files: dict[int, Path], source: PointSource) -> None:
     """Read every scan back and compare it with what was written.
 
     Raises:
@@ -234,13 +228,20 @@ def _check(path: Path, files: dict[int, Path]) -> None:
     """
     import pye57
 
+    count = 0
     with pye57.E57(str(path)) as file:
+        crs = file.root["coordinateMetadata"].value()
+        if crs != source.crs:
+            raise StoreError(f"{path.name} reads back wrong: CRS: expected {source.crs!r}")
         if file.scan_count != len(files):
             raise StoreError(
                 f"{path.name} reads back wrong: {file.scan_count} scans, expected {len(files)}"
             )
-        for index, source in enumerate(files.values()):
-            expected, found = np.fromfile(source, _ROW), file.read_scan_raw(index)
+        for index, rows in enumerate(files.values()):
+            expected, found = np.fromfile(rows, _ROW), file.read_scan_raw(index)
             for name in _ROW.names or ():
                 if not np.array_equal(found[name], expected[name]):
                     raise StoreError(f"{path.name} reads back wrong: {name} of scan {index}")
+            count += len(expected)
+    if count != source.count:
+        raise StoreError(f"{path.name} reads back wrong: {count} points, expected {source.count}")

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 import recon4
 from recon4.errors import GeoreferenceError
+from recon4.export.account import PointAccount
 from recon4.export.points import Block, PointSource
 from recon4.export.tuning import LAZ
 from recon4.mapping.tile import DEVIATION
@@ -142,6 +143,15 @@ def las_points(block: Block, header: Any, records: NDArray[np.void]) -> Any:
     if DEVIATION in columns:
         points[DEVIATION] = columns[DEVIATION].astype(np.float64)
     return points
+
+
+def add_records(account: PointAccount, records: NDArray[np.void], header: Any) -> None:
+    """Account for records that were read, (N,)."""
+    points = laspy.ScaleAwarePointRecord(
+        records, header.point_format, header.scales, header.offsets
+    )
+    xyz = np.stack([points.x, points.y, points.z], axis=1)
+    account.add(xyz, np.asarray(points.classification))
 
 
 def crs_text(header: Any) -> str:

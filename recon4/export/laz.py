@@ -8,43 +8,30 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import laspy
 import lazrs  # type: ignore[import-untyped]
-import numpy as np
-from numpy.typing import NDArray
 
 from recon4.errors import StoreError
-from recon4.export.las_points import crs_text, las_blocks, las_header, las_points, las_records
+from recon4.export.account import PointAccount
+from recon4.export.las_points import (
+    add_records,
+    crs_text,
+    las_blocks,
+    las_header,
+    las_points,
+    las_records,
+)
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
-from recon4.export.tuning import LAZ
+from recon4.export.selection import DELIVERED, PointSelection
+from recon4.export.tuning import LAZ, REREAD
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
-
-
-@dataclass(slots=True)
-class _WrittenBounds:
-    """What the file must turn out to hold."""
-
-    count: int = 0
-    low: NDArray[np.int64] = field(default_factory=lambda: np.full(3, np.iinfo(np.int64).max))
-    high: NDArray[np.int64] = field(default_factory=lambda: np.full(3, np.iinfo(np.int64).min))
-    first: Any = None
-    last: Any = None
-
-    def add(self, points: Any) -> None:
-        """Add some points, as records of the file."""
-        axes = points.X, points.Y, points.Z
-        self.count += len(points)
-        self.low = np.minimum(self.low, [steps.min() for steps in axes])
-        self.high = np.maximum(self.high, [steps.max() for steps in axes])
-        self.last = points.array[-1].copy()
-        self.first = points.array[0].copy() if self.first is None else self.first
 
 
 class ErrorKeepingWriter(io.BufferedWriter):
@@ -60,12 +47,43 @@ class ErrorKeepingWriter(io.BufferedWriter):
             raise
 
 
+@contextmanager
+def writing_las(path: Path, name: str) -> Iterator[ErrorKeepingWriter]:
+    """A file that LAZ is written to.
+
+    Raises:
+        OSError: If it cannot be written.
+        StoreError: If the points cannot be compressed.
+    """
+    with ErrorKeepingWriter(io.FileIO(path, "wb")) as file:
+        try:
+            yield file
+            file.flush()
+        except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
+            if file.write_error:
+                raise file.write_error from error
+            raise StoreError(f"cannot write {name}: {error}") from error
+
+
+@contextmanager
+def reading_las(name: str) -> Iterator[None]:
+    """Report errors of reading a file again.
+
+    Raises:
+        StoreError: If it is none.
+    """
+    try:
+        yield
+    except (laspy.errors.LaspyException, lazrs.LazrsError, ValueError) as error:
+        raise StoreError(f"{name} reads back wrong: {error}") from error
+
+
 def export_laz(
     map_: Path | TileSet,
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    all_points: bool = False,
+    selection: PointSelection = DELIVERED,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as LAZ, streaming, and check the file before it gets its name.
@@ -78,35 +96,34 @@ def export_laz(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.laz``.
         output: CRS of the file.
-        all_points: Also the points that the map leaves out (`recon4.model.classes`).
+        selection: Which points are written.
         progress: Who watches.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points, or the name is not one of a LAZ file.
+        ConfigError: If there are no points, or the name is not one of a LAZ file.
         GeoreferenceError: If the CRS is not understood, or coordinates do not fit.
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
-    source = PointSource.of(map_, output, all_points=all_points)
+    source = PointSource.of(map_, output, selection)
     header = las_header(source, scale_m=LAZ.scale_m)
+    meant = PointAccount(crs=crs_text(header))
     stream = las_blocks(source, progress)
-    with atomic_file(path) as temporary, ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file:
-        try:
-            written = _write(file, header, stream)
-            file.flush()
-            _check(temporary, written, header)
-        except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
-            if file.write_error:
-                raise file.write_error from error
-            raise StoreError(f"cannot write {path}: {error}") from error
-    return written.count
+    with atomic_file(path) as temporary:
+        with writing_las(temporary, path.name) as file:
+            _write(file, header, stream, meant=meant)
+        source.seal(temporary)
+        with reading_las(path.name):
+            _check(temporary, meant, path.name)
+    return meant.count
 
 
-def _write(file: ErrorKeepingWriter, header: Any, stream: Iterable[Block]) -> _WrittenBounds:
-    written = _WrittenBounds()
+def _write(
+    file: ErrorKeepingWriter, header: Any, stream: Iterable[Block], *, meant: PointAccount
+) -> None:
     with laspy.open(
         file,
         mode="w",
@@ -114,13 +131,12 @@ def _write(file: ErrorKeepingWriter, header: Any, stream: Iterable[Block]) -> _W
         laz_backend=laspy.LazBackend.LazrsParallel,
         closefd=False,
     ) as out:
-        for points in _together(stream, header):
+        for points in _together(stream, header, meant):
             out.write_points(points)
-            written.add(points)
-    return written
+            meant.add_stored(points.array)
 
 
-def _together(stream: Iterable[Block], header: Any) -> Iterator[Any]:
+def _together(stream: Iterable[Block], header: Any, meant: PointAccount) -> Iterator[Any]:
     """Records of many blocks at a time, of which each thread compresses a part.
 
     They are valid until the next ones.
@@ -129,6 +145,7 @@ def _together(stream: Iterable[Block], header: Any) -> Iterator[Any]:
     of = header.point_format, header.scales, header.offsets
     for block in stream:
         count = len(block.xyz)
+        meant.add(block.xyz, block.columns["classification"])
         if filled + count > len(records):
             yield laspy.ScaleAwarePointRecord(records[:filled], *of)
             filled = 0
@@ -138,32 +155,20 @@ def _together(stream: Iterable[Block], header: Any) -> Iterator[Any]:
         yield laspy.ScaleAwarePointRecord(records[:filled], *of)
 
 
-def _check(path: Path, written: _WrittenBounds, header: Any) -> None:
-    """Read back count, bounds, CRS, and the first and last point.
+def _check(path: Path, meant: PointAccount, name: str) -> None:
+    """Read every point back, and compare with what was meant.
 
     Raises:
-        StoreError: If the file differs from what was written.
+        StoreError: If the file differs.
     """
     with laspy.open(path) as file:
-        found = file.header
-        if found.point_count != written.count:
-            raise StoreError(
-                f"{path.name} reads back wrong: {found.point_count} points, "
-                f"expected {written.count}"
-            )
-        low = np.rint((found.mins - header.offsets) / LAZ.scale_m)
-        high = np.rint((found.maxs - header.offsets) / LAZ.scale_m)
-        first = file.read_points(1).array[0]
-        file.seek(written.count - 1)
-        last = file.read_points(1).array[0]
-        pairs = {
-            "bounds": ((*written.low, *written.high), (*low, *high)),
-            "CRS": (crs_text(header), crs_text(found)),
-            "first point": (written.first.tobytes(), first.tobytes()),
-            "last point": (written.last.tobytes(), last.tobytes()),
-        }
-    for what, (expected, got) in pairs.items():
-        if expected != got:
-            raise StoreError(
-                f"{path.name} reads back wrong: {what}: expected {expected}, got {got}"
-            )
+        found = PointAccount(crs=crs_text(file.header))
+        for points in file.chunk_iterator(LAZ.together):
+            add_records(found, points.array, file.header)
+            found.add_stored(points.array)
+        stated = PointAccount(found.crs, file.header.point_count)
+        stated.low_m, stated.high_m = file.header.mins, file.header.maxs
+    stated.classes, stated.sums = found.classes, found.sums
+    rounded_m = LAZ.scale_m / 2.0 + REREAD.bounds_m
+    for one in (stated, found):
+        meant.compare(one, name, within_m=rounded_m)

@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import ConfigError, StoreError
+from recon4.errors import StoreError
 from recon4.export.clouds import CLOUD_FORMATS, cloud_writer
 from recon4.export.e57 import ScanPoses, export_e57
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, OutputCrs
+from recon4.export.options import ExportOptions
+from recon4.export.points import OutputCrs, PointSource
+from recon4.export.selection import PointSelection
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
+from recon4.products.storeys import find_storeys, storey_heights
 from recon4.progress import Progress
 from recon4.recording.formats.poses import write_kitti
 from recon4.review.approval_state import WRITTEN_AS_DRAFT, ApprovalState, approval_state
@@ -33,20 +36,6 @@ SCANS = ".e57"
 MAP_ENDINGS = (*CLOUD_FORMATS, SCANS)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapExport:
-    """What of a map is written to a file."""
-
-    crs: str = ""
-    """Code of a CRS; empty = that of the map, or its local frame."""
-    raw: bool = False
-    """Points where they were measured, not on their surfaces."""
-    all_points: bool = False
-    """Also those that the map leaves out: the carrier, what moves, noise; not as E57."""
-    draft: bool = False
-    """Without an approval, whether or not there is one."""
-
-
 @dataclass(frozen=True, slots=True)
 class ExportedMap:
     """What was written."""
@@ -55,19 +44,32 @@ class ExportedMap:
     """In the file."""
     left_out: int
     """Points that the map leaves out."""
-    all_points: bool
-    """Whether they are in the file."""
+    of_points: int
+    """Points of the map, without these."""
     approval: ApprovalState
     """Of the map in the file."""
 
     @property
     def text(self) -> str:
-        """Both numbers in words."""
-        if not self.left_out:
-            return f"{self.points} points"
-        if self.all_points:
-            return f"{self.points} points, with the {self.left_out} that the map leaves out,"
-        return f"{self.points} points, without {self.left_out} (noise, moving, carrier),"
+        """The numbers in words."""
+        return points_text(self.points, self.of_points, self.left_out)
+
+
+def points_text(points: int, of_points: int, left_out: int) -> str:
+    """How many points are in a file of a map.
+
+    Args:
+        points: In the file.
+        of_points: That the map delivers.
+        left_out: That it leaves out.
+    """
+    if points == of_points + left_out and left_out:
+        return f"{points} points, with the {left_out} that the map leaves out,"
+    if points != of_points:
+        return f"{points} points of {of_points}"
+    if not left_out:
+        return f"{points} points"
+    return f"{points} points, without {left_out} (noise, moving, carrier),"
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,68 +78,73 @@ class MapToExport:
 
     tiles: TileSet
     output: OutputCrs
-    """The coordinates that are wanted."""
+    """The coordinates that are wanted, and the approval that the file has to name."""
+    selection: PointSelection
+    """The points that are wanted."""
     artifacts: Mapping[str, Path]
     stamp: Stamp | None
     """What the file has to say of the approval; None = not approved, or a draft."""
 
 
 def map_to_export(
-    artifacts: Mapping[str, Path], evidence: Evidence | None, wanted: MapExport
+    artifacts: Mapping[str, Path], evidence: Evidence | None, wanted: ExportOptions
 ) -> MapToExport:
     """Open a map for an export.
 
     Args:
         artifacts: Of the run; it has a map.
         evidence: Of its approval; None = not approved, or a draft.
-        wanted: Coordinates and kinds of points.
+        wanted: Coordinates and points.
 
     Raises:
         Altered: If it is not what was approved.
+        ConfigError: If there is no such class or storey.
         GeoreferenceError: If a CRS is requested and the map is not georeferenced.
         StoreError: If an artifact cannot be read.
     """
+    wanted.selection()  # refuses what cannot be before the map is read
     checked = None
     if evidence:
         evidence.check_frame(artifacts)
         checked = evidence.artifact("map", artifacts["map"])
     place = read_crs(artifacts["level"], wanted.crs)
-    output = OutputCrs(place.wkt, place.to_crs) if place else CRS_OF_MAP
+    stamp = evidence.stamp if evidence else None
+    seal = _seal_with(stamp) if stamp else None
+    output = OutputCrs(seal=seal)
+    if place:
+        output = OutputCrs(place.wkt, place.to_crs, seal)
     tiles = TileSet.open(artifacts["map"], checked)
+    heights_m = storey_heights(find_storeys(tiles), wanted.storey) if wanted.storey else None
     tiles = tiles.as_measured() if wanted.raw else tiles
-    return MapToExport(tiles, output, artifacts, evidence.stamp if evidence else None)
+    return MapToExport(tiles, output, wanted.selection(heights_m), artifacts, stamp)
 
 
-def write_map(map_: MapToExport, path: Path, *, all_points: bool, progress: Progress) -> int:
-    """Write a map in the format of the ending; the file notes an approval.
+def _seal_with(stamp: Stamp) -> Callable[[Path], None]:
+    return lambda path: stamp_file(path, path, stamp)
+
+
+def write_map(map_: MapToExport, path: Path, *, progress: Progress) -> int:
+    """Write a map in the format of the ending, and read it back; the file notes an approval.
 
     Args:
         map_: The map.
         path: File to write; its ending is one of `MAP_ENDINGS`.
-        all_points: Also the points that the map leaves out.
         progress: Counts points.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the ending is another, or all points are wanted as E57 (no classes).
-        StoreError: If the file cannot be written.
+        ConfigError: If the ending is another, there are no such points, or the format cannot hold
+            them (E57 has no classes).
+        StoreError: If the file cannot be written, or reads back wrong.
     """
     if path.suffix.lower() == SCANS:
-        if all_points:
-            raise ConfigError(f"E57 has no classes, so it cannot hold all points: {path.name}")
+        source = PointSource.of(map_.tiles, map_.output, map_.selection)
         with atomic_file(path) as temporary:
-            return export_e57(
-                map_.tiles, temporary, _nodes(map_), output=map_.output, progress=progress
-            )
+            return export_e57(source, temporary, _nodes(map_), progress=progress)
     write = cloud_writer(path)
-    # The stamp goes onto a file beside it, so that a file without one is never there.
-    with atomic_file(path) as temporary:
-        count = write(map_.tiles, temporary, map_.output, all_points=all_points, progress=progress)
-        if map_.stamp:
-            stamp_file(temporary, temporary, map_.stamp)
-    return count
+    return write(map_.tiles, path, map_.output, selection=map_.selection, progress=progress)
 
 
 def _nodes(map_: MapToExport) -> ScanPoses:
@@ -148,13 +155,15 @@ def _nodes(map_: MapToExport) -> ScanPoses:
     return ScanPoses(np.asarray(graph.frame_ids, np.int64), graph.t_ns, poses, note)
 
 
-def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
+def export_map(
+    project: Path, path: Path, wanted: ExportOptions, *, progress: Progress
+) -> ExportedMap:
     """Write the map of a finished run; the file notes an approval.
 
     Args:
         project: The project folder.
         path: File to write; its ending is one of `MAP_ENDINGS`.
-        wanted: Coordinates and kinds of points.
+        wanted: Coordinates and points.
         progress: Counts points.
 
     Returns:
@@ -172,10 +181,11 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         raise StoreError(f"{project} has no map yet: run recon4 process")
     keys = {name: folder.name for name, folder in artifacts.items()}
     approval = None if wanted.draft else approval_of(project, keys)
-    map_ = map_to_export(artifacts, approval.evidence if approval else None, wanted)
-    count = write_map(map_, path, all_points=wanted.all_points, progress=progress)
+    evidence = approval.evidence if approval else None
+    map_ = map_to_export(artifacts, evidence, wanted)
+    count = write_map(map_, path, progress=progress)
     state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
-    return ExportedMap(count, map_.tiles.strays, wanted.all_points, state)
+    return ExportedMap(count, map_.tiles.strays, len(map_.tiles), state)
 
 
 def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:

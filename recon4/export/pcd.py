@@ -7,9 +7,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import StoreError
+from recon4.export.account import PointAccount
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
+from recon4.export.reread import account_of_rows, check_size
+from recon4.export.selection import DELIVERED, PointSelection
+from recon4.export.tuning import REREAD
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
@@ -28,7 +31,7 @@ def export_pcd(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    all_points: bool = False,
+    selection: PointSelection = DELIVERED,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as binary PCD 0.7, streaming.
@@ -41,50 +44,59 @@ def export_pcd(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.pcd``.
         output: CRS of the file.
-        all_points: Also the points that the map leaves out (`recon4.model.classes`).
+        selection: Which points are written.
         progress: Who watches.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points, or the name is not one of a PCD file.
-        StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
+        ConfigError: If there are no points, or the name is not one of a PCD file.
+        StoreError: If the file cannot be written (`NoSpace`: disk full) or reads back wrong.
     """
     check_name(path, ".pcd")
-    source = PointSource.of(map_, output, all_points=all_points)
-    tiles = source.tiles
+    source = PointSource.of(map_, output, selection)
     names = [source.intensity, "normal", "ring", "frame_id", "t_ns"]
-    row, absolute = np.dtype(list(_FIELDS)), is_absolute(tiles.first_ns)
-    head = _head(row, source)
+    row, absolute = np.dtype(list(_FIELDS)), is_absolute(source.tiles.first_ns)
+    meant = PointAccount(crs=source.crs_line)
+    head = _head(row, source, meant.crs)
     with atomic_file(path) as temporary:
         with temporary.open("wb") as file:
             file.write(head)
             for block in source.blocks(names, progress):
                 rows = np.zeros(len(block.xyz), row)
-                _fill(rows, block, source.offset)
-                rows["intensity"] = block.columns[source.intensity]
-                rows["classification"] = block.columns["classification"]
+                _fill(rows, block, source)
                 rows["gps_time"] = point_time_s(block.columns["t_ns"], absolute=absolute)
                 file.write(rows.data)
-        expected, found = len(head) + source.count * row.itemsize, temporary.stat().st_size
-        if found != expected:
-            raise StoreError(f"{path.name}: expected {expected} bytes, got {found}")
-    return source.count
+                meant.add(block.xyz, block.columns["classification"])
+                meant.add_stored(rows)
+        check_size(temporary, len(head) + source.count * row.itemsize, path.name)
+        source.seal(temporary)
+        again = account_of_rows(temporary, row, offset=source.offset)
+        meant.compare(again, path.name, within_m=_rounded_m(meant, source.offset))
+    return meant.count
 
 
-def _fill(rows: NDArray[np.void], block: Block, offset: Array) -> None:
-    rows["x"], rows["y"], rows["z"] = (block.xyz - offset).T
+def _rounded_m(meant: PointAccount, offset: Array) -> float:
+    """How far single precision rounds the coordinates farthest from the offset [m]."""
+    far_m = np.abs([meant.low_m - offset, meant.high_m - offset]).max()
+    return REREAD.bounds_m + float(far_m * np.finfo(np.float32).eps)
+
+
+def _fill(rows: NDArray[np.void], block: Block, source: PointSource) -> None:
+    rows["x"], rows["y"], rows["z"] = (block.xyz - source.offset).T
+    rows["intensity"] = block.columns[source.intensity]
+    rows["classification"] = block.columns["classification"]
     for axis, name in enumerate(("normal_x", "normal_y", "normal_z")):
         rows[name] = block.columns["normal"][:, axis]
     rows["ring"] = block.columns["ring"]
     rows["frame_id"] = block.columns["frame_id"]
 
 
-def _head(row: np.dtype[np.void], source: PointSource) -> bytes:
+def _head(row: np.dtype[np.void], source: PointSource, crs: str) -> bytes:
     names = row.names or ()
     kinds = [row[name] for name in names]
-    comments = [f"# crs {' '.join(source.crs.split())}"] if source.crs else []
+    comments = [f"# crs {crs}"] if crs else []
     lines = [
         "# .PCD v0.7 - Point Cloud Data file format",
         *comments,

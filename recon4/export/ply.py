@@ -6,9 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import StoreError
+from recon4.export.account import PointAccount
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
+from recon4.export.reread import account_of_rows, check_size
+from recon4.export.selection import DELIVERED, PointSelection
+from recon4.export.tuning import REREAD
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
 from recon4.progress import Progress
@@ -32,7 +35,7 @@ def export_ply(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    all_points: bool = False,
+    selection: PointSelection = DELIVERED,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as little-endian PLY with all its fields, streaming.
@@ -44,33 +47,38 @@ def export_ply(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.ply``.
         output: CRS of the file.
-        all_points: Also the points that the map leaves out (`recon4.model.classes`).
+        selection: Which points are written.
         progress: Who watches.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the map has no points, or the name is not one of a PLY file.
-        StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
+        ConfigError: If there are no points, or the name is not one of a PLY file.
+        StoreError: If the file cannot be written (`NoSpace`: disk full) or reads back wrong.
     """
     check_name(path, ".ply")
-    source = PointSource.of(map_, output, all_points=all_points)
+    source = PointSource.of(map_, output, selection)
     tiles = source.tiles
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
     absolute = is_absolute(tiles.first_ns)
+    meant = PointAccount(crs=source.crs_line)
     stream = source.blocks([*fields, "normal", "t_ns"], progress)
     with atomic_file(path) as temporary:
-        head = _head(row, source.count, source.crs)
+        head = _head(row, source.count, meant.crs)
         with temporary.open("wb") as file:
             file.write(head)
             for block in stream:
-                file.write(_rows(block, row, fields, absolute=absolute).data)
-        expected, found = len(head) + source.count * row.itemsize, temporary.stat().st_size
-        if found != expected:
-            raise StoreError(f"{path.name}: expected {expected} bytes, got {found}")
-    return source.count
+                rows = _rows(block, row, fields, absolute=absolute)
+                file.write(rows.data)
+                meant.add(block.xyz, block.columns["classification"])
+                meant.add_stored(rows)
+        check_size(temporary, len(head) + source.count * row.itemsize, path.name)
+        source.seal(temporary)
+        again = account_of_rows(temporary, row, offset=np.zeros(3))
+        meant.compare(again, path.name, within_m=REREAD.bounds_m)
+    return meant.count
 
 
 def _row(fields: list[str]) -> np.dtype[np.void]:
@@ -80,13 +88,13 @@ def _row(fields: list[str]) -> np.dtype[np.void]:
     return np.dtype([*columns, ("classification", "|u1"), ("gps_time", "<f8")])
 
 
-def _head(row: np.dtype[np.void], count: int, wkt: str) -> bytes:
+def _head(row: np.dtype[np.void], count: int, crs: str) -> bytes:
     lines = ["ply", "format binary_little_endian 1.0", "comment recon4 map"]
-    if wkt:
-        lines.append(f"comment crs {' '.join(wkt.split())}")
+    if crs:
+        lines.append(f"comment crs {crs}")
     lines.append(f"element vertex {count}")
     lines += [f"property {_PROPERTIES[row[name].str]} {name}" for name in row.names or ()]
-    return ("\n".join([*lines, "end_header"]) + "\n").encode("ascii", "replace")
+    return ("\n".join([*lines, "end_header"]) + "\n").encode("ascii")
 
 
 def _rows(

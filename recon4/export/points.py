@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from itertools import chain
+from dataclasses import dataclass, replace
+from itertools import chain, product
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import Columns
@@ -24,12 +25,14 @@ ToCrs = Callable[[Array], Array]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OutputCrs:
-    """The coordinates in which a map is written."""
+    """The coordinates in which a map is written, and what is added to the file."""
 
     crs: str | None = None
     """WKT or code of the CRS; None = that of the map, if it has one."""
     map_to_crs: ToCrs | None = None
     """Map coordinates to those of the CRS; None = the shift by the map's origin in it."""
+    seal: Callable[[Path], None] | None = None
+    """Adds a record to the file before it is read back, as that of the approval."""
 
 
 CRS_OF_MAP = OutputCrs()
@@ -45,6 +48,10 @@ class Block:
     columns: Columns
     """Further fields requested, and ``classification``."""
 
+    def only(self, rows: NDArray[np.bool_]) -> Block:
+        """Some of them."""
+        return Block(self.xyz[rows], {name: one[rows] for name, one in self.columns.items()})
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PointSource:
@@ -56,18 +63,36 @@ class PointSource:
     crs: str
     """WKT or code of the CRS; empty = the map's local frame."""
     offset: NDArray[np.float64]
-    """Whole meters near its middle in the coordinates of the file, (3,)."""
-    left_out: TileSet | None = None
-    """Points that the map leaves out, if they are written, too."""
+    """Whole meters near the middle of what is written in the coordinates of the file, (3,)."""
+    selection: PointSelection
+    """Which points are written."""
+    count: int
+    """Points that are written."""
+    seal: Callable[[Path], None]
+    """Adds a record to the finished file."""
 
     @staticmethod
-    def of(map_: Path | TileSet, output: OutputCrs, *, all_points: bool = False) -> PointSource:
-        """A map to be written.
+    def of(
+        map_: Path | TileSet, output: OutputCrs, selection: PointSelection = DELIVERED
+    ) -> PointSource:
+        """A map to be written. Of a part of it the points are counted first.
 
         Args:
             map_: Artifact of the stage ``map``, or what is open of it.
             output: CRS of the file; by default the shift by the map's origin in its own.
-            all_points: Also the points that the map leaves out (`recon4.model.classes`).
+            selection: Which points are written.
+
+        Raises:
+            ConfigError: If the map or the selection has no points.
+        """
+        source = PointSource.uncounted(map_, output, selection)
+        return source if selection.is_whole else source._counted()
+
+    @staticmethod
+    def uncounted(
+        map_: Path | TileSet, output: OutputCrs, selection: PointSelection = DELIVERED
+    ) -> PointSource:
+        """As `of`, but ``count`` and ``offset`` are those of all points.
 
         Raises:
             ConfigError: If the map has no points.
@@ -80,13 +105,23 @@ class PointSource:
         crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
         middle_m = np.mean(tiles.bounds_m, axis=0)
         offset = np.round(transform(middle_m[None])[0])
-        left_out = tiles.only_strays() if all_points else None
-        return PointSource(tiles, transform, crs, offset, left_out)
+        seal = output.seal or (lambda path: None)
+        count = len(tiles) + (tiles.strays if selection.left_out else 0)
+        return PointSource(tiles, transform, crs, offset, selection, count, seal)
 
-    @property
-    def count(self) -> int:
-        """Points that are written."""
-        return len(self.tiles) + len(self.left_out or ())
+    def _counted(self) -> PointSource:
+        """The same with the number of points that are selected, and their middle."""
+        count, low, high = 0, np.full(3, np.inf), np.full(3, -np.inf)
+        for block in self._selected([], Silent()):
+            count += len(block.xyz)
+            low = np.minimum(low, block.xyz.min(axis=0))
+            high = np.maximum(high, block.xyz.max(axis=0))
+        if not count:
+            raise ConfigError(
+                "no point of the map is in the chosen classes, box and storey: there is nothing "
+                "to export"
+            )
+        return replace(self, count=count, offset=np.round((low + high) / 2.0))
 
     @property
     def intensity(self) -> str:
@@ -95,6 +130,11 @@ class PointSource:
             "intensity_normalized" if "intensity_normalized" in self.tiles.fields else "intensity"
         )
 
+    @property
+    def crs_line(self) -> str:
+        """The CRS on one line of ASCII, for heads of files."""
+        return " ".join(self.crs.split()).encode("ascii", "replace").decode()
+
     def blocks(self, fields: list[str], progress: Progress | None) -> Iterator[Block]:
         """All points, tile by tile, with their classes; neighbors follow each other.
 
@@ -102,15 +142,51 @@ class PointSource:
         """
         watch = progress or Silent()
         watch.start("export", self.count, "points")
-        for tile in chain(self.tiles, self.left_out or ()):
-            columns = tile.read_in_space(["xyz", *fields])
-            columns["classification"] = _classification(tile)
-            for first in range(0, len(tile), POINT_EXPORT.block):
-                rows = slice(first, first + POINT_EXPORT.block)
-                part = {name: column[rows] for name, column in columns.items()}
-                xyz = part.pop("xyz") + np.array(tile.origin_m)
-                yield Block(self.transform(xyz), part)
-                watch.advance(len(xyz))
+        yield from self._selected(fields, watch)
+
+    def _selected(self, fields: list[str], watch: Progress) -> Iterator[Block]:
+        left_out = self.tiles.only_strays() if self.selection.left_out else ()
+        for tile in chain(self.tiles, left_out):
+            if len(tile) and self.may_have(tile):
+                for block in self._of_tile(tile, fields):
+                    yield block
+                    watch.advance(len(block.xyz))
+
+    def _of_tile(self, tile: Tile, fields: list[str]) -> Iterator[Block]:
+        columns = tile.read_in_space(["xyz", *fields])
+        columns["classification"] = _classification(tile)
+        origin_m = np.array(tile.origin_m)
+        if not self.selection.is_whole:
+            rows = self.selection.rows(columns, origin_m)
+            columns = {name: column[rows] for name, column in columns.items()}
+        for first in range(0, len(columns["xyz"]), POINT_EXPORT.block):
+            part = {n: one[first : first + POINT_EXPORT.block] for n, one in columns.items()}
+            block = Block(self.transform(part.pop("xyz") + origin_m), part)
+            if self.selection.box_m is not None:
+                block = block.only(self.selection.in_box(block.xyz))
+            if len(block.xyz):
+                yield block
+
+    def may_have(self, tile: Tile) -> bool:
+        """Whether a tile may have points in the box."""
+        if self.selection.box_m is None:
+            return True
+        corners = np.array(list(product(*zip(tile.low_m, tile.high_m, strict=True))))
+        margin_m = POINT_EXPORT.tile_margin_m
+        return self.selection.may_have(self.transform(corners), margin_m=margin_m)
+
+    def count_of(self, tile: Tile, *, limit: int) -> int:
+        """How many of the first points of a tile are wanted; these are an even sample."""
+        fields = ["xyz", *(["classification"] if "classification" in tile.fields else [])]
+        columns = tile.read(fields, limit=limit)
+        unknown = np.zeros(len(columns["xyz"]), np.uint8)
+        columns = {"classification": unknown, **columns}
+        origin_m = np.array(tile.origin_m)
+        rows = self.selection.rows(columns, origin_m)
+        if self.selection.box_m is None:
+            return len(rows)
+        xyz = self.transform(columns["xyz"][rows] + origin_m)
+        return int(np.count_nonzero(self.selection.in_box(xyz)))
 
 
 def _classification(tile: Tile) -> NDArray[np.uint8]:

@@ -23,17 +23,40 @@ class PointExportTuning:
     block: int = 1 << 15
     """Points that are made ready at once: with more of them they leave the processor's cache
     between one column and the next, which takes twice as long."""
+    summed: int = 50_000
+    """Points with a checksum of their own: says where a file is wrong."""
+    cube_bits: int = 21
+    """Of the index of a cube along each axis: 0.1 mm in a tile of 200 m."""
+    tile_margin_m: float = 1.0
+    """A projection bends a tile by less than this [m]."""
 
 
 POINT_EXPORT = PointExportTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class LazTuning:
+    """A LAZ file, and steps of its numbers: coarser ones compress better."""
+
+    scale_m: float = 0.0001
+    """Of the coordinates: they reach 214 km from whole meters near the middle of the map."""
+    together: int = 500_000
+    """Points that are compressed at once, 50 000 a thread."""
+    normalized_step: float = 1.0 / 16.0
+    """Of normalized intensities: finer than the raw step."""
+    deviation_step_m: float = 0.0001
+    """Of deviations of positions, which are whole numbers in the file."""
+
+
+LAZ = LazTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class OctreeTuning:
     """The octree of COPC."""
 
-    step_m: float = 0.0001
-    """Resolution of the coordinates: finer than anything a map holds."""
+    step_m: float = LAZ.scale_m
+    """Resolution of the coordinates."""
     side_bits: int = 7
     """A node samples what is below it in 2^7 cells along each edge: COPC's spacing."""
     bucket_bits: int = 17
@@ -48,17 +71,29 @@ OCTREE = OctreeTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class LazTuning:
-    """A LAZ file, and steps of its numbers: coarser ones compress better."""
+class RereadTuning:
+    """Files that are read again."""
 
-    scale_m: float = 0.001
-    """Of the coordinates."""
-    together: int = 500_000
-    """Points that are compressed at once, 50 000 a thread."""
-    normalized_step: float = 1.0 / 16.0
-    """Of normalized intensities: finer than the raw step."""
-    deviation_step_m: float = 0.0001
-    """Of deviations of positions, which are whole numbers in the file."""
+    text_bytes: int = 1 << 20
+    """Lines that are read at a time."""
+    head_bytes: int = 64 << 10
+    """The head of a PLY or PCD file is shorter."""
+    bounds_m: float = 1e-6
+    """Bounds of coordinates that are stored as they are agree within this [m]: what adding an
+    offset rounds at 10 000 km."""
 
 
-LAZ = LazTuning()
+REREAD = RereadTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExpectedTuning:
+    """The estimate of an export."""
+
+    sample: int = 2_000_000
+    """Points of the map that are looked at."""
+    tiles: int = 6
+    """Tiles that are thinned for it."""
+
+
+EXPECTED = ExpectedTuning()

@@ -60,9 +60,9 @@ def level_surfaces(tiles: TileSet) -> Levels:
             np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty(0, bool), np.empty(0)
         )
     rows = np.concatenate([rows for rows, _ in parts])
-    keys, inverse = np.unique(rows, axis=0, return_inverse=True)
+    keys, inverse = _unique_rows(rows)
     areas = np.concatenate([area for _, area in parts])
-    area: Array = np.bincount(inverse.reshape(-1), areas, len(keys)).astype(np.float64)
+    area: Array = np.bincount(inverse, areas, len(keys)).astype(np.float64)
     return Levels(keys[:, :2], keys[:, 2], keys[:, 3] > 0, area)
 
 
@@ -73,14 +73,28 @@ def _of_tile(columns: dict[str, NDArray[np.float32]], origin_m: Array) -> tuple[
     p = columns["xyz"][level].astype(np.float64) + origin_m
     cell = np.floor(p[:, :2] / STOREYS.cell_m).astype(np.int64)
     z = np.floor(p[:, 2] / STOREYS.bin_m).astype(np.int64)
-    cells = np.unique(np.column_stack([cell, z, vertical[level] > 0.0]), axis=0)
-    per = round(STOREYS.column_m / STOREYS.cell_m)
-    cells[:, :2] //= per
-    rows, count = np.unique(cells, axis=0, return_counts=True)
-    return rows.astype(np.int64), count.astype(np.float64) * STOREYS.cell_m**2
+    cells, _ = _unique_rows(np.column_stack([cell, z, vertical[level] > 0.0]))
+    cells[:, :2] //= round(STOREYS.column_m / STOREYS.cell_m)
+    rows, inverse = _unique_rows(cells)
+    count = np.bincount(inverse, minlength=len(rows)).astype(np.float64)
+    return rows, count * STOREYS.cell_m**2
 
 
-def find_storeys(tiles: TileSet, levels: Levels) -> tuple[BuildingStorey, ...]:
+def _unique_rows(rows: Ints) -> tuple[Ints, NDArray[np.intp]]:
+    """Different rows in their order, and which one each row is; as one number a row, if it fits."""
+    if not len(rows):
+        return rows, np.empty(0, np.intp)
+    low = rows.min(axis=0)
+    sizes = rows.max(axis=0) - low + 1
+    if np.prod(sizes.astype(np.float64)) >= 2.0**62:
+        found, inverse = np.unique(rows, axis=0, return_inverse=True)
+        return found, inverse.reshape(-1)
+    steps = np.append(np.cumprod(sizes[:0:-1])[::-1], 1)
+    _, first, inverse = np.unique((rows - low) @ steps, return_index=True, return_inverse=True)
+    return rows[first], inverse.reshape(-1)
+
+
+def find_storeys(tiles: TileSet, levels: Levels | None = None) -> tuple[BuildingStorey, ...]:
     """Storeys of a map from the lowest up; none outdoors.
 
     A floor is a height at which much level surface is seen from above, above which the sensors
@@ -88,8 +102,11 @@ def find_storeys(tiles: TileSet, levels: Levels) -> tuple[BuildingStorey, ...]:
     floor than `STOREYS.apart_m`; a ramp has no height.
     """
     floors: list[tuple[float, float]] = []
+    if not tiles.columns.paths.known:
+        return ()
+    levels = level_surfaces(tiles) if levels is None else levels
     up = levels.only(levels.up)
-    if not len(up.level) or not tiles.columns.paths.known:
+    if not len(up.level):
         return ()
     first = int(up.level.min())
     area = np.bincount(up.level - first, up.area_m2).astype(np.float64)
@@ -188,3 +205,15 @@ def storey_named(storeys: tuple[BuildingStorey, ...], name: str) -> BuildingStor
         raise ConfigError("the map has no storeys: no floor below a ceiling was walked on")
     names = ", ".join(f"{one.name} (floor at {one.floor_m:.2f} m)" for one in storeys)
     raise ConfigError(f"no storey named {name}; there are: {names}")
+
+
+def storey_heights(storeys: tuple[BuildingStorey, ...], name: str) -> tuple[float, float]:
+    """From below the floor of a storey to below that of the next one, in the map [m].
+
+    Raises:
+        ConfigError: If there is none of this name.
+    """
+    one = storey_named(storeys, name)
+    above = [other.floor_m for other in storeys if other.floor_m > one.floor_m]
+    high = min(above) - STOREYS.slab_m if above else np.inf
+    return one.floor_m - STOREYS.slab_m, float(high)

@@ -32,6 +32,9 @@ class StoreyTuning:
     """Least part of a floor that is below a ceiling: outdoors there are no storeys."""
     usual_m: float = 2.6
     """Height of a storey whose ceiling was not seen [m]."""
+    slab_m: float = 0.15
+    """Points belong to a storey from this far below its floor on: noise of the floor, and little
+    of the ceiling of the storey below [m]."""
 
 
 STOREYS = StoreyTuning()

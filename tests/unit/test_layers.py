@@ -97,10 +97,11 @@ MAY_IMPORT = {
     "recon4/mapping/build.py": STAGE | {"recon4.mapping", "recon4.sandbox.freed_memory"},
     "recon4/classes": STAGE | {"recon4.mapping", "recon4.classes"},
     "recon4/export": STAGE
-    | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},
+    | {"recon4.mapping", "recon4.export"}
+    | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "three_dtk")},
     "recon4/export/map_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
-    | {"recon4.pose_graph.files", "recon4.recording.formats.poses"},
+    | {"recon4.pose_graph.files", "recon4.products.storeys", "recon4.recording.formats.poses"},
     "recon4/export/geojson.py": STAGE | {"recon4.georeference"},
     "recon4/export/notes.py": STAGE | {"recon4.export", "recon4.georeference"},
     "recon4/export/findings.py": STAGE
@@ -141,7 +142,7 @@ MAY_IMPORT = {
     | {"recon4.findings"},
     "recon4/delivery": STAGE
     | {"recon4.delivery", "recon4.export", "recon4.report", "recon4.review"}
-    | {"recon4.mapping.tiles", "recon4.recording.formats.cloud_files"},
+    | {"recon4.mapping.tiles", "recon4.products", "recon4.slices.map_crs"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4/workflows": {"recon4"},
     "recon4": {"recon4"},

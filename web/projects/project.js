@@ -31,7 +31,7 @@ import { askFirst, askOnce } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
-import "./map_file.js";
+import "./export_panel.js";
 import { FindingList } from "../shared/finding_list.js";
 import { factsIn, firstText } from "../shared/verdict.js";
 import "../shared/page_head.js";
@@ -52,6 +52,7 @@ const state = {
   /** @type {JobView | null} */
   view: null, // the newest job
   lacking: /** @type {unknown} */ (null), // why there is no project
+  exportsOf: "", // when the map was made whose exports are shown
 };
 
 function draw() {
@@ -111,11 +112,20 @@ function drawFiles() {
   const files = project?.files ?? [];
   byId("files").hidden = files.length === 0;
   const mapped = project?.stages.some(({ stage }) => stage === "map") ?? false;
-  only("map-file").hidden = !mapped;
+  showExports(mapped);
   render(project ? approvalLines(project.approval) : nothing, byId("approval"));
   const found = project?.summary.findings ? ["csv", "geojson"] : [];
   const rows = [files.map(fileRow), mapped ? reportRow() : nothing, found.map(findingsRow)];
   render(rows, within(byId("files"), "ul"));
+}
+
+/** The panel of exports; it is read again when the map is another. */
+function showExports(/** @type {boolean} */ mapped) {
+  byId("export").hidden = !mapped;
+  const made = mapped ? (state.project?.updated ?? "") : "";
+  if (!made || made === state.exportsOf) return;
+  state.exportsOf = made;
+  only("export-panel").show();
 }
 
 const filePlaces = () => ({ message: byId("files-message"), status: byId("files-status") });
@@ -253,9 +263,14 @@ only("project-tools").addEventListener("renamed", (event) => {
   state.project = detailOf(event);
   draw();
 });
-const receive = watchJobs(onJob, (linked) => {
-  only("page-head").linked = linked;
-});
+const receive = watchJobs(
+  onJob,
+  (linked) => {
+    only("page-head").linked = linked;
+    if (linked) only("export-panel").refresh();
+  },
+  (view) => only("export-panel").receive(view),
+);
 
 /** Finds the newest job, with its log, also when it succeeded: the stream sends only the others. */
 async function findJob() {

@@ -9,6 +9,7 @@ export {
 } from "./http.js";
 export * from "./api/people.js";
 export * from "./api/projects.js";
+export * from "./api/exports.js";
 export * from "./api/uploads.js";
 export * from "./api/review.js";
 export * from "./api/phones.js";

@@ -2,10 +2,10 @@
 
 declare global {
   interface HTMLElementTagNameMap {
+    "export-panel": import("../projects/export_panel.js").ExportPanel;
     "folder-browser": import("../projects/folder_browser.js").FolderBrowser;
     "job-log": import("../projects/project_tools.js").JobLog;
     "job-status": import("../projects/job_status.js").JobStatus;
-    "map-file": import("../projects/map_file.js").MapFile;
     "map-verdict": import("../shared/map_verdict.js").MapVerdict;
     "new-job": import("../projects/new_job.js").NewJob;
     "page-head": import("../shared/page_head.js").PageHead;

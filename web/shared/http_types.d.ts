@@ -177,6 +177,12 @@ export interface Choices {
   rigs: Array<string>;
 }
 
+export interface ClassChoice {
+  code: number;
+  title: string;
+  delivered: boolean;
+}
+
 export interface CompareRequest {
   reference: string;
   method?: "plane" | "point";
@@ -359,6 +365,75 @@ export interface ErrorEllipse {
 
 export type EventKind = "job.finished" | "approval.signed" | "test";
 
+export interface ExportChoices {
+  kinds: Array<ExportKind>;
+  classes: Array<ClassChoice>;
+  storeys: Array<StoreyChoice>;
+  crs: string;
+}
+
+export interface ExportEstimate {
+  points: number;
+  bytes: number;
+  is_most: boolean;
+}
+
+export interface ExportKind {
+  name: string;
+  title: string;
+  programs: string;
+  group: string;
+  takes: Array<string>;
+  point_bytes: number;
+  thinned_bytes: number;
+}
+
+export interface ExportOptions {
+  crs?: string;
+  raw?: boolean;
+  all_points?: boolean;
+  classes?: Array<number>;
+  box_m?: [number, number, number, number, number, number] | null;
+  storey?: string;
+  thin_m?: number;
+  pixel_m?: number;
+  cell_m?: number;
+  draft?: boolean;
+}
+
+export interface ExportOrder {
+  file: string;
+  options: ExportOptions;
+}
+
+export interface ExportView {
+  id: string;
+  file: string;
+  title: string;
+  options: ExportOptions;
+  state: JobState;
+  person: string;
+  created: string;
+  finished: string;
+  note: string;
+  fraction: number | null;
+  what: string;
+  made: ExportedFile | null;
+  kept: boolean;
+  of_this_map: boolean;
+}
+
+export interface ExportedFile {
+  name: string;
+  bytes: number;
+  sha256: string;
+  text: string;
+  approval: string;
+  map_key: string;
+  recon4: string;
+  points: number;
+}
+
 export interface FileView {
   name: string;
   bytes: number;
@@ -431,6 +506,7 @@ export interface Inputs {
   settings: Array<string>;
   title: string;
   remake: boolean;
+  export: ExportOrder | null;
 }
 
 export interface InvitationView {
@@ -449,6 +525,8 @@ export interface Job {
   started: string;
   finished: string;
   note: string;
+  person: string;
+  made: ExportedFile | null;
 }
 
 export type JobState = "queued" | "running" | "succeeded" | "failed" | "cancelled";
@@ -665,6 +743,11 @@ export interface NewDecision {
   T_i_j?: Array<number>;
   measurement?: string;
   seen_seq?: number | null;
+}
+
+export interface NewExport {
+  file: string;
+  options?: ExportOptions;
 }
 
 export interface NewInvitation {
@@ -1346,6 +1429,11 @@ export interface Storey {
   ceiling: boolean;
 }
 
+export interface StoreyChoice {
+  name: string;
+  floor_m: number;
+}
+
 export interface SupersededEffect {
   superseded: true;
 }
@@ -1458,6 +1546,10 @@ export interface Operations {
     path: { project_id: string };
     response: Deleted;
   };
+  "DELETE /api/projects/{project_id}/exports/{export_id}/file": {
+    path: { project_id: string; export_id: string };
+    response: ExportView;
+  };
   "DELETE /api/projects/{project_id}/notes/{note_id}": {
     path: { project_id: string; note_id: string };
     response: string;
@@ -1568,6 +1660,18 @@ export interface Operations {
   "GET /api/projects/{project_id}/calibration/slices": {
     path: { project_id: string };
     response: CalibrationSlices | null;
+  };
+  "GET /api/projects/{project_id}/exports": {
+    path: { project_id: string };
+    response: Array<ExportView>;
+  };
+  "GET /api/projects/{project_id}/exports/choices": {
+    path: { project_id: string };
+    response: ExportChoices;
+  };
+  "GET /api/projects/{project_id}/exports/{export_id}/file": {
+    path: { project_id: string; export_id: string };
+    response: string;
   };
   "GET /api/projects/{project_id}/files/{name}": {
     path: { project_id: string; name: string };
@@ -1889,6 +1993,20 @@ export interface Operations {
     path: { project_id: string };
     body: CalibratedVersion;
     response: SavedRig;
+  };
+  "POST /api/projects/{project_id}/exports": {
+    path: { project_id: string };
+    body: NewExport;
+    response: ExportView;
+  };
+  "POST /api/projects/{project_id}/exports/estimate": {
+    path: { project_id: string };
+    body: NewExport;
+    response: ExportEstimate;
+  };
+  "POST /api/projects/{project_id}/exports/{export_id}/cancel": {
+    path: { project_id: string; export_id: string };
+    response: ExportView;
   };
   "POST /api/projects/{project_id}/free": {
     path: { project_id: string };

@@ -9,6 +9,7 @@ events.jsonl    progress (`recon4_app.jobs.events`), appended by the worker
 log.txt         output of the worker
 room            reserved bytes, freed for the outcome when the disk is full
 tmp             the worker's temporary files; emptied when it has ended
+made            the file of an export
 outcome.json    how it ended, written last and atomically
 """
 
@@ -27,6 +28,7 @@ from typing import Literal
 
 import msgspec
 
+from recon4.delivery.kinds import ExportedFile
 from recon4.recording.files_near import files_near
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.atomic import sweep as sweep_unfinished
@@ -47,6 +49,8 @@ class Outcome:
     fail alike."""
     no_space: bool = False
     """Whether the disk was full."""
+    made: ExportedFile | None = None
+    """The file that an export has made."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,6 +72,11 @@ class JobFolder:
     def temporary(self) -> Path:
         """Folder of the worker's temporary files."""
         return self.path / "tmp"
+
+    @property
+    def made(self) -> Path:
+        """Folder of the file of an export."""
+        return self.path / "made"
 
     def prepare(self, inputs: Inputs, project: Path, limits: Limits) -> None:
         """Write the request; remove the files of an earlier attempt."""
@@ -92,10 +101,7 @@ class JobFolder:
     def request(self) -> tuple[Path, Inputs]:
         """Project folder and inputs."""
         request = json.loads((self.path / "request.json").read_text("utf-8"))
-        inputs = request["inputs"]
-        for name in ("recordings", "settings"):
-            inputs[name] = tuple(inputs[name])
-        return Path(request["project"]), Inputs(**inputs)
+        return Path(request["project"]), msgspec.convert(request["inputs"], Inputs)
 
     def near(self) -> tuple[Path, ...]:
         """Files beside the recordings, which the worker may read but not list."""

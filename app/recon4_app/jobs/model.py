@@ -1,4 +1,4 @@
-"""A job: one run of the pipeline on one project."""
+"""A job: one run of the pipeline on one project, or one file that is made of its map."""
 
 from __future__ import annotations
 
@@ -6,7 +6,18 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
+from recon4.delivery.kinds import ExportedFile
+from recon4.export.options import ExportOptions
 from recon4_app.errors import IllegalTransition
+
+
+class JobKind(StrEnum):
+    """What a job does."""
+
+    PROCESS = "process"
+    """Runs the pipeline; a project has one that waits or runs."""
+    EXPORT = "export"
+    """Makes a file of a finished map; any number of them may wait."""
 
 
 class JobState(StrEnum):
@@ -34,10 +45,19 @@ TRANSITIONS: dict[JobState, frozenset[JobState]] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ExportOrder:
+    """A file that is to be made."""
+
+    file: str
+    """Kind of file: a name of `recon4.delivery.kinds.KINDS`."""
+    options: ExportOptions
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
     """Inputs of a job, with paths of this computer."""
 
-    recordings: tuple[str, ...]
+    recordings: tuple[str, ...] = ()
     """Files or folders."""
     preset: str = "indoor"
     rig: str = ""
@@ -52,6 +72,8 @@ class Inputs:
     """Display name of a new project; empty = the name of its folder."""
     remake: bool = False
     """Only make the map again with the current decisions; the other inputs are unchanged."""
+    export: ExportOrder | None = None
+    """Only make this file of the map; the other inputs are not used."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +93,15 @@ class Job:
     finished: str = ""
     note: str = ""
     """What went wrong and what to do, as text for users."""
+    person: str = ""
+    """Who started it; empty = not known."""
+    made: ExportedFile | None = None
+    """The file that it made, also when that was removed since."""
+
+    @property
+    def kind(self) -> JobKind:
+        """What it does."""
+        return JobKind.EXPORT if self.inputs.export else JobKind.PROCESS
 
     @property
     def over(self) -> bool:

@@ -23,9 +23,18 @@ from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import ProblemDetail
-from recon4_app.errors import PROJECTS, STORAGE, NoRoom, NotFound, Remedy, TooMany
+from recon4_app.errors import (
+    PROJECTS,
+    STORAGE,
+    Conflict,
+    NoRoom,
+    NotFound,
+    Remedy,
+    TooMany,
+    project_page,
+)
 from recon4_app.jobs.folder import Outcome
-from recon4_app.jobs.model import Inputs, Job, JobState
+from recon4_app.jobs.model import Inputs, Job, JobKind, JobState
 from recon4_app.jobs.space import refuse_if_full
 from recon4_app.jobs.status import JobStatus
 from recon4_app.jobs.supervisor import now
@@ -116,7 +125,7 @@ class LogPiece(BaseModel):
 @router.get("/jobs", summary="Newest jobs")
 def list_jobs(server: Server) -> list[JobView]:
     """List the newest job of each project."""
-    return [_view(server, job) for job in server.jobs.latest().values()]
+    return [job_view(server, job) for job in server.jobs.latest().values()]
 
 
 @router.post(
@@ -137,7 +146,7 @@ async def start_job(new: NewJob, server: Server, request: Request, *, caller: Ca
 def add_job(new: NewJob, server: ServerParts, request: Request) -> JobView:
     """Add a job to the queue; a rig file must have been checked."""
     inputs = _checked(new, server)
-    _refuse_too_many(server)
+    refuse_too_many(server)
     with _NAMING:
         project = new.project or server.projects.free_folder_name(
             new.title, server.jobs.has_project
@@ -157,13 +166,13 @@ def add_job(new: NewJob, server: ServerParts, request: Request) -> JobView:
 @router.get("/jobs/{job_id}", summary="One job")
 def read_job(job_id: str, server: Server) -> JobView:
     """Read a job and its progress."""
-    return _view(server, server.jobs.get(job_id))
+    return job_view(server, server.jobs.get(job_id))
 
 
 @router.get("/projects/{project_id}/jobs", summary="Jobs of a project")
 def jobs_of(project_id: str, server: Server) -> list[JobView]:
     """List all jobs of a project with their inputs, the newest first."""
-    return [_view(server, job) for job in server.jobs.of_project(project_id)]
+    return [job_view(server, job) for job in server.jobs.of_project(project_id)]
 
 
 @router.post("/jobs/{job_id}/cancel", dependencies=PROCESS, summary="Cancel a job")
@@ -171,7 +180,7 @@ def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
     """Stop a job; its finished stages are kept."""
     job = server.supervisor.cancel(server.jobs.get(job_id))
     audit(request, "cancel job", job.project)
-    return _view(server, job)
+    return job_view(server, job)
 
 
 @router.post(
@@ -184,8 +193,12 @@ def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
 def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     """Run the same again as a new job; it continues after the last finished stage."""
     job = server.jobs.get(job_id)
+    if job.kind is JobKind.EXPORT:
+        raise Conflict(
+            "an export is not resumed: order the file again", remedy=project_page(job.project)
+        )
     _refuse_hidden(server, job.inputs)
-    _refuse_too_many(server)
+    refuse_too_many(server)
     _refuse_if_full(server, job.project, job.inputs)
     added = _add(server, job.project, job.inputs)
     audit(request, "resume job", job.project)
@@ -205,7 +218,7 @@ def remake(project_id: str, server: Server, request: Request) -> JobView:
     Neither the recording nor an earlier job of this server is needed.
     """
     server.projects.map_of_any_kind(project_id)  # raises if there is no map
-    _refuse_too_many(server)
+    refuse_too_many(server)
     earlier = server.jobs.of_project(project_id)
     inputs = replace(earlier[0].inputs if earlier else Inputs(recordings=()), remake=True)
     _refuse_if_full(server, project_id, inputs)
@@ -255,13 +268,15 @@ def _event_place(request: Request, server: Server) -> Iterator[None]:
 async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events: a ``job`` with a `JobView` for each change of a job.
 
-    The stream begins with one for each project's newest job, unless that succeeded.
+    The stream begins with one for each project's newest job, unless that succeeded. Those of files
+    that are made of a map are events ``export``.
     """
     version = server.supervisor.version
     jobs = [job for job in server.jobs.latest().values() if job.state is not JobState.SUCCEEDED]
     while True:
         for job in jobs:
-            yield ServerSentEvent(event="job", data=_view(server, job))
+            event = "export" if job.kind is JobKind.EXPORT else "job"
+            yield ServerSentEvent(event=event, data=job_view(server, job))
         await server.supervisor.news(version, timeout_s=JOB_STREAM.longest_quiet_s)
         touched = server.supervisor.touched_since(version)
         version = server.supervisor.version
@@ -299,7 +314,12 @@ def _refuse_hidden(server: ServerParts, inputs: Inputs) -> None:
             server.projects.importable(path)
 
 
-def _refuse_too_many(server: ServerParts) -> None:
+def refuse_too_many(server: ServerParts) -> None:
+    """Refuse a job if too many wait already.
+
+    Raises:
+        TooMany: If so.
+    """
     waiting = len(server.jobs.in_state(JobState.QUEUED))
     if waiting >= server.settings.max_waiting_jobs:
         raise TooMany(
@@ -325,16 +345,19 @@ def _add(server: ServerParts, project: str, inputs: Inputs) -> JobView:
     job = Job(id=secrets.token_hex(8), project=project, inputs=inputs, created=now())
     server.jobs.add(job)
     server.supervisor.wake(job)
-    return _view(server, job)
+    return job_view(server, job)
 
 
 def _is_resumable(job: Job, outcome: Outcome | None) -> bool:
+    if job.kind is JobKind.EXPORT:
+        return False
     if job.state is not JobState.FAILED:
         return job.state is JobState.CANCELLED
     return outcome is None or outcome.startable
 
 
-def _view(server: ServerParts, job: Job) -> JobView:
+def job_view(server: ServerParts, job: Job) -> JobView:
+    """A job and its progress."""
     status, run = server.supervisor.status(job), server.supervisor.run_progress(job)
     failed = job.state is JobState.FAILED
     outcome = server.supervisor.folder(job.id).outcome() if failed else None

@@ -9,15 +9,17 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
+from recon4.delivery.kinds import ExportedFile
 from recon4.errors import StoreError
 from recon4.store.json_files import parse_object
 from recon4.untrusted.names import visible
 from recon4_app.databases import migrate, open_engine
 from recon4_app.errors import Conflict, NotFound, project_page
-from recon4_app.jobs.model import Inputs, Job, JobState
+from recon4_app.jobs.model import Inputs, Job, JobKind, JobState
 from recon4_app.state_copies import StateCopies
 
 log = logging.getLogger(__name__)
@@ -36,9 +38,15 @@ JOBS = sa.Table(
     sa.Column("started", sa.String, nullable=False),
     sa.Column("finished", sa.String, nullable=False),
     sa.Column("note", sa.String, nullable=False),
+    sa.Column("kind", sa.String, nullable=False),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("made", sa.String, nullable=False),
 )
-"""The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs`` is
-JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one damaged row."""
+"""The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs`` and
+``made`` are JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one damaged
+row."""
+
+_PROCESSES = JOBS.c.kind == JobKind.PROCESS
 
 ENDED = sa.Table("ended", METADATA, sa.Column("job", sa.String, primary_key=True))
 """Ids of jobs whose end was not announced yet."""
@@ -69,7 +77,7 @@ class JobStore:
         """Append a job to the queue.
 
         Raises:
-            Conflict: If the project has a job that waits or runs.
+            Conflict: If it processes, and the project has a job that does so and waits or runs.
         """
         try:
             with self._engine.begin() as connection:
@@ -91,7 +99,7 @@ class JobStore:
         with self._engine.begin() as connection:
             if connection.execute(JOBS.update().where(mine).values(**_row(after))).rowcount != 1:
                 raise Conflict(f"job {before.id} is no longer {before.state}")
-            if after.over:
+            if after.over and after.kind is JobKind.PROCESS:
                 connection.execute(ENDED.insert().values(job=after.id))
         if after.over:
             self.on_ended()
@@ -129,22 +137,37 @@ class JobStore:
             return {JobState(state): count for state, count in connection.execute(query)}
 
     def latest(self) -> dict[str, Job]:
-        """The newest job of each project."""
-        newest = sa.select(sa.func.max(JOBS.c.number)).group_by(JOBS.c.project)
+        """The newest job of each project; exports do not count."""
+        newest = sa.select(sa.func.max(JOBS.c.number)).where(_PROCESSES).group_by(JOBS.c.project)
         jobs = self._select(JOBS.select().where(JOBS.c.number.in_(newest)))
         return {job.project: job for job in jobs}
 
-    def of_project(self, project: str) -> list[Job]:
-        """Jobs of one project, newest first."""
-        mine = JOBS.select().where(JOBS.c.project == project)
+    def of_project(self, project: str, kind: JobKind = JobKind.PROCESS) -> list[Job]:
+        """Jobs of one kind of one project, newest first."""
+        mine = JOBS.select().where((JOBS.c.project == project) & (JOBS.c.kind == kind))
         return self._select(mine.order_by(JOBS.c.number.desc()))
+
+    def of_kind(self, kind: JobKind) -> list[Job]:
+        """All jobs of one kind, newest first."""
+        query = JOBS.select().where(JOBS.c.kind == kind)
+        return self._select(query.order_by(JOBS.c.number.desc()))
+
+    def is_used(self, project: str) -> bool:
+        """Whether a job of any kind waits or runs on a project: it must stay where it is."""
+        return any(not job.over for kind in JobKind for job in self.of_project(project, kind))
+
+    def move_exports(self, project: str, name: str) -> None:
+        """List the exports of a project under another name: they follow it into the trash."""
+        mine = (JOBS.c.project == project) & (JOBS.c.kind == JobKind.EXPORT)
+        with self._engine.begin() as connection:
+            connection.execute(JOBS.update().where(mine).values(project=name))
 
     def has_project(self, project: str) -> bool:
         """Whether a job has a project, which may not exist yet."""
         return bool(self.of_project(project))
 
     def is_busy(self, project: str) -> bool:
-        """Whether a job of a project waits or runs."""
+        """Whether a job that changes a project waits or runs."""
         return any(not job.over for job in self.of_project(project))
 
     def _select(self, query: sa.Select[Any]) -> list[Job]:
@@ -174,14 +197,15 @@ def _restore(copies: StateCopies) -> str:
 
 def _row(job: Job) -> dict[str, object]:
     row = asdict(job)
-    return row | {"inputs": json.dumps(row["inputs"])}
+    row |= {"inputs": json.dumps(row["inputs"]), "kind": job.kind}
+    return row | {"made": json.dumps(row["made"]) if job.made else ""}
 
 
 def _job(row: sa.RowMapping) -> Job:
     """A row as a job; a damaged row is a failed job with a note."""
     try:
         return _whole_job(row)
-    except (ValueError, KeyError, TypeError, StoreError) as error:
+    except (ValueError, KeyError, TypeError, StoreError, msgspec.ValidationError) as error:
         return Job(
             id=visible(str(row["id"])),
             project=visible(str(row["project"])),
@@ -193,7 +217,8 @@ def _job(row: sa.RowMapping) -> Job:
 
 
 def _whole_job(row: sa.RowMapping) -> Job:
-    inputs = parse_object(row["inputs"], "inputs")
-    tuples: dict[str, Sequence[str]] = {n: tuple(inputs[n]) for n in ("recordings", "settings")}
-    fields = {name: row[name] for name in row if name not in ("number", "inputs", "state")}
-    return Job(**fields, inputs=Inputs(**{**inputs, **tuples}), state=JobState(row["state"]))
+    inputs = msgspec.convert(parse_object(row["inputs"], "inputs"), Inputs)
+    made = msgspec.convert(parse_object(row["made"], "made"), ExportedFile) if row["made"] else None
+    ours = ("number", "inputs", "state", "kind", "made")
+    fields = {name: row[name] for name in row if name not in ours}
+    return Job(**fields, inputs=inputs, made=made, state=JobState(row["state"]))

@@ -12,7 +12,7 @@ import logging
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -22,7 +22,7 @@ from recon4_app.jobs.events import read_events
 from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.folder import JobFolder, Limits, Outcome
 from recon4_app.jobs.limits import allowed_memory
-from recon4_app.jobs.model import Job, JobState
+from recon4_app.jobs.model import Job, JobKind, JobState
 from recon4_app.jobs.run_progress import RunProgress
 from recon4_app.jobs.run_progress import after as progress_after
 from recon4_app.jobs.silence import SilenceClock, allowed_silence_s
@@ -32,6 +32,9 @@ from recon4_app.jobs.tuning import SUPERVISOR_TIMES
 from recon4_app.settings import ServerSettings, worker_environment
 
 log = logging.getLogger(__name__)
+
+EXPORT_WORKER = "recon4_app.jobs.export_worker"
+"""Module run for an export."""
 
 
 class Tail:
@@ -168,9 +171,20 @@ class Supervisor:
         """Check every worker and the queue once; ids of the jobs that changed."""
         running = self._store.in_state(JobState.RUNNING)
         changed = {job.id for job in running if self._alone(self._watch, job)}
-        free = self._settings.max_running_jobs - len(self._store.in_state(JobState.RUNNING))
-        waiting = self._store.in_state(JobState.QUEUED)[: max(0, free)]
-        return changed | {job.id for job in waiting if self._alone(self._start, job)}
+        return changed | {job.id for job in self._next() if self._alone(self._start, job)}
+
+    def _next(self) -> Iterator[Job]:
+        """Jobs to be started; an export waits for other exports only."""
+        most = {
+            JobKind.PROCESS: self._settings.max_running_jobs,
+            JobKind.EXPORT: self._settings.max_running_exports,
+        }
+        for job in self._store.in_state(JobState.RUNNING):
+            most[job.kind] -= 1
+        for job in self._store.in_state(JobState.QUEUED):
+            if most[job.kind] > 0:
+                most[job.kind] -= 1
+                yield job
 
     def _alone(self, step: Callable[[Job], bool], job: Job) -> bool:
         """Run a step for one job; a failure does not affect the others. Whether the job changed."""
@@ -211,8 +225,13 @@ class Supervisor:
             attempt = job.attempt + 1
             self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
             if lock is not None:
-                self._workers[job.id] = _spawn(self._settings.worker_module, folder.path, lock)
+                self._workers[job.id] = _spawn(self._module(job), folder.path, lock)
         return True
+
+    def _module(self, job: Job) -> str:
+        """The program that does a job."""
+        of_exports = job.kind is JobKind.EXPORT
+        return EXPORT_WORKER if of_exports else self._settings.worker_module
 
     def _watch(self, job: Job) -> bool:
         changed = self._tail(job).read()
@@ -259,7 +278,8 @@ class Supervisor:
     def _ended(self, job: Job, outcome: Outcome | None, code: int | None) -> Job:
         """The job after its worker is gone."""
         if outcome is not None:
-            return job.to(JobState(outcome.state), finished=now(), note=outcome.note)
+            made = outcome.made if job.kind is JobKind.EXPORT else None
+            return job.to(JobState(outcome.state), finished=now(), note=outcome.note, made=made)
         where, how = self._tail(job).status.where, exit_reason(code)
         if job.id in self._hung:
             how = f"made no progress for {self._hung[job.id]:.0f} s and was killed"

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from recon4.delivery.kinds import ExportedFile
 from recon4.errors import Cancelled, ConfigError, NoSpace, Recon4Error, RecordingError
 from recon4.progress import Progress
 from recon4.sandbox import Policy
@@ -30,7 +31,8 @@ OUT_OF_MEMORY = (
     "or process fewer points (a larger map.voxel_m, a shorter recording), then resume"
 )
 
-Work = Callable[[JobFolder, Progress], None]
+Work = Callable[[JobFolder, Progress], ExportedFile | None]
+"""Does the work of a job; returns the file of an export."""
 
 
 def main(path: Path, work: Work, policy_of: Callable[[JobFolder], Policy] = worker_policy) -> int:
@@ -54,7 +56,7 @@ def run(folder: JobFolder, work: Work) -> Outcome:
     try:
         folder.keep_room()
         events = EventWriter(folder.path)
-        work(folder, events)
+        made = work(folder, events)
     except Cancelled as stop:
         return Outcome(state="cancelled", note=str(stop))
     except (RecordingError, ConfigError) as error:
@@ -73,7 +75,7 @@ def run(folder: JobFolder, work: Work) -> Outcome:
     finally:
         if events is not None:
             events.close()
-    return Outcome(state="succeeded")
+    return Outcome(state="succeeded", made=made)
 
 
 def process(folder: JobFolder, progress: Progress) -> None:

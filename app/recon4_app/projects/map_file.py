@@ -71,11 +71,12 @@ def write_map_file(
         ConfigError: If all points are wanted in a format without classes.
         GeoreferenceError: If a CRS is requested and the map is not georeferenced.
     """
-    from recon4.export.map_files import MapExport, map_to_export, write_map
+    from recon4.export.map_files import map_to_export, write_map
+    from recon4.export.options import ExportOptions
     from recon4.progress import Silent
 
     folders = {stage: Path(folder) for stage, folder in artifacts.items()}
-    wanted = MapExport(**query.model_dump())
+    wanted = ExportOptions(**query.model_dump())
     map_ = map_to_export(folders, evidence, wanted)
-    write_map(map_, Path(out), all_points=wanted.all_points, progress=Silent())
+    write_map(map_, Path(out), progress=Silent())
     return out

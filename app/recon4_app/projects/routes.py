@@ -110,6 +110,7 @@ def delete_project(project_id: str, server: Server, request: Request) -> Deleted
     folder = server.projects.folder(project_id)
     _refuse_while_busy(server, project_id)
     deleted = server.trash.put(folder)
+    server.jobs.move_exports(project_id, deleted.id)
     audit(request, "delete project", project_id)
     return deleted
 
@@ -124,6 +125,7 @@ def list_trash(server: Server) -> list[Deleted]:
 def restore_project(deleted_id: str, server: Server, request: Request) -> Restored:
     """Restore a deleted project or recording under its old name."""
     project = server.trash.restore(deleted_id)
+    server.jobs.move_exports(deleted_id, project)
     audit(request, "restore", project)
     return Restored(project=project)
 
@@ -231,5 +233,5 @@ def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
 
 
 def _refuse_while_busy(server: ServerParts, project_id: str) -> None:
-    if server.jobs.is_busy(project_id):
+    if server.jobs.is_used(project_id):
         raise Conflict(f"a job of {project_id} waits or runs; cancel it first")

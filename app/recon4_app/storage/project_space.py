@@ -47,7 +47,7 @@ class ProjectSpaces:
             StoreError: If an approval cannot be read, or a file not be removed.
         """
         folder = self._projects.folder(project_id)
-        if self._jobs.is_busy(project_id):
+        if self._jobs.is_used(project_id):
             raise Conflict(
                 f"a job of {project_id} waits or runs; cancel it first",
                 remedy=project_page(project_id),

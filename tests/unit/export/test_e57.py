@@ -9,7 +9,7 @@ import pytest
 from recon4.errors import ConfigError, StoreError
 from recon4.export import e57
 from recon4.export.e57 import ScanPoses, export_e57
-from recon4.export.points import CRS_OF_MAP
+from recon4.export.points import CRS_OF_MAP, PointSource
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
 from tests.room_walks import Walk, room_walk
@@ -33,7 +33,8 @@ def made(tmp_path_factory):
 @pytest.fixture
 def path(made, tmp_path):
     tiles, scans = made
-    count = export_e57(tiles, tmp_path / "map.e57", scans, output=CRS_OF_MAP, progress=Silent())
+    source = PointSource.of(tiles, CRS_OF_MAP)
+    count = export_e57(source, tmp_path / "map.e57", scans, progress=Silent())
     assert count == len(tiles)
     assert [one.name for one in tmp_path.iterdir()] == ["map.e57"]
     return tmp_path / "map.e57"
@@ -72,12 +73,14 @@ def test_the_file_names_its_crs_and_is_the_same_each_time(made, path, tmp_path):
     tiles, scans = made
     with pye57.E57(str(path)) as file:
         assert file.root["coordinateMetadata"].value() == UTM.wkt
-    export_e57(tiles, tmp_path / "b.e57", scans, output=CRS_OF_MAP, progress=Silent())
+    source = PointSource.of(tiles, CRS_OF_MAP)
+    export_e57(source, tmp_path / "b.e57", scans, progress=Silent())
     assert (tmp_path / "b.e57").read_bytes() == path.read_bytes()
 
 
 def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch):
     tiles, scans = made
+    source = PointSource.of(tiles, CRS_OF_MAP)
     write = e57._write_scan
 
     def another(image, data, scan):
@@ -86,16 +89,17 @@ def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch):
 
     monkeypatch.setattr(e57, "_write_scan", another)
     with pytest.raises(StoreError, match="reads back wrong: cartesianX of scan 0"):
-        export_e57(tiles, tmp_path / "x.e57", scans, output=CRS_OF_MAP, progress=Silent())
+        export_e57(source, tmp_path / "x.e57", scans, progress=Silent())
 
 
 def test_a_disk_that_fills_while_it_is_written_is_said_in_one_line(made, tmp_path):
     tiles, scans = made
+    source = PointSource.of(tiles, CRS_OF_MAP)
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (350_000, hard))  # more than a scan, less than all
     try:
         with pytest.raises(StoreError, match="is the disk full") as raised:
-            export_e57(tiles, tmp_path / "x.e57", scans, output=CRS_OF_MAP, progress=Silent())
+            export_e57(source, tmp_path / "x.e57", scans, progress=Silent())
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert "\n" not in str(raised.value) and len(str(raised.value)) < 200
@@ -105,6 +109,5 @@ def test_an_empty_map_is_refused(made, tmp_path):
     walk = room_walk(frames=2)
     empty = Walk([f.take(slice(0, 0)) for f in walk.frames], walk.rig, walk.trajectory)
     make(tmp_path / "empty", walk=empty, normalize=False)
-    tiles = TileSet.open(tmp_path / "empty")
     with pytest.raises(ConfigError, match="no points"):
-        export_e57(tiles, tmp_path / "x.e57", made[1], output=CRS_OF_MAP, progress=Silent())
+        PointSource.of(tmp_path / "empty", CRS_OF_MAP)

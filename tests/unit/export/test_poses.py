@@ -35,7 +35,7 @@ def test_every_multiframe_has_a_pose_in_the_file(project, tmp_path, capsys):
 
 def test_a_crs_is_refused_for_poses(project, tmp_path, capsys):
     assert main(["export", str(project), str(tmp_path / "p.txt"), "--crs", "EPSG:5514"]) == 2
-    assert "--crs is for maps" in capsys.readouterr().err
+    assert "is written as it is" in capsys.readouterr().err
     assert not (tmp_path / "p.txt").exists()
 
 

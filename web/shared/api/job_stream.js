@@ -9,13 +9,15 @@ import { readJob } from "./projects.js";
 const RECONNECT_MS = 3000;
 
 /**
- * Calls `onJob` with every job now and at each change, `onLink` with whether the server answers.
+ * Calls `onJob` with every job now and at each change, `onLink` with whether the server answers,
+ * and `onExport` with a job that makes a file of a map at each change.
  * The stream does not repeat jobs that finished while it was cut: those are requested.
  * Returns a function for views that came another way, so that these jobs are requested too.
  * @param {(view: JobView) => void} onJob
  * @param {(linked: boolean) => void} onLink
+ * @param {(view: JobView) => void} onExport
  */
-export function watchJobs(onJob, onLink) {
+export function watchJobs(onJob, onLink, onExport = () => {}) {
   const newest = new Map(); // project -> its newest job among those received
   const receive = (/** @type {JobView} */ view) => {
     const { job } = view;
@@ -39,6 +41,7 @@ export function watchJobs(onJob, onLink) {
       setTimeout(connect, RECONNECT_MS);
     };
     source.addEventListener("job", (event) => receive(JSON.parse(event.data)));
+    source.addEventListener("export", (event) => onExport(JSON.parse(event.data)));
     source.addEventListener("open", () => {
       const requested = [...newest.values()].filter((job) => !job.finished).map(requestAgain);
       Promise.all(requested).then(() => onLink(source.readyState === EventSource.OPEN), reconnect);

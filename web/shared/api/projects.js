@@ -90,16 +90,6 @@ export const reportPdfUrl = (/** @type {string} */ id) =>
  */
 export const findingsUrl = (id, ending) => at(`/api/projects/${name(id)}/findings.${ending}`);
 /**
- * The map as a file for another program.
- * @param {string} id
- * @param {string} ending
- * @param {{crs: string, raw: boolean, all_points: boolean}} wanted
- */
-export const mapFileUrl = (id, ending, wanted) => {
-  const query = new URLSearchParams(Object.entries(wanted).map(([key, one]) => [key, `${one}`]));
-  return `${at(`/api/projects/${name(id)}/map.${ending}`)}?${query}`;
-};
-/**
  * @param {string} id
  * @param {string} version
  */

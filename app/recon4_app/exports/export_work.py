@@ -1,0 +1,42 @@
+"""Work of the list of exports in child processes. Arguments and results are plain values."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.delivery.kinds import KINDS, ExportEstimate
+from recon4.export.options import ExportOptions
+from recon4.model.classes import CLASSES
+from recon4.model.plain import to_plain
+from recon4.products.storeys import find_storeys
+from recon4.review.evidence import Evidence
+from recon4.store.atomic import write_json
+from recon4_app.exports.model import ClassChoice, ExportChoices, StoreyChoice
+from recon4_app.slices.slice_work import Artifacts, map_frame, map_of
+
+
+def estimate(artifacts: Artifacts, file: str, options: ExportOptions) -> ExportEstimate:
+    """About how large an export will be.
+
+    Raises:
+        ConfigError: If it cannot be made of this map.
+        GeoreferenceError: If it cannot be put into the CRS.
+    """
+    from recon4.delivery.estimates import estimate_export  # brings all formats
+
+    return estimate_export({k: Path(folder) for k, folder in artifacts.items()}, file, options)
+
+
+def write_choices(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
+    """Write what can be chosen of the exports of a map as JSON."""
+    storeys = find_storeys(map_of(artifacts, evidence))
+    choices = ExportChoices(
+        kinds=list(KINDS.values()),
+        classes=[
+            ClassChoice(code=int(code), title=facts.title, delivered=facts.delivered)
+            for code, facts in CLASSES.items()
+        ],
+        storeys=[StoreyChoice(name=one.name, floor_m=round(one.floor_m, 2)) for one in storeys],
+        crs=map_frame(artifacts).crs,
+    )
+    write_json(Path(out), to_plain(choices))

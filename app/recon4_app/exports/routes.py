@@ -1,0 +1,227 @@
+"""HTTP routes of exports: files of a map as jobs, and the list of them."""
+
+from __future__ import annotations
+
+import secrets
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import FileResponse
+from pydantic import TypeAdapter, ValidationError
+from starlette.concurrency import run_in_threadpool
+
+from recon4.delivery.kinds import KINDS, ExportEstimate
+from recon4.errors import StoreError
+from recon4.export.options import ExportOptions
+from recon4.untrusted.bounded import read_json_object
+from recon4.untrusted.limits import LIMITS
+from recon4_app.access.audit import audit
+from recon4_app.access.people import Permission, needs, person
+from recon4_app.deps import Server, ServerParts
+from recon4_app.error_responses import ProblemDetail
+from recon4_app.errors import STORAGE, Conflict, NoRoom, NotFound, Refused
+from recon4_app.exports import export_work
+from recon4_app.exports.model import ExportChoices, ExportView, NewExport
+from recon4_app.exports.tuning import KEPT_EXPORTS
+from recon4_app.jobs.model import ExportOrder, Inputs, Job, JobKind
+from recon4_app.jobs.routes import refuse_too_many
+from recon4_app.jobs.supervisor import now
+from recon4_app.network.rate_limit import at_most
+from recon4_app.network.request_caller import CalledBy, Caller
+
+router = APIRouter(
+    prefix="/api/projects/{project_id}/exports",
+    tags=["exports"],
+    dependencies=[Depends(needs(Permission.LOOK))],
+    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+)
+ORDER = [Depends(at_most(60, within_s=3600.0, what="exports"))]
+REFUSALS: dict[int | str, dict[str, object]] = {
+    status: {"model": ProblemDetail} for status in (403, 429, 507)
+}
+
+
+@router.get("", summary="Exports of a project")
+def list_exports(project_id: str, server: Server) -> list[ExportView]:
+    """List what was exported, by whom and when, with hashes; the newest first.
+
+    A row stays when its file is removed after a week.
+    """
+    server.projects.folder(project_id)
+    jobs = server.jobs.of_project(project_id, JobKind.EXPORT)[: KEPT_EXPORTS.listed]
+    map_key = _map_key(server, project_id)
+    return [_view(server, job, map_key) for job in jobs]
+
+
+@router.get("/choices", summary="What can be exported")
+async def read_choices(project_id: str, *, server: Server, caller: CalledBy) -> ExportChoices:
+    """Kinds of files with the options that each takes, classes, and the storeys of the map."""
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id)
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id)
+    terms = slices.terms(project_id, caller.name)
+    out = "choices.json"
+
+    async def make(path: Path) -> None:
+        made = replace(terms, outputs={out: path})
+        work: Callable[..., None] = export_work.write_choices
+        await slices.run_interactive(made, work, artifacts, out, evidence=evidence)
+
+    name = f"{Path(artifacts['map']).name}-{Path(artifacts.get('level', '')).name[:16]}-exports-1"
+    path = await caller.wait(slices.kept(f"{name}.json", make))
+    return await run_in_threadpool(_read_choices, path)
+
+
+@router.post("/estimate", summary="Size of an export")
+async def estimate(
+    project_id: str, new: NewExport, *, server: Server, caller: CalledBy
+) -> ExportEstimate:
+    """Say about how many points and bytes a file will have; what cannot be made is refused."""
+    return await _estimate(project_id, new, server=server, caller=caller)
+
+
+@router.post(
+    "", status_code=201, dependencies=ORDER, responses=REFUSALS, summary="Make a file of the map"
+)
+async def order(
+    project_id: str, new: NewExport, *, server: Server, request: Request, caller: CalledBy
+) -> ExportView:
+    """Add an export to the queue; it runs beside jobs that process."""
+    found = await _estimate(project_id, new, server=server, caller=caller)
+    return await run_in_threadpool(_add, project_id, new, server, request=request, size=found.bytes)
+
+
+@router.post("/{export_id}/cancel", responses=REFUSALS, summary="Cancel an export")
+def cancel(project_id: str, export_id: str, *, server: Server, request: Request) -> ExportView:
+    """Stop an export; nothing of the file is left."""
+    job = _export(server, project_id, export_id)
+    _refuse_others(request, job)
+    job = server.supervisor.cancel(job)
+    audit(request, "cancel export", f"{project_id}: {_file_of(job)}")
+    return _view(server, job, _map_key(server, project_id))
+
+
+@router.get("/{export_id}/file", response_class=FileResponse, summary="Download an export")
+def download(project_id: str, export_id: str, server: Server) -> FileResponse:
+    """Download a file that was made; ``Range`` with ``If-Range`` continues a download.
+
+    The entity tag is its SHA-256.
+    """
+    job = _export(server, project_id, export_id)
+    path = server.exports.path(job)
+    if path is None or job.made is None:
+        raise NotFound("this file was removed, or is not made yet: order it again")
+    return FileResponse(
+        path,
+        filename=path.name,
+        media_type="application/octet-stream",
+        headers={"ETag": f'"{job.made.sha256}"'},
+    )
+
+
+@router.delete("/{export_id}/file", responses=REFUSALS, summary="Remove the file of an export")
+def remove(project_id: str, export_id: str, *, server: Server, request: Request) -> ExportView:
+    """Remove a file; its row stays in the list."""
+    job = _export(server, project_id, export_id)
+    _refuse_others(request, job)
+    if not job.over:
+        raise Conflict("this export is not over: cancel it first")
+    server.exports.remove(job)
+    audit(request, "remove export", f"{project_id}: {_file_of(job)}")
+    return _view(server, job, _map_key(server, project_id))
+
+
+async def _estimate(
+    project_id: str, new: NewExport, *, server: ServerParts, caller: Caller
+) -> ExportEstimate:
+    slices = server.slices
+    artifacts = await run_in_threadpool(slices.artifacts, project_id)
+    terms = replace(slices.terms(project_id, caller.name), limit_s=KEPT_EXPORTS.estimate_limit_s)
+    work: Callable[..., ExportEstimate] = export_work.estimate
+    return await caller.wait(slices.run_interactive(terms, work, artifacts, new.file, new.options))
+
+
+def _add(
+    project_id: str, new: NewExport, server: ServerParts, *, request: Request, size: int
+) -> ExportView:
+    refuse_too_many(server)
+    server.slices.evidence(project_id, draft=new.options.draft)  # an approval that does not count
+    reserve = server.settings.free_disk_reserve_bytes
+    needed = KEPT_EXPORTS.room * size + reserve
+    free = shutil.disk_usage(server.settings.state).free
+    if free < needed:
+        raise NoRoom(
+            f"this export needs about {needed / 1e9:.1f} GB while it is made, "
+            f"{free / 1e9:.1f} GB are free",
+            remedy=STORAGE,
+        )
+    job = Job(
+        id=secrets.token_hex(8),
+        project=project_id,
+        inputs=Inputs(export=ExportOrder(file=new.file, options=new.options)),
+        created=now(),
+        person=person(request).name,
+    )
+    server.jobs.add(job)
+    server.supervisor.wake(job)
+    audit(request, "export", f"{project_id}: {new.file}")
+    return _view(server, job, _map_key(server, project_id))
+
+
+def _export(server: ServerParts, project_id: str, export_id: str) -> Job:
+    server.projects.folder(project_id)
+    job = server.jobs.get(export_id)
+    if job.project != project_id or job.kind is not JobKind.EXPORT:
+        raise NotFound(f"project {project_id} has no export {export_id[:64]!r}")
+    return job
+
+
+def _refuse_others(request: Request, job: Job) -> None:
+    """Refuse to change what another person ordered, without the permission to process."""
+    who = person(request)
+    if who.name != job.person and not who.may(Permission.PROCESS):
+        raise Refused(f"{job.person or 'another person'} ordered this file: ask them, or an admin")
+
+
+def _map_key(server: ServerParts, project_id: str) -> str:
+    found = server.projects.artifact(project_id, "map")
+    return found.name if found else ""
+
+
+def _file_of(job: Job) -> str:
+    return job.inputs.export.file if job.inputs.export else ""
+
+
+def _view(server: ServerParts, job: Job, map_key: str) -> ExportView:
+    status = server.supervisor.status(job)
+    file = _file_of(job)
+    return ExportView(
+        id=job.id,
+        file=file,
+        title=KINDS[file].title if file in KINDS else file,
+        options=job.inputs.export.options if job.inputs.export else ExportOptions(),
+        state=job.state,
+        person=job.person,
+        created=job.created,
+        finished=job.finished,
+        note=job.note,
+        fraction=status.fraction,
+        what=status.what,
+        made=job.made,
+        kept=server.exports.path(job) is not None,
+        of_this_map=job.made is not None and job.made.map_key == map_key,
+    )
+
+
+def _read_choices(path: Path) -> ExportChoices:
+    try:
+        record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
+        return _CHOICES.validate_python(record)
+    except ValidationError as error:
+        raise StoreError(f"{path.name}: {error}") from error
+
+
+_CHOICES: TypeAdapter[ExportChoices] = TypeAdapter(ExportChoices)

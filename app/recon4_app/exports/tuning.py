@@ -1,0 +1,25 @@
+"""Limits of exports that are kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KeptExportLimits:
+    """Files that exports have made."""
+
+    kept_s: float = 7 * 86_400.0
+    """A file is kept this long, unless all exceed `max_bytes` [s]; its row is kept for ever."""
+    max_bytes: int = 100 << 30
+    """Of all files; the oldest are removed first."""
+    room: int = 4
+    """An export needs this many times the bytes of its file while it is made: sorted points, the
+    file, and a copy with the approval."""
+    listed: int = 200
+    """Newest rows on the page of a project."""
+    estimate_limit_s: float = 60.0
+    """Longest time of an estimate [s]."""
+
+
+KEPT_EXPORTS = KeptExportLimits()

@@ -1,0 +1,70 @@
+"""The worker of an export: ``python -m recon4_app.jobs.export_worker JOB_FOLDER``.
+
+It may read its project only, and write its own folder only.
+"""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from pathlib import Path
+
+from recon4.delivery.kinds import ExportedFile
+from recon4.errors import ConfigError, NoSpace, Recon4Error
+from recon4.progress import Progress
+from recon4.review.newest_approval import judging_folders
+from recon4.review.trusted_keys import STATE
+from recon4.sandbox import Policy
+from recon4.store.atomic import make_folders
+from recon4.system.stopping import end_process
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.tuning import WORKER_LIMITS
+from recon4_app.jobs.worker import main
+
+
+def export(folder: JobFolder, progress: Progress) -> ExportedFile:
+    """Make the file that a job orders.
+
+    Raises:
+        ConfigError: If it cannot be made of this map.
+        NoSpace: If the disk is full.
+        Recon4Error: If the memory is too small.
+    """
+    from recon4.delivery.exports import export_file
+
+    project, inputs = folder.request()
+    order = inputs.export
+    if order is None:
+        raise ConfigError("this job orders no file")
+    free, reserve = shutil.disk_usage(folder.path).free, folder.limits().reserve_bytes
+    if free < reserve:
+        raise NoSpace(f"no space: an export leaves {reserve} bytes free, there are {free}")
+    make_folders(folder.made)
+    try:
+        return export_file(
+            project, order.file, folder.made, options=order.options, progress=progress
+        )
+    except MemoryError as error:
+        raise Recon4Error(
+            "out of memory: choose fewer points: some classes, a box, a storey, or thin them out"
+        ) from error
+
+
+def policy(folder: JobFolder) -> Policy:
+    """The sandbox policy: read the project and who may approve it, write the job's folder."""
+    project, _ = folder.request()
+    limits = folder.limits()
+    free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
+    return Policy(
+        read=(project, *judging_folders(project.parent / STATE)),
+        write=(folder.path,),
+        temporary=folder.temporary,
+        memory_bytes=limits.memory_bytes,
+        cpu_s=WORKER_LIMITS.max_cpu_s,
+        file_bytes=max(WORKER_LIMITS.min_file_bytes, free),
+        open_files=WORKER_LIMITS.max_files,
+    )
+
+
+if __name__ == "__main__":
+    end_process(lambda _: main(Path(sys.argv[1]), export, policy))

@@ -1,0 +1,49 @@
+"""How large an export will be, without reading the whole map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from recon4.delivery.kinds import ExportEstimate, ExportKind, kind_named
+from recon4.export.expected import expected_points
+from recon4.export.map_files import map_to_export
+from recon4.export.options import ExportOptions
+from recon4.mapping.tiles import TileSet
+
+
+def estimate_export(
+    artifacts: Mapping[str, Path], kind_name: str, options: ExportOptions
+) -> ExportEstimate:
+    """Estimate an export from a sample of the map.
+
+    Args:
+        artifacts: Of the run; it has a map.
+        kind_name: Of `recon4.delivery.kinds.KINDS`.
+        options: What is wanted.
+
+    Raises:
+        ConfigError: If there is no such kind, class or storey, or it takes no such option.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
+        StoreError: If an artifact cannot be read.
+    """
+    kind = kind_named(kind_name, options)
+    if not kind.point_bytes:
+        size = _raster_bytes(artifacts, kind, options)
+        return ExportEstimate(points=0, bytes=size, is_most=True)
+    map_ = map_to_export(artifacts, None, options)
+    points = expected_points(map_.tiles, map_.output, map_.selection)
+    each = (options.thin_m and kind.thinned_bytes) or kind.point_bytes
+    return ExportEstimate(points=points, bytes=round(points * each), is_most=False)
+
+
+def _raster_bytes(artifacts: Mapping[str, Path], kind: ExportKind, options: ExportOptions) -> int:
+    """Bytes of an image without compression; 0 of what is none."""
+    if not kind.name.endswith(".tif"):
+        return 0
+    low, high = TileSet.open(artifacts["map"]).bounds_m
+    photo = kind.name.startswith("orthophoto")
+    edge_m, cell_bytes = (options.pixel_m, 2) if photo else (options.cell_m, 4)
+    return round(cell_bytes * float(np.prod(np.ceil((high - low)[:2] / edge_m))))

@@ -1,0 +1,129 @@
+"""Writes any kind of file of a finished project, and says what was written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import recon4
+from recon4.delivery.kinds import ExportedFile, ExportKind, kind_named
+from recon4.errors import StoreError
+from recon4.export.findings import export_findings
+from recon4.export.map_files import export_poses, map_to_export, points_text, write_map
+from recon4.export.options import ExportOptions
+from recon4.mapping.tiles import TileSet
+from recon4.progress import Progress
+from recon4.review.approval_state import WRITTEN_AS_DRAFT, approval_state
+from recon4.review.approved import approval_of
+from recon4.review.evidence import Evidence
+from recon4.store.hashing import FileDigest
+from recon4.store.project import read_artifacts
+
+
+def export_file(
+    project: Path, kind_name: str, folder: Path, *, options: ExportOptions, progress: Progress
+) -> ExportedFile:
+    """Write a file of a project, and read it back if it holds points.
+
+    Args:
+        project: The project folder.
+        kind_name: Of `recon4.delivery.kinds.KINDS`.
+        folder: Where the file is written; its name begins with that of the project.
+        options: What is wanted.
+        progress: Counts points.
+
+    Raises:
+        Altered: If the map was approved and is not what was approved; nothing is written.
+        ConfigError: If there is no such kind, or the map does not have what is wanted.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
+        StoreError: If there is no map yet, or the file cannot be written or reads back wrong.
+    """
+    kind = kind_named(kind_name, options)
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project.name} has no map of points yet: process it first")
+    keys = {name: one.name for name, one in artifacts.items()}
+    approval = None if options.draft else approval_of(project, keys)
+    state = WRITTEN_AS_DRAFT if options.draft else approval_state(project, keys)
+    path = folder / f"{project.name}-{kind.name}"
+    evidence = approval.evidence if approval else None
+    wanted = WantedFile(artifacts, evidence, options)
+    points, text = write_kind(project, kind, path, wanted=wanted, progress=progress)
+    digest = FileDigest.of(path)
+    return ExportedFile(
+        name=path.name,
+        bytes=digest.size,
+        sha256=digest.sha256,
+        text=text,
+        approval=state.text,
+        map_key=keys["map"],
+        recon4=recon4.__version__,
+        points=points,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class WantedFile:
+    """What a file is made of."""
+
+    artifacts: Mapping[str, Path]
+    """Of the run; it has a map."""
+    evidence: Evidence | None
+    """Of its approval; None = not approved, or a draft."""
+    options: ExportOptions
+
+
+def write_kind(
+    project: Path, kind: ExportKind, path: Path, *, wanted: WantedFile, progress: Progress
+) -> tuple[int, str]:
+    """Write a file; how many points it has, and what is in it in words.
+
+    Raises:
+        Altered, ConfigError, GeoreferenceError, StoreError: As `export_file`.
+    """
+    if kind.point_bytes:
+        map_ = map_to_export(wanted.artifacts, wanted.evidence, wanted.options)
+        points = write_map(map_, path, progress=progress)
+        return points, points_text(points, len(map_.tiles), map_.tiles.strays).rstrip(",")
+    if kind.name.startswith("poses"):
+        return 0, f"{export_poses(project, path, draft=wanted.options.draft)} poses"
+    if kind.name.startswith("findings"):
+        return 0, f"{export_findings(project, path)} findings"
+    return 0, _write_product(kind, path, wanted, progress=progress)
+
+
+def _write_product(kind: ExportKind, path: Path, wanted: WantedFile, *, progress: Progress) -> str:
+    from recon4.products.write import ProductOptions, ProductSource, write_product
+    from recon4.slices.map_crs import frame_of
+
+    options, artifacts, evidence = wanted.options, wanted.artifacts, wanted.evidence
+    if evidence:
+        evidence.check_frame(artifacts)
+    frame = frame_of(dict(artifacts), options.crs)
+    folder = artifacts["map"]
+    tiles = evidence.open_map(folder) if evidence else TileSet.open(folder)
+    progress.start(kind.title, 1, "files")
+    text = write_product(
+        _PRODUCTS[kind.name.partition(".")[0]],
+        ProductSource(tiles, frame, evidence.stamp if evidence else None),
+        path,
+        options=ProductOptions(
+            storey=options.storey,
+            pixel_m=options.pixel_m,
+            cell_m=options.cell_m,
+            surface="dsm" if kind.name.startswith("dsm") else "dtm",
+        ),
+    )
+    progress.advance()
+    return text
+
+
+_PRODUCTS: Mapping[str, Literal["plan", "orthophoto", "terrain"]] = {
+    "plan": "plan",
+    "orthophoto": "orthophoto",
+    "dtm": "terrain",
+    "dsm": "terrain",
+    "contours": "terrain",
+}

@@ -1,0 +1,121 @@
+"""Kinds of files that are made of a project: the one table for pages, HTTP and deliveries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from recon4.errors import ConfigError
+from recon4.export.options import ExportOptions
+from recon4.untrusted.names import visible
+
+_ALWAYS = ("draft",)
+_POINTS = ("crs", "raw", "classes", "box_m", "storey", "thin_m", *_ALWAYS)
+_CLASSED = (*_POINTS, "all_points")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportKind:
+    """A kind of file."""
+
+    name: str
+    """Name of the file in a delivery."""
+    title: str
+    programs: str
+    """Who reads it."""
+    group: str
+    """What it shows."""
+    takes: tuple[str, ...]
+    """Options of `ExportOptions`."""
+    point_bytes: float = 0.0
+    """Usual bytes of a point of a whole map; 0 = it has none. Measured: docs/how-to/deliver.md."""
+    thinned_bytes: float = 0.0
+    """The same of a map that is thinned to 50 mm: neighbors are less alike. 0 = as many."""
+
+    @property
+    def ending(self) -> str:
+        """With its dot."""
+        return "." + self.name.partition(".")[2]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportedFile:
+    """What was written; kept when the file is gone."""
+
+    name: str
+    bytes: int
+    sha256: str
+    text: str
+    """What is in it, in words."""
+    approval: str
+    """State of the approval of the map, in one line."""
+    map_key: str
+    """Artifact of the map that it was made of."""
+    recon4: str
+    """Version of the program."""
+    points: int = 0
+    """Points in it; 0 = it has none."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportEstimate:
+    """What an export will be, about."""
+
+    points: int
+    """Points in the file; 0 = it has none."""
+    bytes: int
+    """Size of the file; 0 = not known: drawings and tables are small."""
+    is_most: bool
+    """Whether it will be smaller: images are compressed."""
+
+
+def _kind(name: str, title: str, programs: str, **more: Any) -> ExportKind:
+    return ExportKind(name=name, title=title, programs=programs, **more)
+
+
+_CLOUDS, _DRAWINGS, _LISTS = "Point cloud", "Drawings and images", "Tables and lines"
+_PLAN, _RASTER = ("crs", "storey", *_ALWAYS), ("crs", "cell_m", *_ALWAYS)
+KINDS: dict[str, ExportKind] = {
+    kind.name: kind
+    for kind in (
+        _kind("map.copc.laz", "COPC", "QGIS, web viewers", group=_CLOUDS, takes=_CLASSED,
+              point_bytes=10.5, thinned_bytes=15.0),
+        _kind("map.laz", "LAZ", "CloudCompare, PDAL", group=_CLOUDS, takes=_CLASSED,
+              point_bytes=9.9, thinned_bytes=14.4),
+        _kind("map.e57", "E57, scans with poses", "Recap, Cyclone, CloudCompare", group=_CLOUDS,
+              takes=_POINTS, point_bytes=16.2),
+        _kind("map.ply", "PLY, all fields and normals", "MeshLab, Open3D", group=_CLOUDS,
+              takes=_CLASSED, point_bytes=66.0),
+        _kind("map.pcd", "PCD", "PCL, ROS", group=_CLOUDS, takes=_CLASSED, point_bytes=43.0),
+        _kind("map.xyz", "XYZ, lines of text", "any program", group=_CLOUDS, takes=_CLASSED,
+              point_bytes=29.5),
+        _kind("plan.dxf", "Floor plans, DXF", "CAD", group=_DRAWINGS, takes=_PLAN),
+        _kind("plan.geojson", "Floor plans, GeoJSON", "GIS", group=_DRAWINGS, takes=_PLAN),
+        _kind("orthophoto.tif", "Orthophoto of a storey, GeoTIFF", "GIS, CAD", group=_DRAWINGS,
+              takes=(*_PLAN, "pixel_m")),
+        _kind("dtm.tif", "Terrain, the ground, GeoTIFF", "GIS", group=_DRAWINGS, takes=_RASTER),
+        _kind("dsm.tif", "Terrain, what is highest, GeoTIFF", "GIS", group=_DRAWINGS,
+              takes=_RASTER),
+        _kind("contours.dxf", "Contours, DXF", "CAD", group=_DRAWINGS, takes=("crs", *_ALWAYS)),
+        _kind("poses.txt", "Poses, KITTI", "SLAM tools", group=_LISTS, takes=_ALWAYS),
+        _kind("findings.csv", "Findings, CSV", "spreadsheets", group=_LISTS, takes=()),
+        _kind("findings.geojson", "Findings, GeoJSON", "GIS", group=_LISTS, takes=()),
+    )
+}  # fmt: skip
+"""Name -> kind, in the order in which pages list them."""
+
+
+def kind_named(name: str, options: ExportOptions) -> ExportKind:
+    """The kind of a name, which takes these options.
+
+    Raises:
+        ConfigError: If there is none of this name, or it takes no such option.
+    """
+    if name not in KINDS:
+        raise ConfigError(f"expected a kind of file: {', '.join(KINDS)}; got {visible(name)!r}")
+    kind = KINDS[name]
+    for option in options.changed:
+        if option not in kind.takes:
+            raise ConfigError(f"{kind.title} takes no {option}: leave it out")
+    options.selection()
+    return kind

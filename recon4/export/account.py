@@ -1,0 +1,92 @@
+"""What a file of points must turn out to hold, and the comparison with what it holds."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import StoreError
+from recon4.export.tuning import POINT_EXPORT
+from recon4.geometry.se3 import Array
+
+
+@dataclass(slots=True, eq=False)
+class PointAccount:
+    """Count, bounds, classes and checksums of points, in their order."""
+
+    crs: str = ""
+    """As the file names it; empty = none."""
+    count: int = 0
+    low_m: Array = field(default_factory=lambda: np.full(3, np.inf))
+    high_m: Array = field(default_factory=lambda: np.full(3, -np.inf))
+    """Bounds in the coordinates of the file [m], (3,)."""
+    classes: NDArray[np.int64] = field(default_factory=lambda: np.zeros(256, np.int64))
+    """How many points have each code, (256,)."""
+    sums: list[int] = field(default_factory=list)
+    """CRC-32 of the stored bytes of each `PointExportTuning.summed` points."""
+    summed: int = 0
+
+    def add(self, xyz: Array, classification: NDArray[np.uint8]) -> None:
+        """Account for coordinates of the file (N, 3) and classes (N,)."""
+        if not len(xyz):
+            return
+        self.count += len(xyz)
+        self.low_m = np.minimum(self.low_m, xyz.min(axis=0))
+        self.high_m = np.maximum(self.high_m, xyz.max(axis=0))
+        self.classes += np.bincount(classification, minlength=256)
+
+    def add_stored(self, rows: NDArray[Any]) -> None:
+        """Account for the bytes of points as the file stores them, (N, ...)."""
+        step = POINT_EXPORT.summed
+        at = 0
+        while at < len(rows):
+            if self.summed % step == 0:
+                self.sums.append(0)
+            taken = min(len(rows) - at, step - self.summed % step)
+            data = np.ascontiguousarray(rows[at : at + taken]).view(np.uint8).reshape(-1)
+            self.sums[-1] = zlib.crc32(data.data, self.sums[-1])
+            self.summed += taken
+            at += taken
+
+    def compare(self, found: PointAccount, name: str, *, within_m: float) -> None:
+        """Compare what was meant with what was found in a file.
+
+        Args:
+            found: Account of the file, read again.
+            name: Of the file, for errors.
+            within_m: How far bounds may differ by rounding [m].
+
+        Raises:
+            StoreError: With the first difference.
+        """
+        for what, expected, got in self._differences(found, within_m):
+            raise StoreError(f"{name} reads back wrong: {what}: expected {expected}, got {got}")
+
+    def _differences(
+        self, found: PointAccount, within_m: float
+    ) -> Iterator[tuple[str, object, object]]:
+        if self.count != found.count:
+            yield "points", self.count, found.count
+        elif self.count:
+            off = np.abs([self.low_m - found.low_m, self.high_m - found.high_m])
+            if not (off <= within_m).all():  # also if one is not a number
+                meant, got = ((one.low_m.tolist(), one.high_m.tolist()) for one in (self, found))
+                yield "bounds", meant, got
+        if not np.array_equal(self.classes, found.classes):
+            yield "classes", _shown(self.classes), _shown(found.classes)
+        if self.crs != found.crs:
+            yield "CRS", repr(self.crs[:200]), repr(found.crs[:200])
+        if self.sums != found.sums:
+            pairs = zip(self.sums, found.sums, strict=False)
+            wrong = next((k for k, (a, b) in enumerate(pairs) if a != b), len(found.sums))
+            first = wrong * POINT_EXPORT.summed
+            yield f"points from number {first} on", "the same", "others"
+
+
+def _shown(classes: NDArray[np.int64]) -> dict[int, int]:
+    return {int(code): int(classes[code]) for code in np.flatnonzero(classes)}

@@ -1,0 +1,93 @@
+"""Reads an exported file of points again, for the comparison with what was meant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, StoreError
+from recon4.export.account import PointAccount
+from recon4.export.tuning import REREAD
+from recon4.geometry.se3 import Array
+from recon4.recording.formats.cloud_files import cloud_chunks
+
+
+def check_size(path: Path, expected: int, name: str) -> None:
+    """Check the bytes of a file.
+
+    Raises:
+        StoreError: If they are not as many as expected.
+    """
+    found = path.stat().st_size
+    if found != expected:
+        raise StoreError(f"{name}: expected {expected} bytes, got {found}")
+
+
+def account_of_rows(path: Path, row: np.dtype[np.void], *, offset: Array) -> PointAccount:
+    """Account of a PLY or PCD file whose points have the fields of a row.
+
+    Args:
+        path: The file.
+        row: Names and types of the fields; their bytes are summed in this order.
+        offset: What was taken from its coordinates [m], (3,).
+
+    Raises:
+        StoreError: If it cannot be read.
+    """
+    found = PointAccount(crs=_crs_comment(path))
+    try:
+        for table in cloud_chunks(path):
+            if not len(table["x"]):
+                continue
+            rows = np.zeros(len(table["x"]), row)
+            for name in row.names or ():
+                rows[name] = table[name]
+            xyz = np.stack([table[axis] for axis in "xyz"], axis=1).astype(np.float64)
+            found.add(xyz + offset, rows["classification"])
+            found.add_stored(rows)
+    except (CorruptFile, KeyError) as error:
+        raise StoreError(f"{path.name} reads back wrong: {error}") from error
+    return found
+
+
+def account_of_text(path: Path) -> PointAccount:
+    """Account of a file of lines: x, y, z, intensity, class.
+
+    Raises:
+        StoreError: If it cannot be read.
+    """
+    found = PointAccount()
+    for values in _lines(path):
+        found.add(values[:, :3], values[:, 4].astype(np.uint8))
+        found.add_stored(values + 0.0)  # no negative zeros
+    return found
+
+
+def _lines(path: Path) -> Iterator[NDArray[np.float64]]:
+    with path.open("rb") as file:
+        while lines := file.readlines(REREAD.text_bytes):
+            try:
+                values = np.loadtxt(lines, ndmin=2, comments="//")
+            except ValueError as error:
+                raise StoreError(f"{path.name} reads back wrong: {error}") from error
+            if values.size and values.shape[1] != 5:
+                raise StoreError(
+                    f"{path.name} reads back wrong: expected 5 numbers a line, "
+                    f"got {values.shape[1]}"
+                )
+            if values.size:
+                yield values
+
+
+def _crs_comment(path: Path) -> str:
+    """The CRS in a comment of a head; empty = none."""
+    with path.open("rb") as file:
+        head = file.read(REREAD.head_bytes)
+    for line in head.splitlines():
+        for begin in (b"comment crs ", b"# crs "):
+            if line.startswith(begin):
+                return line[len(begin) :].decode("ascii", "replace")
+    return ""

@@ -1,0 +1,100 @@
+// What is chosen of an export, as the server takes it. No DOM, no network.
+
+/**
+ * @import {ExportChoices, ExportKind, ExportOptions, NewExport} from "../shared/http_types"
+ * @typedef {object} Chosen what the fields hold
+ * @property {string} file
+ * @property {string} crs
+ * @property {"map" | "all" | "some"} points
+ * @property {number[]} classes
+ * @property {string} storey
+ * @property {string[]} box six texts
+ * @property {string} thin in mm
+ * @property {string} pixel in mm
+ * @property {string} cell in m
+ * @property {boolean} raw
+ * @property {boolean} draft
+ */
+
+/** @returns {Chosen} */
+export const usual = () => ({
+  file: "map.copc.laz",
+  crs: "",
+  points: "map",
+  classes: [],
+  storey: "",
+  box: ["", "", "", "", "", ""],
+  thin: "",
+  pixel: "10",
+  cell: "0.25",
+  raw: false,
+  draft: false,
+});
+
+/**
+ * The order for the server; throws an error with words if a field cannot be read.
+ * @param {Chosen} chosen
+ * @param {ExportKind} kind
+ * @returns {NewExport}
+ */
+export function orderOf(chosen, kind) {
+  const takes = (/** @type {string} */ name) => kind.takes.includes(name);
+  /** @type {Partial<ExportOptions>} */
+  const options = {};
+  if (takes("crs") && chosen.crs) options.crs = chosen.crs;
+  if (takes("storey") && chosen.storey) options.storey = chosen.storey;
+  if (takes("raw") && chosen.raw) options.raw = true;
+  if (takes("draft") && chosen.draft) options.draft = true;
+  if (takes("all_points") && chosen.points === "all") options.all_points = true;
+  if (takes("classes") && chosen.points === "some") options.classes = someClasses(chosen.classes);
+  if (takes("box_m") && chosen.box.some(Boolean)) options.box_m = boxOf(chosen.box);
+  if (takes("thin_m") && chosen.thin) options.thin_m = number(chosen.thin, "Thin out") / 1000;
+  if (takes("pixel_m")) options.pixel_m = number(chosen.pixel, "Pixel") / 1000;
+  if (takes("cell_m")) options.cell_m = number(chosen.cell, "Cell");
+  return { file: kind.name, options };
+}
+
+function someClasses(/** @type {number[]} */ classes) {
+  if (!classes.length) throw new Error("Choose at least one class.");
+  return [...classes].sort((a, b) => a - b);
+}
+
+function boxOf(/** @type {string[]} */ texts) {
+  const box = texts.map((text) => number(text, "Box"));
+  return /** @type {[number, number, number, number, number, number]} */ (box);
+}
+
+function number(/** @type {string} */ text, /** @type {string} */ field) {
+  const value = Number(text.trim().replace(",", "."));
+  if (!text.trim() || !Number.isFinite(value))
+    throw new Error(`${field}: expected a number, got “${text}”.`);
+  return value;
+}
+
+/** What an order leaves of a map, in words. */
+export function optionWords(
+  /** @type {ExportOptions} */ {
+    crs,
+    raw,
+    all_points,
+    classes = [],
+    box_m,
+    storey,
+    thin_m = 0,
+    draft,
+  },
+  /** @type {ExportChoices["classes"]} */ known,
+) {
+  const title = (/** @type {number} */ code) =>
+    known.find((one) => one.code === code)?.title ?? `class ${code}`;
+  return [
+    crs,
+    storey && `storey ${storey}`,
+    box_m && `box ${box_m.map((one) => one.toString()).join(", ")}`,
+    all_points && "all points",
+    classes.length > 0 && classes.map(title).join(", "),
+    thin_m > 0 && `one point each ${+(thin_m * 1000).toFixed(3)} mm`,
+    raw && "as measured",
+    draft && "draft",
+  ].filter(Boolean);
+}
