@@ -303,7 +303,8 @@ export class ExportPanel extends HTMLElement {
       const size = found.bytes
         ? [`${found.is_most ? "at most" : "about"} ${bytes(found.bytes)}`]
         : [];
-      estimate = [...points, ...size].join(", ");
+      const none = kind.point_bytes && !found.points;
+      estimate = none ? "no point of the map is chosen" : [...points, ...size].join(", ");
     } catch (error) {
       if (asked === this.#asked) showError(this.#message(), error);
     }
