@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LogLimits:
+class LogLimits(Struct, frozen=True, kw_only=True):
     """The log of the server."""
 
     max_log_bytes: int = 50_000_000
@@ -26,8 +25,7 @@ class LogLimits:
 LOGS = LogLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MaintenanceTimes:
+class MaintenanceTimes(Struct, frozen=True, kw_only=True):
     """Sweeps and rotation."""
 
     maintenance_interval_s: float = 3600.0
@@ -39,8 +37,7 @@ class MaintenanceTimes:
 MAINTENANCE = MaintenanceTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MetricsTuning:
+class MetricsTuning(Struct, frozen=True, kw_only=True):
     """Figures for Prometheus."""
 
     buckets_s: tuple[float, ...] = (
@@ -63,8 +60,7 @@ class MetricsTuning:
 METRICS = MetricsTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MetricsTokenTuning:
+class MetricsTokenTuning(Struct, frozen=True, kw_only=True):
     """The key to the figures."""
 
     token_bytes: int = 32
@@ -74,8 +70,7 @@ class MetricsTokenTuning:
 METRICS_TOKEN = MetricsTokenTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigFileTimes:
+class RigFileTimes(Struct, frozen=True, kw_only=True):
     """Rig files of users."""
 
     limit_s: float = 20.0
@@ -85,8 +80,7 @@ class RigFileTimes:
 RIG_FILE_TIMES = RigFileTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RoomTuning:
+class RoomTuning(Struct, frozen=True, kw_only=True):
     """Space on the disk."""
 
     little_room: float = 0.1
@@ -96,8 +90,7 @@ class RoomTuning:
 ROOM = RoomTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StateCopyLimits:
+class StateCopyLimits(Struct, frozen=True, kw_only=True):
     """Copies of the state of the server."""
 
     max_copies: int = 7

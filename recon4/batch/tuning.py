@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BatchTuning:
+class BatchTuning(Struct, frozen=True, kw_only=True):
     """Processes of walks."""
 
     last_lines: int = 20

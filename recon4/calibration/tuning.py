@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec import Struct
+
 from recon4.settings import CalibrationSettings
 
 
@@ -23,8 +25,7 @@ class CalibrationTuning(CalibrationSettings):
     """Largest number of points in all windows together, for the last rounds of a calibration."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EntropyTuning:
+class EntropyTuning(Struct, frozen=True, kw_only=True):
     """Calibration by the entropy of the map (requirements L-CAL-1)."""
 
     kernel_m: float = 0.03

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AntennaStageTuning:
+class AntennaStageTuning(Struct, frozen=True, kw_only=True):
     """The antenna in the stage ``calibration``."""
 
     aided_sd_factor: float = 3.0
@@ -18,8 +16,7 @@ class AntennaStageTuning:
 ANTENNA_STAGE = AntennaStageTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BeamTuning:
+class BeamTuning(Struct, frozen=True, kw_only=True):
     """Which LiDARs have beams that can be calibrated."""
 
     most: int = 64
@@ -33,8 +30,7 @@ class BeamTuning:
 BEAMS = BeamTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AuditTuning:
+class AuditTuning(Struct, frozen=True, kw_only=True):
     """Audit and calibration of a rig."""
 
     min_windows: int = 3
@@ -53,8 +49,7 @@ class AuditTuning:
 AUDIT = AuditTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EquationTuning:
+class EquationTuning(Struct, frozen=True, kw_only=True):
     """Standard deviations in the normal equations of a window."""
 
     point_sd_m: float = 0.015
@@ -78,8 +73,7 @@ class EquationTuning:
 EQUATIONS = EquationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HeldOutTuning:
+class HeldOutTuning(Struct, frozen=True, kw_only=True):
     """Whether a calibrated rig may be used."""
 
     few_beams: float = 0.1
@@ -92,8 +86,7 @@ class HeldOutTuning:
 HELD_OUT = HeldOutTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuRowTuning:
+class ImuRowTuning(Struct, frozen=True, kw_only=True):
     """What the samples of an IMU say in a window."""
 
     fine: int = 10
@@ -113,8 +106,7 @@ class ImuRowTuning:
 IMU_ROWS = ImuRowTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JointTuning:
+class JointTuning(Struct, frozen=True, kw_only=True):
     """Joint calibration of mounts, clocks and trajectory."""
 
     dense_rounds: int = 2
@@ -131,8 +123,7 @@ class JointTuning:
 JOINT = JointTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ParameterTuning:
+class ParameterTuning(Struct, frozen=True, kw_only=True):
     """Priors of parameters, as standard deviations."""
 
     mean_azimuth_sd_rad: float = 1e-6
@@ -146,8 +137,7 @@ class ParameterTuning:
 PARAMETERS = ParameterTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PurityTuning:
+class PurityTuning(Struct, frozen=True, kw_only=True):
     """Planes without the points of other surfaces."""
 
     range_sd_m: float = 0.015
@@ -168,8 +158,7 @@ class PurityTuning:
 PURITY = PurityTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CommonPlaneTuning:
+class CommonPlaneTuning(Struct, frozen=True, kw_only=True):
     """Planes that the LiDARs of a window see together."""
 
     min_points: int = 12
@@ -183,8 +172,7 @@ class CommonPlaneTuning:
 COMMON_PLANES = CommonPlaneTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationWindowTuning:
+class CalibrationWindowTuning(Struct, frozen=True, kw_only=True):
     """A window of the walk."""
 
     knot_s: float = 0.05

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RestTuning:
+class RestTuning(Struct, frozen=True, kw_only=True):
     """Floor normals and gravity while the backpack rests."""
 
     max_bytes: int = 4 << 20
@@ -32,8 +30,7 @@ class RestTuning:
 RESTS = RestTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GravityAlignmentTuning:
+class GravityAlignmentTuning(Struct, frozen=True, kw_only=True):
     """IMU against LiDARs by floors and gravity."""
 
     min_pairs: int = 2
@@ -46,8 +43,7 @@ class GravityAlignmentTuning:
 GRAVITY_ALIGNMENT = GravityAlignmentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GyroAlignmentTuning:
+class GyroAlignmentTuning(Struct, frozen=True, kw_only=True):
     """IMU against LiDARs by their turn rates."""
 
     min_intervals: int = 20
@@ -64,8 +60,7 @@ class GyroAlignmentTuning:
 GYRO_ALIGNMENT = GyroAlignmentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineEntropyTuning:
+class LineEntropyTuning(Struct, frozen=True, kw_only=True):
     """Mount and clock of a profiler by the sharpness of the map."""
 
     cubes_m: tuple[float, float, float] = (0.2, 0.08, 0.05)
@@ -83,8 +78,7 @@ class LineEntropyTuning:
 LINE_ENTROPY = LineEntropyTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MountSearchTuning:
+class MountSearchTuning(Struct, frozen=True, kw_only=True):
     """Coarse mounts from any start."""
 
     voxel_m: float = 0.2
@@ -104,8 +98,7 @@ class MountSearchTuning:
 MOUNT_SEARCH = MountSearchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PosePairTuning:
+class PosePairTuning(Struct, frozen=True, kw_only=True):
     """The mount of a sensor from pairs of poses."""
 
     max_bytes: int = 16 << 20
@@ -127,8 +120,7 @@ class PosePairTuning:
 POSE_PAIRS = PosePairTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SliceTuning:
+class SliceTuning(Struct, frozen=True, kw_only=True):
     """A slice through a part of the walk."""
 
     thickness_m: float = 0.2
@@ -146,8 +138,7 @@ class SliceTuning:
 SLICES = SliceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StartTuning:
+class StartTuning(Struct, frozen=True, kw_only=True):
     """What the IMU's readings say of its axes and units."""
 
     min_explained: float = 0.9
@@ -173,8 +164,7 @@ class StartTuning:
 START = StartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapAlignmentTuning:
+class MapAlignmentTuning(Struct, frozen=True, kw_only=True):
     """Mounts by registering the maps of single LiDARs."""
 
     windows: int = 6
@@ -188,8 +178,7 @@ class MapAlignmentTuning:
 MAP_ALIGNMENT = MapAlignmentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationStageTuning:
+class CalibrationStageTuning(Struct, frozen=True, kw_only=True):
     """The stage ``calibration``."""
 
     same_rad: float = 0.1
@@ -200,8 +189,7 @@ class CalibrationStageTuning:
 CALIBRATION_STAGE = CalibrationStageTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrajectoryPairTuning:
+class TrajectoryPairTuning(Struct, frozen=True, kw_only=True):
     """Mount and clock from two trajectories (docs/explanation/calibration.md)."""
 
     shortest_s: float = 20.0

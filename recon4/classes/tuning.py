@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.kernels.seen_through import SightRules, SpreadRules
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ViewTuning:
+class ViewTuning(Struct, frozen=True, kw_only=True):
     """Scans of the walk that points are compared with."""
 
     every_ns: int = 500_000_000
@@ -50,8 +49,7 @@ SIGHT = SightRules(
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class KnownPlaceTuning:
+class KnownPlaceTuning(Struct, frozen=True, kw_only=True):
     """What is known of places while the points of a second are compared."""
 
     bits: int = 18
@@ -67,8 +65,7 @@ SPREAD = SpreadRules(
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CarrierVolumeTuning:
+class CarrierVolumeTuning(Struct, frozen=True, kw_only=True):
     """The volume of the carrier in the body."""
 
     cube_m: float = 0.1

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DeliveryLimits:
+class DeliveryLimits(Struct, frozen=True, kw_only=True):
     """What is read of a delivery or a signed report."""
 
     max_pdf_bytes: int = 256 << 20

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AteTuning:
+class AteTuning(Struct, frozen=True, kw_only=True):
     """Absolute trajectory error."""
 
     min_spread_m: float = 0.05
@@ -16,8 +15,7 @@ class AteTuning:
 ATE = AteTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EvaluationTuning:
+class EvaluationTuning(Struct, frozen=True, kw_only=True):
     """``recon4 evaluate``."""
 
     every: int = 10
@@ -29,8 +27,7 @@ class EvaluationTuning:
 EVALUATION = EvaluationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorFloorTuning:
+class SensorFloorTuning(Struct, frozen=True, kw_only=True):
     """What the sensor itself leaves of e_r."""
 
     max_range_m: float = 60.0
@@ -40,8 +37,7 @@ class SensorFloorTuning:
 SENSOR_FLOOR = SensorFloorTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SegmentDriftTuning:
+class SegmentDriftTuning(Struct, frozen=True, kw_only=True):
     """Drift over segments."""
 
     min_path_m: float = 0.1
@@ -53,8 +49,7 @@ class SegmentDriftTuning:
 SEGMENT_DRIFT = SegmentDriftTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MeshAlignmentTuning:
+class MeshAlignmentTuning(Struct, frozen=True, kw_only=True):
     """Alignment of a map with a mesh."""
 
     kernel_m: float = 0.05
@@ -68,8 +63,7 @@ class MeshAlignmentTuning:
 MESH_ALIGNMENT = MeshAlignmentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RelationTuning:
+class RelationTuning(Struct, frozen=True, kw_only=True):
     """Errors against reference relations."""
 
     max_bytes: int = 256 << 20
@@ -83,8 +77,7 @@ class RelationTuning:
 RELATIONS = RelationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SharpnessTuning:
+class SharpnessTuning(Struct, frozen=True, kw_only=True):
     """How crisp a map is without any truth."""
 
     min_neighbors: int = 10
@@ -101,8 +94,7 @@ class SharpnessTuning:
 SHARPNESS = SharpnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RelativeErrorTuning:
+class RelativeErrorTuning(Struct, frozen=True, kw_only=True):
     """Relative error e_r."""
 
     histogram_step_m: float = 0.001
@@ -116,8 +108,7 @@ class RelativeErrorTuning:
 RELATIVE_ERROR = RelativeErrorTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ThicknessTuning:
+class ThicknessTuning(Struct, frozen=True, kw_only=True):
     """Thickness of planar surfaces."""
 
     cell_m: float = 0.3
@@ -138,8 +129,7 @@ class ThicknessTuning:
 THICKNESS = ThicknessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MarkerFileLimits:
+class MarkerFileLimits(Struct, frozen=True, kw_only=True):
     """Tables of survey markers."""
 
     max_bytes: int = 16 << 20
@@ -149,8 +139,7 @@ class MarkerFileLimits:
 MARKER_FILES = MarkerFileLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MeshFileLimits:
+class MeshFileLimits(Struct, frozen=True, kw_only=True):
     """Triangle meshes of unknown origin."""
 
     max_triangles: int = 20_000_000
@@ -164,8 +153,7 @@ class MeshFileLimits:
 MESH_FILES = MeshFileLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AccuracyClassTuning:
+class AccuracyClassTuning(Struct, frozen=True, kw_only=True):
     """Classes of the accuracy of a map at its check points."""
 
     tested_points: int = 30

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClusterTuning:
+class ClusterTuning(Struct, frozen=True, kw_only=True):
     """Workers of Dask."""
 
     most_workers: int = 256

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FindingExportTuning:
+class FindingExportTuning(Struct, frozen=True, kw_only=True):
     """Findings as GeoJSON."""
 
     max_line_points: int = 500
@@ -16,8 +15,7 @@ class FindingExportTuning:
 FINDING_EXPORT = FindingExportTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointExportTuning:
+class PointExportTuning(Struct, frozen=True, kw_only=True):
     """Points as files."""
 
     block: int = 1 << 15
@@ -34,8 +32,7 @@ class PointExportTuning:
 POINT_EXPORT = PointExportTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LazTuning:
+class LazTuning(Struct, frozen=True, kw_only=True):
     """A LAZ file, and steps of its numbers: coarser ones compress better."""
 
     scale_m: float = 0.0001
@@ -51,8 +48,7 @@ class LazTuning:
 LAZ = LazTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OctreeTuning:
+class OctreeTuning(Struct, frozen=True, kw_only=True):
     """The octree of COPC."""
 
     step_m: float = LAZ.scale_m
@@ -70,8 +66,7 @@ class OctreeTuning:
 OCTREE = OctreeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RereadTuning:
+class RereadTuning(Struct, frozen=True, kw_only=True):
     """Files that are read again."""
 
     text_bytes: int = 1 << 20
@@ -86,8 +81,7 @@ class RereadTuning:
 REREAD = RereadTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExpectedTuning:
+class ExpectedTuning(Struct, frozen=True, kw_only=True):
     """The estimate of an export."""
 
     sample: int = 2_000_000

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AuditListTuning:
+class AuditListTuning(Struct, frozen=True, kw_only=True):
     """The list of findings of an audit."""
 
     most_of_a_kind: int = 200
@@ -18,8 +17,7 @@ class AuditListTuning:
 AUDIT_LIST = AuditListTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AccuracyTuning:
+class AccuracyTuning(Struct, frozen=True, kw_only=True):
     """A map against a ground truth."""
 
     goal_m: float = 0.05

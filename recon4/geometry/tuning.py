@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineGeometryTuning:
+class LineGeometryTuning(Struct, frozen=True, kw_only=True):
     """Lines in space."""
 
     parallel_sin2: float = 1e-6
@@ -16,8 +15,7 @@ class LineGeometryTuning:
 LINES = LineGeometryTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SurfaceReflectivity:
+class SurfaceReflectivity(Struct, frozen=True, kw_only=True):
     """How much of the light surfaces return."""
 
     glass: float = 0.02
@@ -31,8 +29,7 @@ class SurfaceReflectivity:
 SURFACES = SurfaceReflectivity()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RaycastTuning:
+class RaycastTuning(Struct, frozen=True, kw_only=True):
     """Ray casting."""
 
     nearest_batch: int = 1_000_000

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 
 from recon4.settings import GnssSettings
 
@@ -31,8 +32,7 @@ class GnssTuning(GnssSettings):
     """Seed of the random draws of the initial alignment."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AlignTuning:
+class AlignTuning(Struct, frozen=True, kw_only=True):
     """Initial alignment and outliers of fixes."""
 
     draws: int = 400
@@ -46,8 +46,7 @@ class AlignTuning:
 ALIGN = AlignTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JumpTuning:
+class JumpTuning(Struct, frozen=True, kw_only=True):
     """Fixes that jump."""
 
     around: int = 11
@@ -60,8 +59,7 @@ class JumpTuning:
 JUMPS = JumpTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixTuning:
+class FixTuning(Struct, frozen=True, kw_only=True):
     """Usable fixes."""
 
     default_sd_m: tuple[tuple[float, float, float], ...] = (
@@ -79,8 +77,7 @@ class FixTuning:
 FIXES = FixTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AttitudeTuning:
+class AttitudeTuning(Struct, frozen=True, kw_only=True):
     """Attitudes of a GNSS/INS."""
 
     min_samples: int = 50
@@ -92,8 +89,7 @@ class AttitudeTuning:
 ATTITUDES = AttitudeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LevelStageTuning:
+class LevelStageTuning(Struct, frozen=True, kw_only=True):
     """What the stage samples of a walk."""
 
     sample_frames: int = 200

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AntennaAuditTuning:
+class AntennaAuditTuning(Struct, frozen=True, kw_only=True):
     """Lever arm and clock against the trajectory."""
 
     drift_m: float = 0.01
@@ -43,8 +42,7 @@ class AntennaAuditTuning:
 ANTENNA_AUDIT = AntennaAuditTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AntennaCalibrationTuning:
+class AntennaCalibrationTuning(Struct, frozen=True, kw_only=True):
     """Calibration of the antenna, checked on fixes that were not used."""
 
     block_ns: int = 8_000_000_000
@@ -67,8 +65,7 @@ class AntennaCalibrationTuning:
 ANTENNA_CALIBRATION = AntennaCalibrationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DriftFitTuning:
+class DriftFitTuning(Struct, frozen=True, kw_only=True):
     """A constant and a clock hidden by a slow drift."""
 
     knot_s: float = 2.0
@@ -86,8 +83,7 @@ class DriftFitTuning:
 DRIFT_FIT = DriftFitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FixClockTuning:
+class FixClockTuning(Struct, frozen=True, kw_only=True):
     """A clock of the fixes that is wrong by seconds."""
 
     step_ns: int = 500_000_000
@@ -113,8 +109,7 @@ class FixClockTuning:
 FIX_CLOCK = FixClockTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReceiverClockTuning:
+class ReceiverClockTuning(Struct, frozen=True, kw_only=True):
     """The clock of a GNSS/INS against that of the IMU."""
 
     largest_s: float = 0.5

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ControlFitTuning:
+class ControlFitTuning(Struct, frozen=True, kw_only=True):
     """Rigid fit of a map to control points, and the test of single points."""
 
     least_points: int = 3
@@ -35,8 +34,7 @@ class ControlFitTuning:
 CONTROL_FIT = ControlFitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BlunderTuning:
+class BlunderTuning(Struct, frozen=True, kw_only=True):
     """Blunders of a whole survey."""
 
     scale: float = 0.02
@@ -61,8 +59,7 @@ class BlunderTuning:
 BLUNDERS = BlunderTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SightingTuning:
+class SightingTuning(Struct, frozen=True, kw_only=True):
     """Which nodes saw a target."""
 
     range_m: float = 25.0
@@ -80,8 +77,7 @@ class SightingTuning:
 SIGHTINGS = SightingTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AdjustmentTuning:
+class AdjustmentTuning(Struct, frozen=True, kw_only=True):
     """Adjustment of the trajectory to control points."""
 
     weak: float = 1e-6
@@ -95,8 +91,7 @@ class AdjustmentTuning:
 ADJUSTMENT = AdjustmentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SiteGridTuning:
+class SiteGridTuning(Struct, frozen=True, kw_only=True):
     """Where a map has its origin in the grid of a site."""
 
     small_m: float = 5000.0

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FloorTuning:
+class FloorTuning(Struct, frozen=True, kw_only=True):
     """Leveling by the dominant floor."""
 
     cell_m: float = 0.4
@@ -34,8 +32,7 @@ class FloorTuning:
 FLOOR = FloorTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LevelTuning:
+class LevelTuning(Struct, frozen=True, kw_only=True):
     """Leveling by INS or accelerometer."""
 
     window_ns: int = 1_000_000_000

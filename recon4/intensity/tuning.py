@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from msgspec import Struct
+
 from recon4.settings import IntensitySettings
 
 
@@ -34,8 +36,7 @@ class IntensityTuning(IntensitySettings):
     """Largest number of sampled sections of the walk, ten multiframes each."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SampleTuning:
+class SampleTuning(Struct, frozen=True, kw_only=True):
     """What the table is learned from."""
 
     samples: int = 10
@@ -49,8 +50,7 @@ class SampleTuning:
 SAMPLING = SampleTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IntensitySurfaceTuning:
+class IntensitySurfaceTuning(Struct, frozen=True, kw_only=True):
     """Effects learned from surfaces that are seen repeatedly."""
 
     rounds: int = 12
@@ -66,8 +66,7 @@ class IntensitySurfaceTuning:
 INTENSITY_SURFACES = IntensitySurfaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IntensityTableTuning:
+class IntensityTableTuning(Struct, frozen=True, kw_only=True):
     """The table that normalizes intensities."""
 
     coarser: tuple[tuple[int, int], ...] = ((1, 1), (5, 1), (5, 5), (15, 10), (0, 5), (0, 0))

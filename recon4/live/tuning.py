@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CaptureWarningTuning:
+class CaptureWarningTuning(Struct, frozen=True, kw_only=True):
     """From which size on an operator is warned."""
 
     turn_rad_s: float = 3.0
@@ -30,8 +29,7 @@ class CaptureWarningTuning:
 CAPTURE_WARNINGS = CaptureWarningTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HeadlessTuning:
+class HeadlessTuning(Struct, frozen=True, kw_only=True):
     """A capture without a server."""
 
     report_every_s: float = 2.0
@@ -43,8 +41,7 @@ class HeadlessTuning:
 HEADLESS = HeadlessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReplayTuning:
+class ReplayTuning(Struct, frozen=True, kw_only=True):
     """Replay of a recording."""
 
     between_ns: int = 1_000_000
@@ -56,8 +53,7 @@ class ReplayTuning:
 REPLAY = ReplayTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanWarningTuning:
+class ScanWarningTuning(Struct, frozen=True, kw_only=True):
     """Warnings about scans."""
 
     least: int = 20
@@ -69,8 +65,7 @@ class ScanWarningTuning:
 SCAN_WARNINGS = ScanWarningTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SoFarTuning:
+class SoFarTuning(Struct, frozen=True, kw_only=True):
     """Problems of the walk so far."""
 
     longest_step_s: float = 1.0
@@ -80,8 +75,7 @@ class SoFarTuning:
 SO_FAR = SoFarTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StretchTuning:
+class StretchTuning(Struct, frozen=True, kw_only=True):
     """Stretches that findings are about."""
 
     step_m: float = 0.5
@@ -95,8 +89,7 @@ class StretchTuning:
 STRETCHES = StretchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineClientTuning:
+class LineClientTuning(Struct, frozen=True, kw_only=True):
     """Recorder and mapper as child processes."""
 
     starts_within_s: float = 60.0
@@ -108,8 +101,7 @@ class LineClientTuning:
 LINE_CLIENT = LineClientTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineServerLimits:
+class LineServerLimits(Struct, frozen=True, kw_only=True):
     """Messages between processes."""
 
     max_unread_bytes: int = 16 << 20
@@ -121,8 +113,7 @@ class LineServerLimits:
 LINE_SERVER = LineServerLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MessageTuning:
+class MessageTuning(Struct, frozen=True, kw_only=True):
     """Messages of the mapper."""
 
     max_gaps: int = 50

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BucketTuning:
+class BucketTuning(Struct, frozen=True, kw_only=True):
     """Records of each tile on disk."""
 
     burst: int = 3_000_000
@@ -18,8 +16,7 @@ class BucketTuning:
 BUCKETS = BucketTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapBuildTuning:
+class MapBuildTuning(Struct, frozen=True, kw_only=True):
     """The stage ``map``."""
 
     workers: int = 2
@@ -31,8 +28,7 @@ class MapBuildTuning:
 MAP_BUILD = MapBuildTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MirrorTuning:
+class MirrorTuning(Struct, frozen=True, kw_only=True):
     """Mirrors in a map."""
 
     cell_m: float = 0.15
@@ -78,8 +74,7 @@ class MirrorTuning:
 MIRRORS = MirrorTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NormalTuning:
+class NormalTuning(Struct, frozen=True, kw_only=True):
     """Normals of many points at once."""
 
     min_points: int = 6
@@ -89,8 +84,7 @@ class NormalTuning:
 NORMALS = NormalTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointPlaceTuning:
+class PointPlaceTuning(Struct, frozen=True, kw_only=True):
     """Every point by the pose at its time."""
 
     knot_ns: int = 1_000_000
@@ -100,8 +94,7 @@ class PointPlaceTuning:
 POINT_PLACES = PointPlaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SparseSurfaceTuning:
+class SparseSurfaceTuning(Struct, frozen=True, kw_only=True):
     """Surfaces of sparse places."""
 
     scale: int = 3
@@ -121,8 +114,7 @@ class SparseSurfaceTuning:
 SPARSE_SURFACES = SparseSurfaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TileSurfaceTuning:
+class TileSurfaceTuning(Struct, frozen=True, kw_only=True):
     """Surfaces of a tile."""
 
     slab: int = 400_000
@@ -138,8 +130,7 @@ class TileSurfaceTuning:
 TILE_SURFACES = TileSurfaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TileTuning:
+class TileTuning(Struct, frozen=True, kw_only=True):
     """The columns of a tile."""
 
     strata: int = 64
@@ -170,8 +161,7 @@ class TileTuning:
 TILES = TileTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VoxelRunTuning:
+class VoxelRunTuning(Struct, frozen=True, kw_only=True):
     """Runs of records that are merged."""
 
     buffer: int = 8192

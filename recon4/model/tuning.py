@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ObservationTuning:
+class ObservationTuning(Struct, frozen=True, kw_only=True):
     """When a multiframe observes a direction of the motion."""
 
     weak_sd_m: float = 0.05
@@ -22,8 +21,7 @@ class ObservationTuning:
 OBSERVATION = ObservationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LossTuning:
+class LossTuning(Struct, frozen=True, kw_only=True):
     """Data of a recording that is not used."""
 
     warned_ratio: float = 0.01
@@ -36,8 +34,7 @@ class LossTuning:
 LOSSES = LossTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RejectedRunTuning:
+class RejectedRunTuning(Struct, frozen=True, kw_only=True):
     """Runs of rejected fixes."""
 
     min_fixes: int = 10
@@ -53,8 +50,7 @@ class RejectedRunTuning:
 REJECTED_RUNS = RejectedRunTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SweepTuning:
+class SweepTuning(Struct, frozen=True, kw_only=True):
     """Sweeps of the head of a profiler."""
 
     wide_lines: int = 5
@@ -66,8 +62,7 @@ class SweepTuning:
 SWEEPS = SweepTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GeoidTuning:
+class GeoidTuning(Struct, frozen=True, kw_only=True):
     """Heights above the sea in place of those above the ellipsoid."""
 
     least_m: float = 5.0

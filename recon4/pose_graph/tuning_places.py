@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CandidateTuning:
+class CandidateTuning(Struct, frozen=True, kw_only=True):
     """Candidate pairs for registration."""
 
     run_gap: int = 2
@@ -18,8 +16,7 @@ class CandidateTuning:
 CANDIDATES = CandidateTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DensityTuning:
+class DensityTuning(Struct, frozen=True, kw_only=True):
     """Images of the walls around a place (docs/explanation/pose-graph.md)."""
 
     cell_m: float = 0.4
@@ -47,8 +44,7 @@ class DensityTuning:
 DENSITY = DensityTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FollowTuning:
+class FollowTuning(Struct, frozen=True, kw_only=True):
     """Recognized places are followed along the path."""
 
     nearest: int = 5
@@ -70,8 +66,7 @@ class FollowTuning:
 FOLLOW = FollowTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GroupTuning:
+class GroupTuning(Struct, frozen=True, kw_only=True):
     """Which corrections agree, compete and are plausible."""
 
     link_m: float = 15.0
@@ -90,8 +85,7 @@ class GroupTuning:
 GROUPS = GroupTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlaceTuning:
+class PlaceTuning(Struct, frozen=True, kw_only=True):
     """Places along a walk."""
 
     points: int = 1500
@@ -106,8 +100,7 @@ class PlaceTuning:
 PLACES = PlaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CandidatePlaceTuning:
+class CandidatePlaceTuning(Struct, frozen=True, kw_only=True):
     """Which places are compared."""
 
     height_m: float = 1.0

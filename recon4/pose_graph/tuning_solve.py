@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GraphCheckTuning:
+class GraphCheckTuning(Struct, frozen=True, kw_only=True):
     """Validity of a graph."""
 
     rotation_tolerance: float = 1e-6
@@ -16,8 +15,7 @@ class GraphCheckTuning:
 GRAPH_CHECKS = GraphCheckTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorModelTuning:
+class ErrorModelTuning(Struct, frozen=True, kw_only=True):
     """What a graph shows of its own errors."""
 
     enough_edges: int = 8
@@ -30,8 +28,7 @@ class ErrorModelTuning:
 ERROR_MODEL = ErrorModelTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GraphFileTuning:
+class GraphFileTuning(Struct, frozen=True, kw_only=True):
     """Files of a graph."""
 
     block: int = 1024
@@ -43,8 +40,7 @@ class GraphFileTuning:
 GRAPH_FILES = GraphFileTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PairTuning:
+class PairTuning(Struct, frozen=True, kw_only=True):
     """Registration of pairs."""
 
     chunk: int = 8
@@ -54,8 +50,7 @@ class PairTuning:
 PAIRS = PairTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PieceTuning:
+class PieceTuning(Struct, frozen=True, kw_only=True):
     """Pieces of a walk."""
 
     walk_m_s: float = 1.5
@@ -69,8 +64,7 @@ class PieceTuning:
 PIECES = PieceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigErrorTuning:
+class RigErrorTuning(Struct, frozen=True, kw_only=True):
     """What an error of the rig does to the poses."""
 
     pull: float = 0.35
@@ -86,8 +80,7 @@ class RigErrorTuning:
 RIG_ERROR = RigErrorTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RobustTuning:
+class RobustTuning(Struct, frozen=True, kw_only=True):
     """The robust solve (GNC-TLS)."""
 
     step: float = 2.0
@@ -113,8 +106,7 @@ class RobustTuning:
 ROBUST = RobustTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SearchTuning:
+class SearchTuning(Struct, frozen=True, kw_only=True):
     """The progressive search."""
 
     lost_sd_factor: float = 200.0
@@ -126,8 +118,7 @@ class SearchTuning:
 SEARCH = SearchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SolveTuning:
+class SolveTuning(Struct, frozen=True, kw_only=True):
     """The optimization."""
 
     cauchy_sd: float = 4.0
@@ -146,8 +137,7 @@ class SolveTuning:
 SOLVE = SolveTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UncertaintyTuning:
+class UncertaintyTuning(Struct, frozen=True, kw_only=True):
     """Covariances of the poses."""
 
     max_knots: int = 300

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StoreyTuning:
+class StoreyTuning(Struct, frozen=True, kw_only=True):
     """Storeys of a building."""
 
     level: float = 0.9
@@ -40,8 +39,7 @@ class StoreyTuning:
 STOREYS = StoreyTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WallCellTuning:
+class WallCellTuning(Struct, frozen=True, kw_only=True):
     """Upright surfaces of a storey, seen from above."""
 
     cell_m: float = 0.025
@@ -66,8 +64,7 @@ class WallCellTuning:
 WALL_CELLS = WallCellTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FaceTuning:
+class FaceTuning(Struct, frozen=True, kw_only=True):
     """Faces of walls, as straight lines."""
 
     agree: float = 0.97
@@ -103,8 +100,7 @@ class FaceTuning:
 FACES = FaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OpeningTuning:
+class OpeningTuning(Struct, frozen=True, kw_only=True):
     """Doors and windows."""
 
     bin_m: float = 0.025
@@ -138,8 +134,7 @@ class OpeningTuning:
 OPENINGS = OpeningTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FloorPlanTuning:
+class FloorPlanTuning(Struct, frozen=True, kw_only=True):
     """What is drawn of a storey."""
 
     thickness_m: tuple[float, float] = (0.04, 0.65)
@@ -159,8 +154,7 @@ class FloorPlanTuning:
 PLANS = FloorPlanTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OrthophotoTuning:
+class OrthophotoTuning(Struct, frozen=True, kw_only=True):
     """Orthophotos."""
 
     band_m: tuple[float, float] = (0.3, 2.0)
@@ -182,8 +176,7 @@ class OrthophotoTuning:
 ORTHOPHOTOS = OrthophotoTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TerrainTuning:
+class TerrainTuning(Struct, frozen=True, kw_only=True):
     """Models of the terrain (Zhang et al. 2003, progressive morphological filter)."""
 
     level: float = 0.5
@@ -215,8 +208,7 @@ class TerrainTuning:
 TERRAIN = TerrainTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProductPreviewTuning:
+class ProductPreviewTuning(Struct, frozen=True, kw_only=True):
     """Previews of products."""
 
     side_px: int = 1400

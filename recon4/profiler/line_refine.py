@@ -8,10 +8,11 @@ points lie on the planes and the motion is that of the IMU.
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
@@ -168,7 +169,7 @@ class _LineSweep:
 
     def __init__(self, refiner: LineRefiner, dense: Trajectory, wide: LineRound) -> None:
         self._r, self._dense, self._wide = refiner, dense, wide
-        settings = replace(refiner.planes, max_sd_m=wide.max_sd_m)
+        settings = structs.replace(refiner.planes, max_sd_m=wide.max_sd_m)
         self._planes = PlaneMap(settings)
         index = refiner.frames.index
         gap_ns = refiner.settings.min_gap_s * 1e9

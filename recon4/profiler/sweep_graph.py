@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
@@ -44,7 +45,7 @@ from recon4.store.line_store import load_lines
 
 Points = NDArray[np.float32]
 
-_PLANES = replace(PLANES, max_sd_m=0.05)
+_PLANES = structs.replace(PLANES, max_sd_m=0.05)
 """A sweep is bent by the errors of its poses."""
 
 

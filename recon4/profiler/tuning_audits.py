@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockAuditTuning:
+class ClockAuditTuning(Struct, frozen=True, kw_only=True):
     """Whether the clocks of IMU, 2-D laser and profiler agree."""
 
     most_s: float = 0.25
@@ -39,8 +37,7 @@ class ClockAuditTuning:
 CLOCK_AUDIT = ClockAuditTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MirroredTuning:
+class MirroredTuning(Struct, frozen=True, kw_only=True):
     """A 2-D laser mounted upside down."""
 
     apart_ns: int = 200_000_000
@@ -62,8 +59,7 @@ class MirroredTuning:
 MIRRORED = MirroredTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MountAuditTuning:
+class MountAuditTuning(Struct, frozen=True, kw_only=True):
     """Whether the profiler is mounted as the rig file says."""
 
     said_rad: float = float(np.deg2rad(0.5))

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FusionTuning:
+class FusionTuning(Struct, frozen=True, kw_only=True):
     """From IMU and 2-D poses to six degrees of freedom."""
 
     rounds: int = 8
@@ -22,8 +21,7 @@ class FusionTuning:
 FUSION = FusionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GlobalIcpTuning:
+class GlobalIcpTuning(Struct, frozen=True, kw_only=True):
     """6D SLAM as published."""
 
     points: int = 8000
@@ -39,8 +37,7 @@ class GlobalIcpTuning:
 GLOBAL_ICP = GlobalIcpTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuChainTuning:
+class ImuChainTuning(Struct, frozen=True, kw_only=True):
     """A chain of states joined by IMU samples."""
 
     velocity_sd: float = 3.0
@@ -59,8 +56,7 @@ class ImuChainTuning:
 IMU_CHAIN = ImuChainTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AtRestTuning:
+class AtRestTuning(Struct, frozen=True, kw_only=True):
     """When an IMU feels no motion. Of a robot that waits: 0.01 rad/s, 0.02 m/s²."""
 
     window_s: float = 1.0
@@ -77,8 +73,7 @@ class AtRestTuning:
 AT_REST = AtRestTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineRefineTuning:
+class LineRefineTuning(Struct, frozen=True, kw_only=True):
     """Refinement of line scans."""
 
     block: int = 5
@@ -88,8 +83,7 @@ class LineRefineTuning:
 LINE_REFINE_STEPS = LineRefineTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LeveledScanTuning:
+class LeveledScanTuning(Struct, frozen=True, kw_only=True):
     """2-D SLAM, leveled by the IMU."""
 
     floor_sd: tuple[float, float, float] = (0.02, 0.02, 0.004)
@@ -104,8 +98,7 @@ class LeveledScanTuning:
 LEVELED_SCANS = LeveledScanTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarHoldTuning:
+class PlanarHoldTuning(Struct, frozen=True, kw_only=True):
     """What 2-D SLAM says of the motion between two knots."""
 
     walk_m: tuple[float, float, float] = (0.02, 0.02, 0.05)
@@ -115,8 +108,7 @@ class PlanarHoldTuning:
 PLANAR_HOLD = PlanarHoldTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PublishedRefineTuning:
+class PublishedRefineTuning(Struct, frozen=True, kw_only=True):
     """Semi-rigid SLAM as published."""
 
     neighbor_sd: tuple[float, float] = (0.01, 0.03)
@@ -132,8 +124,7 @@ class PublishedRefineTuning:
 PUBLISHED_REFINE = PublishedRefineTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FirstLineTuning:
+class FirstLineTuning(Struct, frozen=True, kw_only=True):
     """The first trajectory of a profiler."""
 
     first_knot_s: float = 0.05
@@ -151,8 +142,7 @@ class FirstLineTuning:
 FIRST_LINES = FirstLineTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SupportTuning:
+class SupportTuning(Struct, frozen=True, kw_only=True):
     """What holds each multiframe."""
 
     around_ns: int = 1_000_000_000
@@ -165,8 +155,7 @@ class SupportTuning:
 SUPPORT = SupportTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SweepGraphTuning:
+class SweepGraphTuning(Struct, frozen=True, kw_only=True):
     """6D SLAM of sweeps."""
 
     counted: int = 4000

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec import Struct
+
 from recon4.settings import IngestSettings
 
 
@@ -17,8 +19,7 @@ class IngestTuning(IngestSettings):
     """A jump of the clock larger than this is reported as a gap [s]."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecipeTuning:
+class RecipeTuning(Struct, frozen=True, kw_only=True):
     """What the points of a recipe must be like (`recon4/recording/recipes`)."""
 
     nearest_m: float = 0.2
@@ -47,8 +48,7 @@ class RecipeTuning:
 RECIPES = RecipeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SharedTopicTuning:
+class SharedTopicTuning(Struct, frozen=True, kw_only=True):
     """How topics that several LiDARs share are known (`formats/shared_topics.py`)."""
 
     head: int = 12
@@ -65,8 +65,7 @@ class SharedTopicTuning:
 SHARED_TOPICS = SharedTopicTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ListedTuning:
+class ListedTuning(Struct, frozen=True, kw_only=True):
     """How much of one kind a message names; the rest is counted."""
 
     names: int = 20

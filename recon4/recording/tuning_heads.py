@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProbeTuning:
+class ProbeTuning(Struct, frozen=True, kw_only=True):
     """How much of a recording tells what it holds."""
 
     messages: int = 50

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LaserTuning:
+class LaserTuning(Struct, frozen=True, kw_only=True):
     """Scans of 2-D lasers in bags (`laser2d.py`, `laser_mount.py`, `profiler_rigs.py`)."""
 
     shortest_reach_m: float = 3.5
@@ -30,8 +28,7 @@ class LaserTuning:
 LASERS = LaserTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanBeamTuning:
+class ScanBeamTuning(Struct, frozen=True, kw_only=True):
     """Ranges and angles of the beams of a scan (`scan_messages.py`, `laser_tables.py`)."""
 
     longest_m: float = 1e4
@@ -68,8 +65,7 @@ class ScanBeamTuning:
 SCAN_BEAMS = ScanBeamTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RangeUnitTuning:
+class RangeUnitTuning(Struct, frozen=True, kw_only=True):
     """Ranges that are no meters (`range_units.py`)."""
 
     far_m: float = 60.0
@@ -88,8 +84,7 @@ class RangeUnitTuning:
 RANGE_UNITS = RangeUnitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProfilerLineTuning:
+class ProfilerLineTuning(Struct, frozen=True, kw_only=True):
     """Lines of profilers (`line_recording.py`, `line_info.py`, `sweeps.py`)."""
 
     gap_ns: int = 100_000_000
@@ -105,8 +100,7 @@ class ProfilerLineTuning:
 LINES = ProfilerLineTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanDatagramTuning:
+class ScanDatagramTuning(Struct, frozen=True, kw_only=True):
     """Scans as datagrams, and their clocks (`scan_datagrams.py`, `scan_capture.py`)."""
 
     bytes: int = 65_000

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SameMountTuning:
+class SameMountTuning(Struct, frozen=True, kw_only=True):
     """When two statements of a pose are the same."""
 
     rad: float = float(np.deg2rad(0.1))
@@ -28,8 +26,7 @@ class SameMountTuning:
 SAME_MOUNT = SameMountTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TransformTuning:
+class TransformTuning(Struct, frozen=True, kw_only=True):
     """Transforms that can be true (`transform_messages.py`)."""
 
     longest_m: float = 100.0
@@ -41,8 +38,7 @@ class TransformTuning:
 TRANSFORM_LIMITS = TransformTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SensorJointTuning:
+class SensorJointTuning(Struct, frozen=True, kw_only=True):
     """Sensors that turn on a joint (`head_angles.py`, `moving_mounts.py`)."""
 
     stuck_rad: float = float(np.deg2rad(0.05))

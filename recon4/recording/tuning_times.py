@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockCompareTuning:
+class ClockCompareTuning(Struct, frozen=True, kw_only=True):
     """Whether the clocks of two sensors differ (`clock_compare.py`)."""
 
     other_s: float = 1.0
@@ -24,8 +23,7 @@ class ClockCompareTuning:
 CLOCK_COMPARE = ClockCompareTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockNameTuning:
+class ClockNameTuning(Struct, frozen=True, kw_only=True):
     """Differences of clocks that have a name (`clock_names.py`)."""
 
     within_s: float = 0.4
@@ -37,8 +35,7 @@ class ClockNameTuning:
 CLOCK_NAMES = ClockNameTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointClockTuning:
+class PointClockTuning(Struct, frozen=True, kw_only=True):
     """Points with times of a clock of their own (`exact_times.py`)."""
 
     same_clock_ns: int = 500_000_000
@@ -56,8 +53,7 @@ class PointClockTuning:
 POINT_CLOCK = PointClockTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointTimeTuning:
+class PointTimeTuning(Struct, frozen=True, kw_only=True):
     """The unit and the meaning of the times of points (`point_times.py`)."""
 
     units_ns: tuple[float, ...] = (1.0, 1e3, 1e6, 1e9)
@@ -93,8 +89,7 @@ class PointTimeTuning:
 POINT_TIMES = PointTimeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StampTuning:
+class StampTuning(Struct, frozen=True, kw_only=True):
     """Stamps of messages: wrong ones, another clock, late ones (`stamps.py`, `stamp_order.py`)."""
 
     other_ns: int = 10_000_000_000
@@ -112,8 +107,7 @@ class StampTuning:
 STAMPS = StampTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FrameTimeTuning:
+class FrameTimeTuning(Struct, frozen=True, kw_only=True):
     """Times of files of points (`frame_times.py`, `folders.py`)."""
 
     assumed_ns: int = 100_000_000

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TopicContentTuning:
+class TopicContentTuning(Struct, frozen=True, kw_only=True):
     """What a topic of a bag measures (`topic_contents.py`)."""
 
     probed_messages: int = 200
@@ -27,8 +25,7 @@ class TopicContentTuning:
 TOPIC_CONTENTS = TopicContentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LidarChoiceTuning:
+class LidarChoiceTuning(Struct, frozen=True, kw_only=True):
     """Which topics are LiDARs, and which are copies of others (`lidar_choice.py`,
     `topic_choice.py`).
     """
@@ -54,8 +51,7 @@ class LidarChoiceTuning:
 LIDAR_CHOICE = LidarChoiceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CloudTuning:
+class CloudTuning(Struct, frozen=True, kw_only=True):
     """Beams and units of clouds (`cloud_points.py`, `extent.py`)."""
 
     bands: int = 64
@@ -74,8 +70,7 @@ class CloudTuning:
 CLOUDS = CloudTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BagImuTuning:
+class BagImuTuning(Struct, frozen=True, kw_only=True):
     """Samples of bags."""
 
     batch: int = 500

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
+from msgspec import structs
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
@@ -26,7 +25,7 @@ class ScanChain:
     """
 
     def __init__(self, settings: ScanTuning = SCANS) -> None:
-        self._settings = replace(settings, source_points=SCAN_CHAIN.source_points)
+        self._settings = structs.replace(settings, source_points=SCAN_CHAIN.source_points)
         self._last: SeenScan | None = None
         self._now: SeenScan | None = None
         self._recent = RecentScans(settings)

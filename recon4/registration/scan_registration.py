@@ -8,11 +8,12 @@ proves wrong, the ground plans of both scans are correlated over rotation and sh
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 from scipy import fft, ndimage
 from scipy.spatial import cKDTree
@@ -113,7 +114,7 @@ def search_scans(
         return first
     some = _some(source, SCAN_MATCHES.coarse_points)
     starts = overlay_plans(target, source, count=settings.starts, height_m=float(initial.t[2]))
-    coarse = replace(settings, rounds=SCAN_MATCHES.coarse_rounds)
+    coarse = structs.replace(settings, rounds=SCAN_MATCHES.coarse_rounds)
     tries = [
         _descend(target, some, initial=start, settings=coarse, prior=prior)
         for start in [first.T_target_source, *starts]
@@ -141,8 +142,8 @@ def lay_onto(
         initial: Poses to try beside the overlays.
         settings: Gate, kernel, bounds.
     """
-    settings = replace(settings, min_inlier_ratio=0.0)
-    coarse = replace(settings, rounds=SCAN_MATCHES.coarse_rounds)
+    settings = structs.replace(settings, min_inlier_ratio=0.0)
+    coarse = structs.replace(settings, rounds=SCAN_MATCHES.coarse_rounds)
     some = _some(source, SCAN_MATCHES.coarse_points)
     starts = [*initial, *overlay_plans(target, source, count=settings.starts, height_m=0.0)]
     tries = [_descend(target, some, initial=start, settings=coarse, prior=None) for start in starts]

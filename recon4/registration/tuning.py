@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Literal
 
+from msgspec import Struct
+
 from recon4.settings import OdometrySettings, RegistrationSettings
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SegmentTuning:
+class SegmentTuning(Struct, frozen=True, kw_only=True):
     """Collar line segments (V §2.4, requirements A3.1; docs/registration.md)."""
 
     azimuth_bins: int = 36
@@ -28,8 +29,7 @@ class SegmentTuning:
     """Seed of the random draws; combined with the frame id."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OverlapTuning:
+class OverlapTuning(Struct, frozen=True, kw_only=True):
     """Overlap by a spherical z-buffer (V §2.5, requirements A4; docs/registration.md)."""
 
     azimuth_bins: int = 180
@@ -73,8 +73,7 @@ class RegistrationTuning(RegistrationSettings):
     """An error below this has converged [m] (``svd``)."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneTuning:
+class PlaneTuning(Struct, frozen=True, kw_only=True):
     """Map of small planes to which segments are registered (docs/registration.md)."""
 
     finest_m: float = 0.2
@@ -91,8 +90,7 @@ class PlaneTuning:
     """Scale of the Cauchy kernel on the distance from the plane [m]."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanTuning:
+class ScanTuning(Struct, frozen=True, kw_only=True):
     """Registration of two single scans without an IMU (docs/registration.md)."""
 
     voxel_m: float = 0.25

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FeltMotionTuning:
+class FeltMotionTuning(Struct, frozen=True, kw_only=True):
     """What the accelerometer says of the motion (docs/explanation/odometry.md)."""
 
     shift_sd_m: float = 0.003
@@ -32,8 +31,7 @@ class FeltMotionTuning:
 FELT = FeltMotionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuEstimateTuning:
+class ImuEstimateTuning(Struct, frozen=True, kw_only=True):
     """Which errors of an IMU are faults."""
 
     most_gain: float = 0.015
@@ -49,8 +47,7 @@ class ImuEstimateTuning:
 IMU_ERRORS = ImuEstimateTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuGravityTuning:
+class ImuGravityTuning(Struct, frozen=True, kw_only=True):
     """Gravity as an accelerometer measures it."""
 
     most_m_s2: float = 0.2
@@ -65,8 +62,7 @@ class ImuGravityTuning:
 IMU_GRAVITY = ImuGravityTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SaturationTuning:
+class SaturationTuning(Struct, frozen=True, kw_only=True):
     """An IMU at the end of its range."""
 
     same: float = 1e-4
@@ -84,8 +80,7 @@ class SaturationTuning:
 SATURATION = SaturationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuMotionTuning:
+class ImuMotionTuning(Struct, frozen=True, kw_only=True):
     """The motion by an IMU."""
 
     as_predicted_m: float = 0.03
@@ -96,8 +91,7 @@ class ImuMotionTuning:
 IMU_MOTION = ImuMotionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PredictionTuning:
+class PredictionTuning(Struct, frozen=True, kw_only=True):
     """Prediction of the motion between two registrations."""
 
     free_sd: tuple[float, ...] = (0.01, 0.05, 0.3, 0.3)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CollarLineTuning:
+class CollarLineTuning(Struct, frozen=True, kw_only=True):
     """Registration of line segments to lines."""
 
     min_matches: int = 20
@@ -18,8 +16,7 @@ class CollarLineTuning:
 COLLAR_LINES = CollarLineTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DegeneracyTuning:
+class DegeneracyTuning(Struct, frozen=True, kw_only=True):
     """Information that errors of the normals alone create."""
 
     least_turn: float = 0.2
@@ -34,8 +31,7 @@ class DegeneracyTuning:
 DEGENERACY = DegeneracyTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FrameFitTuning:
+class FrameFitTuning(Struct, frozen=True, kw_only=True):
     """Registration of one frame to the map of planes."""
 
     gates_m: tuple[float, ...] = (1.0, 0.5, 0.3, 0.2)
@@ -61,8 +57,7 @@ class FrameFitTuning:
 FRAME_FIT = FrameFitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineOdometryTuning:
+class LineOdometryTuning(Struct, frozen=True, kw_only=True):
     """The odometry of the documents."""
 
     predictor: int = 3
@@ -74,8 +69,7 @@ class LineOdometryTuning:
 LINE_ODOMETRY = LineOdometryTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MovingTuning:
+class MovingTuning(Struct, frozen=True, kw_only=True):
     """Moving objects."""
 
     view_ns: int = 1_000_000_000
@@ -111,8 +105,7 @@ class MovingTuning:
 MOVING = MovingTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneMapTuning:
+class PlaneMapTuning(Struct, frozen=True, kw_only=True):
     """Memory of the map of planes."""
 
     first_capacity: int = 1 << 16
@@ -122,8 +115,7 @@ class PlaneMapTuning:
 PLANE_MAP = PlaneMapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlaneMatchTuning:
+class PlaneMatchTuning(Struct, frozen=True, kw_only=True):
     """Registration of segments to a map of planes."""
 
     gates_m: tuple[float, ...] = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
@@ -138,8 +130,7 @@ class PlaneMatchTuning:
 PLANE_MATCHES = PlaneMatchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointMapTuning:
+class PointMapTuning(Struct, frozen=True, kw_only=True):
     """Single points where segments observe too little."""
 
     min_viewpoints: int = 5
@@ -175,8 +166,7 @@ class PointMapTuning:
 POINT_MAP = PointMapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanChainTuning:
+class ScanChainTuning(Struct, frozen=True, kw_only=True):
     """Pose of a frame relative to the last good scan."""
 
     source_points: int = 3000
@@ -186,8 +176,7 @@ class ScanChainTuning:
 SCAN_CHAIN = ScanChainTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanMatchTuning:
+class ScanMatchTuning(Struct, frozen=True, kw_only=True):
     """Registration of two single scans."""
 
     min_matches: int = 50

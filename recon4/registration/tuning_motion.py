@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AidingTuning:
+class AidingTuning(Struct, frozen=True, kw_only=True):
     """Fixes of GNSS/INS as measurements of odometry."""
 
     max_gap_ns: int = 300_000_000
@@ -20,8 +18,7 @@ class AidingTuning:
 AIDING = AidingTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BridgeTuning:
+class BridgeTuning(Struct, frozen=True, kw_only=True):
     """Where a scan lies after a gap (docs/explanation/odometry.md)."""
 
     tried_every_ns: int = 500_000_000
@@ -54,8 +51,7 @@ class BridgeTuning:
 BRIDGE = BridgeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CarrierTuning:
+class CarrierTuning(Struct, frozen=True, kw_only=True):
     """What is known of a carrier's motion before any scan."""
 
     speed_sd_m_s: float = 1.5
@@ -76,8 +72,7 @@ class CarrierTuning:
 CARRIER = CarrierTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MovingStartTuning:
+class MovingStartTuning(Struct, frozen=True, kw_only=True):
     """Velocity of a body that moves when the recording begins."""
 
     moving_m_s: float = 0.3
@@ -91,8 +86,7 @@ class MovingStartTuning:
 MOVING_START = MovingStartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StillTuning:
+class StillTuning(Struct, frozen=True, kw_only=True):
     """Zero-velocity update without an IMU."""
 
     scans_m: float = 0.01
@@ -107,8 +101,7 @@ class StillTuning:
 STILL = StillTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WeakMotionTuning:
+class WeakMotionTuning(Struct, frozen=True, kw_only=True):
     """Motion along a direction that the LiDAR hardly observes."""
 
     weak_sd_m: float = 0.06
@@ -126,8 +119,7 @@ class WeakMotionTuning:
 WEAK_MOTION = WeakMotionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WeakTurnTuning:
+class WeakTurnTuning(Struct, frozen=True, kw_only=True):
     """Turns that only the gyroscope holds."""
 
     weak_sd_m: float = 0.02
@@ -146,8 +138,7 @@ class WeakTurnTuning:
 WEAK_TURNS = WeakTurnTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrackingTuning:
+class TrackingTuning(Struct, frozen=True, kw_only=True):
     """When a new map is trusted."""
 
     trusted_frames: int = 30
@@ -157,8 +148,7 @@ class TrackingTuning:
 TRACKING = TrackingTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LostTuning:
+class LostTuning(Struct, frozen=True, kw_only=True):
     """When tracking is lost."""
 
     usual_frames: int = 50
@@ -168,8 +158,7 @@ class LostTuning:
 LOST = LostTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GapTuning:
+class GapTuning(Struct, frozen=True, kw_only=True):
     """Gaps between frames."""
 
     interrupted_ns: int = 2_000_000_000
@@ -179,8 +168,7 @@ class GapTuning:
 GAPS = GapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DenseTuning:
+class DenseTuning(Struct, frozen=True, kw_only=True):
     """The dense trajectory."""
 
     step_ns: int = 9_000_000
@@ -193,8 +181,7 @@ class DenseTuning:
 DENSE = DenseTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanMotionTuning:
+class ScanMotionTuning(Struct, frozen=True, kw_only=True):
     """The motion by registering scans."""
 
     unseen_ns: int = 200_000_000
@@ -206,8 +193,7 @@ class ScanMotionTuning:
 SCAN_MOTION = ScanMotionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HypothesisTuning:
+class HypothesisTuning(Struct, frozen=True, kw_only=True):
     """What a walk may assume."""
 
     most_walks: int = 6
@@ -219,8 +205,7 @@ class HypothesisTuning:
 HYPOTHESES = HypothesisTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReportedPoseTuning:
+class ReportedPoseTuning(Struct, frozen=True, kw_only=True):
     """Poses that a run announces."""
 
     every: int = 5
@@ -232,8 +217,7 @@ class ReportedPoseTuning:
 REPORTED_POSES = ReportedPoseTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RideTuning:
+class RideTuning(Struct, frozen=True, kw_only=True):
     """Rides that the IMU feels and no LiDAR sees."""
 
     knot_s: float = 0.5

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BeamChartTuning:
+class BeamChartTuning(Struct, frozen=True, kw_only=True):
     """Charts of single beams."""
 
     apart: float = 0.6
@@ -18,8 +17,7 @@ class BeamChartTuning:
 BEAM_CHARTS = BeamChartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationPageTuning:
+class CalibrationPageTuning(Struct, frozen=True, kw_only=True):
     """The page of a calibration."""
 
     thickness_m: float = 0.2
@@ -31,8 +29,7 @@ class CalibrationPageTuning:
 CALIBRATION_PAGE = CalibrationPageTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EdgeChartTuning:
+class EdgeChartTuning(Struct, frozen=True, kw_only=True):
     """Verdicts of pairs."""
 
     max_drawn: int = 4000
@@ -42,8 +39,7 @@ class EdgeChartTuning:
 EDGE_CHARTS = EdgeChartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChartTuning:
+class ChartTuning(Struct, frozen=True, kw_only=True):
     """Charts as inline SVG."""
 
     many_bars: int = 40
@@ -53,8 +49,7 @@ class ChartTuning:
 CHARTS = ChartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FindingListTuning:
+class FindingListTuning(Struct, frozen=True, kw_only=True):
     """Findings in reports."""
 
     most_of_a_kind: int = 12
@@ -64,8 +59,7 @@ class FindingListTuning:
 FINDING_LISTS = FindingListTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class IntensityChartTuning:
+class IntensityChartTuning(Struct, frozen=True, kw_only=True):
     """Charts of intensity."""
 
     min_points: int = 100
@@ -75,8 +69,7 @@ class IntensityChartTuning:
 INTENSITY_CHARTS = IntensityChartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapImageTuning:
+class MapImageTuning(Struct, frozen=True, kw_only=True):
     """Images of the map."""
 
     max_pixels: int = 1300
@@ -92,8 +85,7 @@ class MapImageTuning:
 MAP_IMAGES = MapImageTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanTuning:
+class PlanTuning(Struct, frozen=True, kw_only=True):
     """Plan of the map."""
 
     longest: float = 1000.0
@@ -105,8 +97,7 @@ class PlanTuning:
 PLANS = PlanTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProjectFactLimits:
+class ProjectFactLimits(Struct, frozen=True, kw_only=True):
     """Summaries that are read."""
 
     max_bytes: int = 16 << 20
@@ -116,8 +107,7 @@ class ProjectFactLimits:
 PROJECT_FACTS = ProjectFactLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigChartTuning:
+class RigChartTuning(Struct, frozen=True, kw_only=True):
     """Charts of the rig."""
 
     width_sd: float = 2.0
@@ -127,8 +117,7 @@ class RigChartTuning:
 RIG_CHARTS = RigChartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StretchChartTuning:
+class StretchChartTuning(Struct, frozen=True, kw_only=True):
     """Stretches of findings on the time axis."""
 
     least: float = 0.004
@@ -138,8 +127,7 @@ class StretchChartTuning:
 STRETCH_CHART = StretchChartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClientReportTuning:
+class ClientReportTuning(Struct, frozen=True, kw_only=True):
     """The report for the client: short enough to be read."""
 
     cut_m: tuple[float, float] = (0.2, 0.6)

@@ -6,11 +6,12 @@ Only nodes of the graph can be joined; a time between two nodes selects the near
 from __future__ import annotations
 
 import struct
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import gettempdir
 
 import numpy as np
+from msgspec import structs
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
@@ -166,7 +167,9 @@ def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     views = NodeRangeImages(2, graph_tuning(settings.graph), scratch=scratch)
     tracked = TrackedFrames(source.frames, source.odometry, _lost(source))
     submaps = Submaps(tracked, rows, scratch=scratch)
-    registrar = PairRegistrar(submaps, views, settings, overlap=replace(OVERLAP, threshold=0.0))
+    registrar = PairRegistrar(
+        submaps, views, settings, overlap=structs.replace(OVERLAP, threshold=0.0)
+    )
     registrar.prepare(2, Silent())
     tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]
     ends = [RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]

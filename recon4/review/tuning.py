@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AcknowledgmentLimits:
+class AcknowledgmentLimits(Struct, frozen=True, kw_only=True):
     """Notes of a reviewer."""
 
     head_bytes: int = 1 << 20
@@ -16,8 +15,7 @@ class AcknowledgmentLimits:
 ACKNOWLEDGMENTS = AcknowledgmentLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChangeTuning:
+class ChangeTuning(Struct, frozen=True, kw_only=True):
     """What a decision changes."""
 
     changed_m: float = 0.1
@@ -29,8 +27,7 @@ class ChangeTuning:
 CHANGES = ChangeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class InfluenceTuning:
+class InfluenceTuning(Struct, frozen=True, kw_only=True):
     """How far an edge moves the map."""
 
     nothing: float = 1e-12
@@ -42,8 +39,7 @@ class InfluenceTuning:
 INFLUENCE = InfluenceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReviewPairTuning:
+class ReviewPairTuning(Struct, frozen=True, kw_only=True):
     """Points and poses of a pair."""
 
     max_points: int = 30_000
@@ -61,8 +57,7 @@ class ReviewPairTuning:
 REVIEW_PAIRS = ReviewPairTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PreviewTuning:
+class PreviewTuning(Struct, frozen=True, kw_only=True):
     """Preview of decisions."""
 
     remembered: int = 6
@@ -72,8 +67,7 @@ class PreviewTuning:
 PREVIEW = PreviewTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class QueueTuning:
+class QueueTuning(Struct, frozen=True, kw_only=True):
     """The review queue."""
 
     max_paths: int = 60
@@ -83,8 +77,7 @@ class QueueTuning:
 QUEUE = QueueTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReviewSolveTuning:
+class ReviewSolveTuning(Struct, frozen=True, kw_only=True):
     """What a solved review reports."""
 
     max_moves: int = 10
@@ -100,8 +93,7 @@ class ReviewSolveTuning:
 REVIEW_SOLVE = ReviewSolveTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ApprovalLimits:
+class ApprovalLimits(Struct, frozen=True, kw_only=True):
     """Approvals."""
 
     min_reason_characters: int = 10
@@ -111,8 +103,7 @@ class ApprovalLimits:
 APPROVALS = ApprovalLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ApprovalNameLimits:
+class ApprovalNameLimits(Struct, frozen=True, kw_only=True):
     """Names in an approval."""
 
     max_name: int = 60
@@ -122,8 +113,7 @@ class ApprovalNameLimits:
 APPROVAL_NAMES = ApprovalNameLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NewestApprovalLimits:
+class NewestApprovalLimits(Struct, frozen=True, kw_only=True):
     """Records of newest approvals."""
 
     max_record_bytes: int = 64 << 10
@@ -133,8 +123,7 @@ class NewestApprovalLimits:
 NEWEST_APPROVALS = NewestApprovalLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SummaryLimits:
+class SummaryLimits(Struct, frozen=True, kw_only=True):
     """Summaries that are read."""
 
     max_summary_bytes: int = 16 << 20
@@ -144,8 +133,7 @@ class SummaryLimits:
 SUMMARIES = SummaryLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrustedKeyLimits:
+class TrustedKeyLimits(Struct, frozen=True, kw_only=True):
     """Keys whose signatures count."""
 
     max_name_characters: int = 100
@@ -157,8 +145,7 @@ class TrustedKeyLimits:
 KEY_LIMITS = TrustedKeyLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CertificateTuning:
+class CertificateTuning(Struct, frozen=True, kw_only=True):
     """Certificates of signing keys."""
 
     days: int = 10_950

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ConfinementTuning:
+class ConfinementTuning(Struct, frozen=True, kw_only=True):
     """What a confined process may take of the computer, and how barriers are tried."""
 
     memory_fraction: float = 0.7

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec import Struct
+
 from recon4.settings import RefineSettings
 
 
@@ -31,8 +33,7 @@ class RefineTuning(RefineSettings):
     """Stop if no multiframe moves farther than this [m]."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RefineRunTuning:
+class RefineRunTuning(Struct, frozen=True, kw_only=True):
     """Work of the refinement."""
 
     chunk: int = 16

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from msgspec import Struct
+
 from recon4.settings import Grid2dSettings, Loop2dSettings, Slam2dSettings
 
 
@@ -36,8 +38,7 @@ class Slam2dTuning(Slam2dSettings):
     errors create counts as unobservable."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HectorTuning:
+class HectorTuning(Struct, frozen=True, kw_only=True):
     """Constants of hector_slam (requirements A12 L-1)."""
 
     cell_m: float = 0.025

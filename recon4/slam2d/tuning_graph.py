@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BeamOrderTuning:
+class BeamOrderTuning(Struct, frozen=True, kw_only=True):
     """Scans whose beams are stored in the wrong order."""
 
     turn_rad: float = 0.6
@@ -22,8 +21,7 @@ class BeamOrderTuning:
 BEAM_ORDER = BeamOrderTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Candidate2dTuning:
+class Candidate2dTuning(Struct, frozen=True, kw_only=True):
     """Candidates for loop closures."""
 
     chunk: int = 256
@@ -37,8 +35,7 @@ class Candidate2dTuning:
 CANDIDATES_2D = Candidate2dTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Covariance2dTuning:
+class Covariance2dTuning(Struct, frozen=True, kw_only=True):
     """Covariance of the nodes of a solved graph."""
 
     gauge: float = 1e9
@@ -51,8 +48,7 @@ class Covariance2dTuning:
 COVARIANCE_2D = Covariance2dTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Edge2dTuning:
+class Edge2dTuning(Struct, frozen=True, kw_only=True):
     """Plane motions as edges."""
 
     fixed_sd: float = 1e-3
@@ -62,8 +58,7 @@ class Edge2dTuning:
 EDGES_2D = Edge2dTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class KeyframeTuning:
+class KeyframeTuning(Struct, frozen=True, kw_only=True):
     """Keyframes of 2-D odometry."""
 
     loose_sd_m: float = 0.3
@@ -73,8 +68,7 @@ class KeyframeTuning:
 KEYFRAMES = KeyframeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopRetryTuning:
+class LoopRetryTuning(Struct, frozen=True, kw_only=True):
     """Rejected pairs that are tried again."""
 
     retry_move_m: float = 0.5
@@ -84,8 +78,7 @@ class LoopRetryTuning:
 LOOP_RETRIES = LoopRetryTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Submap2dTuning:
+class Submap2dTuning(Struct, frozen=True, kw_only=True):
     """Registration of sub-maps."""
 
     most_points: int = 1500
@@ -100,8 +93,7 @@ class Submap2dTuning:
 SUBMAPS_2D = Submap2dTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GridStepTuning:
+class GridStepTuning(Struct, frozen=True, kw_only=True):
     """Scans that are entered into the grid."""
 
     grid_step_m: float = 0.05
@@ -113,8 +105,7 @@ class GridStepTuning:
 GRID_STEPS = GridStepTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OccupancyTuning:
+class OccupancyTuning(Struct, frozen=True, kw_only=True):
     """The occupancy grid."""
 
     max_cells: int = 150_000_000
@@ -132,8 +123,7 @@ class OccupancyTuning:
 OCCUPANCY = OccupancyTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapFileLimits:
+class MapFileLimits(Struct, frozen=True, kw_only=True):
     """Files of a finished 2-D map."""
 
     overview_cells: int = 4096
@@ -157,8 +147,7 @@ class MapFileLimits:
 MAP_FILES_2D = MapFileLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanGapTuning:
+class ScanGapTuning(Struct, frozen=True, kw_only=True):
     """What the import of scans reports."""
 
     gap_s: float = 2.0

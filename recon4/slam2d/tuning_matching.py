@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CorrelationTuning:
+class CorrelationTuning(Struct, frozen=True, kw_only=True):
     """Correlative search (Olson 2009)."""
 
     cell_m: float = 0.1
@@ -24,8 +23,7 @@ class CorrelationTuning:
 CORRELATION = CorrelationTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HectorMatchTuning:
+class HectorMatchTuning(Struct, frozen=True, kw_only=True):
     """Scan matching of hector_slam."""
 
     largest_turn_rad: float = 0.2
@@ -37,8 +35,7 @@ class HectorMatchTuning:
 HECTOR = HectorMatchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HectorOdometryTuning:
+class HectorOdometryTuning(Struct, frozen=True, kw_only=True):
     """Odometry of hector_slam."""
 
     fewest_points: int = 15
@@ -48,8 +45,7 @@ class HectorOdometryTuning:
 HECTOR_ODOMETRY = HectorOdometryTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LineMapTuning:
+class LineMapTuning(Struct, frozen=True, kw_only=True):
     """Registration of a scan to a local map of lines."""
 
     max_iterations: int = 30
@@ -65,8 +61,7 @@ class LineMapTuning:
 LINE_MAP = LineMapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Odometry2dTuning:
+class Odometry2dTuning(Struct, frozen=True, kw_only=True):
     """2-D odometry on a sliding local map."""
 
     fewest_points: int = 15
@@ -91,8 +86,7 @@ class Odometry2dTuning:
 ODOMETRY_2D = Odometry2dTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Prediction2dTuning:
+class Prediction2dTuning(Struct, frozen=True, kw_only=True):
     """Predicted motion from one scan to the next."""
 
     velocity_s: float = 0.25
@@ -116,8 +110,7 @@ class Prediction2dTuning:
 PREDICTION_2D = Prediction2dTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanPointTuning:
+class ScanPointTuning(Struct, frozen=True, kw_only=True):
     """The returns of a scan as points."""
 
     spacing_m: float = 0.05
@@ -127,8 +120,7 @@ class ScanPointTuning:
 SCAN_POINTS = ScanPointTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Observability2dTuning:
+class Observability2dTuning(Struct, frozen=True, kw_only=True):
     """Directions that the lines determine."""
 
     unobserved_sd_m: float = 1e3

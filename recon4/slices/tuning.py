@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AlignmentTuning:
+class AlignmentTuning(Struct, frozen=True, kw_only=True):
     """Alignment of a reference with the map by ICP."""
 
     samples: int = 60_000
@@ -38,8 +36,7 @@ class AlignmentTuning:
 ALIGNMENT = AlignmentTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ControlVerdictTuning:
+class ControlVerdictTuning(Struct, frozen=True, kw_only=True):
     """Residuals compared with the limits."""
 
     named: int = 5
@@ -49,8 +46,7 @@ class ControlVerdictTuning:
 CONTROL_VERDICT = ControlVerdictTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DoublePlaceTuning:
+class DoublePlaceTuning(Struct, frozen=True, kw_only=True):
     """Patches grouped into places."""
 
     max_surfaces: int = 3000
@@ -64,8 +60,7 @@ class DoublePlaceTuning:
 DOUBLE_PLACES = DoublePlaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DoubleWallTuning:
+class DoubleWallTuning(Struct, frozen=True, kw_only=True):
     """Double walls."""
 
     block: int = 2_000_000
@@ -77,8 +72,7 @@ class DoubleWallTuning:
 DOUBLE_WALLS = DoubleWallTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EllipseTuning:
+class EllipseTuning(Struct, frozen=True, kw_only=True):
     """How well a place of the map is known."""
 
     near_m: float = 0.1
@@ -92,8 +86,7 @@ class EllipseTuning:
 ELLIPSES = EllipseTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceFitTuning:
+class ReferenceFitTuning(Struct, frozen=True, kw_only=True):
     """Whether a reference fits the map at all."""
 
     compared: int = 60_000
@@ -121,8 +114,7 @@ class ReferenceFitTuning:
 REFERENCE_FIT = ReferenceFitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapFrameTuning:
+class MapFrameTuning(Struct, frozen=True, kw_only=True):
     """Between the map frame and its CRS."""
 
     step_m: float = 10.0
@@ -134,8 +126,7 @@ class MapFrameTuning:
 MAP_FRAMES = MapFrameTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HeightHintTuning:
+class HeightHintTuning(Struct, frozen=True, kw_only=True):
     """Heights above sea level against those above the ellipsoid."""
 
     nearly_m: float = 1.0
@@ -146,8 +137,7 @@ class HeightHintTuning:
 HEIGHT_HINTS = HeightHintTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MeasuredTuning:
+class MeasuredTuning(Struct, frozen=True, kw_only=True):
     """Surveyed points in the map."""
 
     in_span: float = np.cos(np.deg2rad(10.0))
@@ -157,8 +147,7 @@ class MeasuredTuning:
 MEASURED = MeasuredTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PickTuning:
+class PickTuning(Struct, frozen=True, kw_only=True):
     """Picking a point of a slice."""
 
     plane_m: float = 0.10
@@ -170,8 +159,7 @@ class PickTuning:
 PICKS = PickTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SnapTuning:
+class SnapTuning(Struct, frozen=True, kw_only=True):
     """Snapping of a pick to a plane, an edge or a corner."""
 
     around: tuple[float, float] = (0.3, 0.6)
@@ -216,8 +204,7 @@ class SnapTuning:
 SNAPS = SnapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlacementTuning:
+class PlacementTuning(Struct, frozen=True, kw_only=True):
     """Where the coordinates of a reference belong."""
 
     earth_m: tuple[float, float] = (6.2e6, 6.6e6)
@@ -236,8 +223,7 @@ class PlacementTuning:
 PLACEMENT = PlacementTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ResidualTuning:
+class ResidualTuning(Struct, frozen=True, kw_only=True):
     """Residuals at control points."""
 
     outlier_sigmas: tuple[float, float, float] = (3.0, 3.4393, 3.7625)
@@ -248,8 +234,7 @@ class ResidualTuning:
 RESIDUALS = ResidualTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SignedDistanceTuning:
+class SignedDistanceTuning(Struct, frozen=True, kw_only=True):
     """Signed distances of a map from a reference."""
 
     histogram_step_m: float = 0.002

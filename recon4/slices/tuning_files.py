@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SliceColorTuning:
+class SliceColorTuning(Struct, frozen=True, kw_only=True):
     """Colors of slices, red green blue."""
 
     reference_color: tuple[int, int, int] = (22, 163, 74)
@@ -32,8 +31,7 @@ class SliceColorTuning:
 SLICE_COLORS = SliceColorTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ControlFileLimits:
+class ControlFileLimits(Struct, frozen=True, kw_only=True):
     """Files of control points."""
 
     max_points: int = 5000
@@ -47,8 +45,7 @@ class ControlFileLimits:
 CONTROL_FILES = ControlFileLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SliceExportTuning:
+class SliceExportTuning(Struct, frozen=True, kw_only=True):
     """Export of slices."""
 
     max_dxf_points: int = 2_000_000
@@ -60,8 +57,7 @@ class SliceExportTuning:
 SLICE_EXPORT = SliceExportTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceImportTuning:
+class ReferenceImportTuning(Struct, frozen=True, kw_only=True):
     """Import of reference files."""
 
     tile_m: float = 5.0
@@ -77,8 +73,7 @@ class ReferenceImportTuning:
 REFERENCE_IMPORT = ReferenceImportTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ControlLimitTuning:
+class ControlLimitTuning(Struct, frozen=True, kw_only=True):
     """Limits that a map has to keep."""
 
     least_points: int = 3
@@ -90,8 +85,7 @@ class ControlLimitTuning:
 CONTROL_LIMITS = ControlLimitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SlicePointTuning:
+class SlicePointTuning(Struct, frozen=True, kw_only=True):
     """The points inside a slice."""
 
     block: int = 2_000_000
@@ -101,8 +95,7 @@ class SlicePointTuning:
 SLICE_POINTS = SlicePointTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReferenceTuning:
+class ReferenceTuning(Struct, frozen=True, kw_only=True):
     """Reference models and distances to them."""
 
     far_m: float = 0.5
@@ -121,8 +114,7 @@ class ReferenceTuning:
 REFERENCES = ReferenceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SheetTuning:
+class SheetTuning(Struct, frozen=True, kw_only=True):
     """Slice sheets to print."""
 
     scales: tuple[int, ...] = (
@@ -158,8 +150,7 @@ class SheetTuning:
 SHEETS = SheetTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SliceImageTuning:
+class SliceImageTuning(Struct, frozen=True, kw_only=True):
     """Images of slices."""
 
     max_pixels: int = 40_000_000
@@ -173,8 +164,7 @@ class SliceImageTuning:
 SLICE_IMAGES = SliceImageTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SlicePlaneTuning:
+class SlicePlaneTuning(Struct, frozen=True, kw_only=True):
     """Cuts through the map."""
 
     error_thickness_m: float = 0.02

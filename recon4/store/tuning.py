@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PackingTuning:
+class PackingTuning(Struct, frozen=True, kw_only=True):
     """Points as compressed bytes. Study: docs/studies/storage.md."""
 
     step: int = -11
@@ -24,8 +23,7 @@ class PackingTuning:
 PACKING = PackingTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SqliteTuning:
+class SqliteTuning(Struct, frozen=True, kw_only=True):
     """Databases of one file."""
 
     busy_s: float = 10.0
@@ -37,8 +35,7 @@ class SqliteTuning:
 SQLITE = SqliteTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CheckedFilesTuning:
+class CheckedFilesTuning(Struct, frozen=True, kw_only=True):
     """Files whose hashes are checked while they are read."""
 
     remembered: int = 4096

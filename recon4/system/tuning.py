@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NeedsTuning:
+class NeedsTuning(Struct, frozen=True, kw_only=True):
     """What recon4 needs of a machine."""
 
     memory_gb: float = 4.0
@@ -18,8 +17,7 @@ class NeedsTuning:
 NEEDS = NeedsTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProcessTuning:
+class ProcessTuning(Struct, frozen=True, kw_only=True):
     """Child processes."""
 
     looks_every_s: float = 1.0
@@ -32,8 +30,7 @@ class ProcessTuning:
 PROCESSES = ProcessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RuntimeFolderLimits:
+class RuntimeFolderLimits(Struct, frozen=True, kw_only=True):
     """The folder of sockets."""
 
     longest_folder: int = 50
@@ -43,8 +40,7 @@ class RuntimeFolderLimits:
 RUNTIME_FOLDERS = RuntimeFolderLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StoppingTuning:
+class StoppingTuning(Struct, frozen=True, kw_only=True):
     """How processes end."""
 
     raised_again_after_s: float = 0.02

@@ -6,11 +6,11 @@ import io
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
+from msgspec import structs
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
@@ -38,7 +38,7 @@ EXPECTED_NOISE = (
 @pytest.fixture(autouse=True)
 def room_on_the_disk(monkeypatch):
     """The free space of the machine that runs the tests does not matter."""
-    monkeypatch.setattr(server_routes, "ROOM", replace(server_routes.ROOM, little_room=0.0))
+    monkeypatch.setattr(server_routes, "ROOM", structs.replace(server_routes.ROOM, little_room=0.0))
 
 
 @pytest.fixture(autouse=True)
@@ -47,7 +47,7 @@ def no_child_in_advance(monkeypatch):
 
     It imports for a second of the processor. Servers of the other tests start it as always.
     """
-    later = replace(compute_pool.POOL_TIMES, spare_after_s=HANG_S)
+    later = structs.replace(compute_pool.POOL_TIMES, spare_after_s=HANG_S)
     monkeypatch.setattr(compute_pool, "POOL_TIMES", later)
 
 

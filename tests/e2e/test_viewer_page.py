@@ -3,11 +3,11 @@
 import os
 import re
 import signal
-from dataclasses import replace
 
 import numpy as np
 import psutil
 import pytest
+from msgspec import structs
 from playwright.sync_api import expect
 
 from recon4.model.pose_graph import Reason
@@ -196,7 +196,7 @@ def test_a_viewer_that_does_not_start_says_so_over_the_thumbnail_and_is_tried_ag
 ):
     build_project(finished.root / "hall", points=POINTS)
     with monkeypatch.context() as patch:
-        patch.setattr(pool, "VIEWER_POOL", replace(pool.VIEWER_POOL, starts_within_s=0.0))
+        patch.setattr(pool, "VIEWER_POOL", structs.replace(pool.VIEWER_POOL, starts_within_s=0.0))
         page.goto(f"{finished.url}/projects/hall/viewer/")
         cover = page.locator("#cover")
         expect(cover).to_contain_text("the viewer of hall does not start")

@@ -4,10 +4,10 @@ import base64
 import os
 import socket
 import time
-from dataclasses import replace
 from urllib.parse import urlsplit
 
 import pytest
+from msgspec import structs
 
 from recon4_app.network import accept, http_timeouts, listen, slow_readers
 from tests.deadlines import BUSY_S
@@ -20,14 +20,18 @@ from tests.service.running import server_thread, wait_for
 def hurried(tmp_path, monkeypatch):
     """A server without TLS and with shorter deadlines."""
     monkeypatch.setattr(
-        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=SOON_S)
+        http_timeouts,
+        "HTTP_TIMEOUTS",
+        structs.replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=SOON_S),
     )
     monkeypatch.setattr(
-        slow_readers, "SLOW_READERS", replace(slow_readers.SLOW_READERS, read_window_s=SOON_S)
+        slow_readers,
+        "SLOW_READERS",
+        structs.replace(slow_readers.SLOW_READERS, read_window_s=SOON_S),
     )
-    monkeypatch.setattr(accept, "ACCEPT", replace(accept.ACCEPT, sweep_s=0.1))
-    monkeypatch.setattr(listen, "PINGS", replace(listen.PINGS, ping_interval_s=SOON_S))
-    monkeypatch.setattr(listen, "PINGS", replace(listen.PINGS, ping_timeout_s=SOON_S))
+    monkeypatch.setattr(accept, "ACCEPT", structs.replace(accept.ACCEPT, sweep_s=0.1))
+    monkeypatch.setattr(listen, "PINGS", structs.replace(listen.PINGS, ping_interval_s=SOON_S))
+    monkeypatch.setattr(listen, "PINGS", structs.replace(listen.PINGS, ping_timeout_s=SOON_S))
     build_project(tmp_path / "office", points=1000)
     with server_thread(tmp_path) as running:
         yield running
@@ -56,7 +60,9 @@ def test_a_body_nobody_wants_is_not_read_forever(hurried):
 
 def test_an_idle_connection_ends_after_its_answer_and_after_a_late_body(hurried, monkeypatch):
     monkeypatch.setattr(
-        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=30.0)
+        http_timeouts,
+        "HTTP_TIMEOUTS",
+        structs.replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=30.0),
     )
     with connect(hurried.url) as connection:
         connection.sendall(head("POST", "/nothing-here", "Content-Length: 2"))
@@ -92,7 +98,9 @@ def slow_client(url):
 def test_a_client_that_reads_slowly_is_served(hurried, monkeypatch):
     """Twice the least rate, over several windows."""
     monkeypatch.setattr(
-        slow_readers, "SLOW_READERS", replace(slow_readers.SLOW_READERS, min_read_bytes=30_000)
+        slow_readers,
+        "SLOW_READERS",
+        structs.replace(slow_readers.SLOW_READERS, min_read_bytes=30_000),
     )
     big = hurried.root / "office" / "trajectory.tum"
     with big.open("r+b") as file:

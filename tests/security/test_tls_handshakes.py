@@ -3,9 +3,9 @@
 import contextlib
 import ssl
 import time
-from dataclasses import replace
 
 import pytest
+from msgspec import structs
 
 from recon4_app.network import accept, http_timeouts
 from tests.deadlines import BUSY_S
@@ -17,9 +17,13 @@ from tests.service.secure import secure_server
 @pytest.fixture
 def secure(tmp_path, monkeypatch):
     """A server with TLS and shorter deadlines."""
-    monkeypatch.setattr(accept, "ACCEPT", replace(accept.ACCEPT, handshake_timeout_s=SOON_S))
     monkeypatch.setattr(
-        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, head_timeout_s=SOON_S)
+        accept, "ACCEPT", structs.replace(accept.ACCEPT, handshake_timeout_s=SOON_S)
+    )
+    monkeypatch.setattr(
+        http_timeouts,
+        "HTTP_TIMEOUTS",
+        structs.replace(http_timeouts.HTTP_TIMEOUTS, head_timeout_s=SOON_S),
     )
     with secure_server(tmp_path) as running:
         yield running

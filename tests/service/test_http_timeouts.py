@@ -3,11 +3,11 @@
 import contextlib
 import socket
 import time
-from dataclasses import replace
 from urllib.parse import urlsplit
 
 import httpx
 import pytest
+from msgspec import structs
 
 from recon4_app.network import http_timeouts
 from tests.deadlines import BUSY_S
@@ -20,13 +20,19 @@ SOON_S = 0.6
 def server(tmp_path, monkeypatch):
     """A server that is less patient, so that the test is short."""
     monkeypatch.setattr(
-        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, head_timeout_s=SOON_S)
+        http_timeouts,
+        "HTTP_TIMEOUTS",
+        structs.replace(http_timeouts.HTTP_TIMEOUTS, head_timeout_s=SOON_S),
     )
     monkeypatch.setattr(
-        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=SOON_S)
+        http_timeouts,
+        "HTTP_TIMEOUTS",
+        structs.replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=SOON_S),
     )
     monkeypatch.setattr(
-        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, min_body_bytes=60_000)
+        http_timeouts,
+        "HTTP_TIMEOUTS",
+        structs.replace(http_timeouts.HTTP_TIMEOUTS, min_body_bytes=60_000),
     )
     with server_thread(tmp_path) as running:
         yield running

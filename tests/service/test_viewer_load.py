@@ -2,9 +2,9 @@
 
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 
 import pytest
+from msgspec import structs
 
 from recon4_app.viewer import proxy
 from recon4_app.viewer.client.legend_html import count
@@ -49,7 +49,7 @@ def test_a_browser_that_reads_nothing_is_disconnected_without_effect_on_others(
     million, monkeypatch, caplog
 ):
     monkeypatch.setattr(
-        proxy, "RELAY", replace(proxy.RELAY, stalled_s=3.0)
+        proxy, "RELAY", structs.replace(proxy.RELAY, stalled_s=3.0)
     )  # `other` reads at least as often
     with (
         server_thread(million) as server,

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.units import HOUR_S
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AuditLogLimits:
+class AuditLogLimits(Struct, frozen=True, kw_only=True):
     """The audit log."""
 
     max_text_chars: int = 300
@@ -20,8 +19,7 @@ class AuditLogLimits:
 AUDIT_LOG = AuditLogLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BackoffLimits:
+class BackoffLimits(Struct, frozen=True, kw_only=True):
     """Delays after wrong passwords."""
 
     max_keys: int = 20_000
@@ -31,8 +29,7 @@ class BackoffLimits:
 BACKOFF = BackoffLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoginLimits:
+class LoginLimits(Struct, frozen=True, kw_only=True):
     """Logins at the same time."""
 
     concurrent_logins: int = 2
@@ -45,8 +42,7 @@ class LoginLimits:
 LOGINS = LoginLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PasswordLimits:
+class PasswordLimits(Struct, frozen=True, kw_only=True):
     """What a password must withstand."""
 
     shortest: int = 12
@@ -63,8 +59,7 @@ class PasswordLimits:
 PASSWORDS = PasswordLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionTimes:
+class SessionTimes(Struct, frozen=True, kw_only=True):
     """How long sessions last."""
 
     browser_known_s: float = 365.0 * 24 * HOUR_S
@@ -80,8 +75,7 @@ class SessionTimes:
 SESSION_TIMES = SessionTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SessionWatchTimes:
+class SessionWatchTimes(Struct, frozen=True, kw_only=True):
     """Requests whose session may end."""
 
     look_again_s: float = 2.0
@@ -93,8 +87,7 @@ class SessionWatchTimes:
 SESSION_WATCH = SessionWatchTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PairingLimits:
+class PairingLimits(Struct, frozen=True, kw_only=True):
     """Pairing of phones."""
 
     invitation_s: float = 120.0
@@ -114,8 +107,7 @@ class PairingLimits:
 PAIRING = PairingLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PeopleTimes:
+class PeopleTimes(Struct, frozen=True, kw_only=True):
     """Logins of people."""
 
     recent_login_s: float = 900.0
@@ -125,8 +117,7 @@ class PeopleTimes:
 PEOPLE_TIMES = PeopleTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReserveSizes:
+class ReserveSizes(Struct, frozen=True, kw_only=True):
     """Space that is kept for the access databases."""
 
     reserve_bytes: int = 8 << 20

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AnnotationLimits:
+class AnnotationLimits(Struct, frozen=True, kw_only=True):
     """What people may pin to a map."""
 
     format: int = 1

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AssistantLimits:
+class AssistantLimits(Struct, frozen=True, kw_only=True):
     """How much a tool returns, and how long it may wait."""
 
     connect_s: float = 10.0

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChildPriority:
+class ChildPriority(Struct, frozen=True, kw_only=True):
     """Child processes that compute."""
 
     background_nice: int = 10
@@ -16,8 +15,7 @@ class ChildPriority:
 CHILD_PRIORITY = ChildPriority()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChildLimits:
+class ChildLimits(Struct, frozen=True, kw_only=True):
     """What a child process may use."""
 
     max_file_bytes: int = 64 << 30
@@ -29,8 +27,7 @@ class ChildLimits:
 CHILD_LIMITS = ChildLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class QueueFairness:
+class QueueFairness(Struct, frozen=True, kw_only=True):
     """Order of the work that waits."""
 
     max_passed: int = 8
@@ -41,8 +38,7 @@ class QueueFairness:
 FAIRNESS = QueueFairness()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PoolMessageLimits:
+class PoolMessageLimits(Struct, frozen=True, kw_only=True):
     """Answers of child processes."""
 
     max_result_bytes: int = 256 << 20
@@ -54,8 +50,7 @@ class PoolMessageLimits:
 POOL_MESSAGES = PoolMessageLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PoolTimes:
+class PoolTimes(Struct, frozen=True, kw_only=True):
     """How long work may take."""
 
     interactive_limit_s: float = 120.0

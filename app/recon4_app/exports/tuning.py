@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class KeptExportLimits:
+class KeptExportLimits(Struct, frozen=True, kw_only=True):
     """Files that exports have made."""
 
     kept_s: float = 7 * 86_400.0

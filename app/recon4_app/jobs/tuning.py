@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CompilingTimes:
+class CompilingTimes(Struct, frozen=True, kw_only=True):
     """Compilation of the kernels."""
 
     within_s: float = 1800.0
@@ -20,8 +19,7 @@ class CompilingTimes:
 COMPILING_TIMES = CompilingTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EventLimits:
+class EventLimits(Struct, frozen=True, kw_only=True):
     """Events of a job."""
 
     every_s: float = 0.25
@@ -33,8 +31,7 @@ class EventLimits:
 EVENT_LIMITS = EventLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JobFileLimits:
+class JobFileLimits(Struct, frozen=True, kw_only=True):
     """Files of a job."""
 
     kept_bytes: int = 64 << 10
@@ -48,8 +45,7 @@ class JobFileLimits:
 JOB_FILES = JobFileLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WorkerLimits:
+class WorkerLimits(Struct, frozen=True, kw_only=True):
     """What a worker may use."""
 
     memory_fraction: float = 0.7
@@ -67,8 +63,7 @@ class WorkerLimits:
 WORKER_LIMITS = WorkerLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JobStreamTimes:
+class JobStreamTimes(Struct, frozen=True, kw_only=True):
     """Events as a stream."""
 
     longest_quiet_s: float = 15.0
@@ -78,8 +73,7 @@ class JobStreamTimes:
 JOB_STREAM = JobStreamTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EstimateTuning:
+class EstimateTuning(Struct, frozen=True, kw_only=True):
     """The remaining time of a run."""
 
     known_after_s: float = 2.0
@@ -90,8 +84,7 @@ class EstimateTuning:
 ESTIMATES = EstimateTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SilenceTuning:
+class SilenceTuning(Struct, frozen=True, kw_only=True):
     """Workers that give no sign of life."""
 
     computing_factor: float = 10.0
@@ -101,8 +94,7 @@ class SilenceTuning:
 SILENCE = SilenceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SpaceTuning:
+class SpaceTuning(Struct, frozen=True, kw_only=True):
     """Space that a job needs."""
 
     times_the_input: int = 12
@@ -113,8 +105,7 @@ class SpaceTuning:
 SPACE = SpaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SupervisorTimes:
+class SupervisorTimes(Struct, frozen=True, kw_only=True):
     """The supervisor of workers."""
 
     look_every_s: float = 0.25

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CaptureLimits:
+class CaptureLimits(Struct, frozen=True, kw_only=True):
     """Live captures."""
 
     mapper_starts: int = 5
@@ -16,8 +15,7 @@ class CaptureLimits:
 CAPTURES = CaptureLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MarkLimits:
+class MarkLimits(Struct, frozen=True, kw_only=True):
     """Marks of a capture."""
 
     max_marks_bytes: int = 16 << 20
@@ -27,8 +25,7 @@ class MarkLimits:
 MARKS = MarkLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PhoneStreamTuning:
+class PhoneStreamTuning(Struct, frozen=True, kw_only=True):
     """The stream to a phone."""
 
     shown_every_s: float = 0.05
@@ -46,8 +43,7 @@ class PhoneStreamTuning:
 PHONE_STREAM = PhoneStreamTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PowerTuning:
+class PowerTuning(Struct, frozen=True, kw_only=True):
     """The battery of the machine."""
 
     read_every_s: float = 15.0
@@ -63,8 +59,7 @@ class PowerTuning:
 POWER = PowerTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveRigLimits:
+class LiveRigLimits(Struct, frozen=True, kw_only=True):
     """Rigs that are offered."""
 
     max_files: int = 100
@@ -76,8 +71,7 @@ class LiveRigLimits:
 LIVE_RIGS = LiveRigLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StreamTuning:
+class StreamTuning(Struct, frozen=True, kw_only=True):
     """What a stream sends."""
 
     points_at_once: int = 20_000

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapChunkTuning:
+class MapChunkTuning(Struct, frozen=True, kw_only=True):
     """Points as they are sent."""
 
     version: int = 1
@@ -28,8 +27,7 @@ class MapChunkTuning:
 MAP_CHUNKS = MapChunkTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FirstViewTuning:
+class FirstViewTuning(Struct, frozen=True, kw_only=True):
     """What the first view is made for."""
 
     usual_percent: tuple[float, float] = (2.0, 98.0)
@@ -59,8 +57,7 @@ class FirstViewTuning:
 FIRST_VIEW = FirstViewTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapWalkTuning:
+class MapWalkTuning(Struct, frozen=True, kw_only=True):
     """The walk on the page."""
 
     most_positions: int = 4000
@@ -76,8 +73,7 @@ class MapWalkTuning:
 MAP_WALK = MapWalkTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapPickLimits:
+class MapPickLimits(Struct, frozen=True, kw_only=True):
     """Rays of clicks."""
 
     max_planes: int = 16
@@ -97,8 +93,7 @@ class MapPickLimits:
 MAP_PICKS = MapPickLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapVolumeTuning:
+class MapVolumeTuning(Struct, frozen=True, kw_only=True):
     """Volumes over a plane."""
 
     cell_m: float = 0.02

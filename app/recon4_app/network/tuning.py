@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AcceptTuning:
+class AcceptTuning(Struct, frozen=True, kw_only=True):
     """Connections that begin."""
 
     handshake_timeout_s: float = 10.0
@@ -28,8 +27,7 @@ class AcceptTuning:
 ACCEPT = AcceptTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ConnectionBudget:
+class ConnectionBudget(Struct, frozen=True, kw_only=True):
     """How many connections there may be."""
 
     reserved_files: int = 128
@@ -43,8 +41,7 @@ class ConnectionBudget:
 CONNECTIONS = ConnectionBudget()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HttpTimeouts:
+class HttpTimeouts(Struct, frozen=True, kw_only=True):
     """Slow requests."""
 
     head_timeout_s: float = 10.0
@@ -62,8 +59,7 @@ class HttpTimeouts:
 HTTP_TIMEOUTS = HttpTimeouts()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PingTimes:
+class PingTimes(Struct, frozen=True, kw_only=True):
     """Signs of life of WebSockets."""
 
     ping_interval_s: float = 20.0
@@ -75,8 +71,7 @@ class PingTimes:
 PINGS = PingTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SlowReaderLimits:
+class SlowReaderLimits(Struct, frozen=True, kw_only=True):
     """Clients that hardly read."""
 
     read_window_s: float = 30.0
@@ -88,8 +83,7 @@ class SlowReaderLimits:
 SLOW_READERS = SlowReaderLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class StreamRefusal:
+class StreamRefusal(Struct, frozen=True, kw_only=True):
     """Streams of a client."""
 
     retry_after_s: float = 10.0

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FolderNameLimits:
+class FolderNameLimits(Struct, frozen=True, kw_only=True):
     """Names of folders."""
 
     longest: int = 60
@@ -16,8 +15,7 @@ class FolderNameLimits:
 FOLDER_NAMES = FolderNameLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImportFolderLimits:
+class ImportFolderLimits(Struct, frozen=True, kw_only=True):
     """Folders that recordings may come from."""
 
     max_entries: int = 2000
@@ -27,8 +25,7 @@ class ImportFolderLimits:
 IMPORT_FOLDERS = ImportFolderLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class InspectionLimits:
+class InspectionLimits(Struct, frozen=True, kw_only=True):
     """Looking into a recording."""
 
     max_beside: int = 50
@@ -38,8 +35,7 @@ class InspectionLimits:
 INSPECTION = InspectionLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LookTimes:
+class LookTimes(Struct, frozen=True, kw_only=True):
     """How long a look may take."""
 
     look_limit_s: float = 60.0
@@ -51,8 +47,7 @@ class LookTimes:
 LOOKS = LookTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ProjectListLimits:
+class ProjectListLimits(Struct, frozen=True, kw_only=True):
     """The list of projects."""
 
     max_problem: int = 400
@@ -69,8 +64,7 @@ class ProjectListLimits:
 PROJECT_LIST = ProjectListLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ThumbnailLimits:
+class ThumbnailLimits(Struct, frozen=True, kw_only=True):
     """Thumbnails."""
 
     max_points: int = 3_000_000
@@ -80,8 +74,7 @@ class ThumbnailLimits:
 THUMBNAILS = ThumbnailLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UnlistedLimits:
+class UnlistedLimits(Struct, frozen=True, kw_only=True):
     """Folders that are no projects."""
 
     max_shown: int = 3

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CheckTimes:
+class CheckTimes(Struct, frozen=True, kw_only=True):
     """Checks of an approval."""
 
     answer_within_s: float = 2.0
@@ -16,8 +15,7 @@ class CheckTimes:
 CHECKS = CheckTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SigningTimes:
+class SigningTimes(Struct, frozen=True, kw_only=True):
     """Signing."""
 
     signing_limit_s: float = 1800.0
@@ -27,8 +25,7 @@ class SigningTimes:
 SIGNING = SigningTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReviewCacheLimits:
+class ReviewCacheLimits(Struct, frozen=True, kw_only=True):
     """What is kept in memory."""
 
     max_measurements: int = 500

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CalibrationFileLimits:
+class CalibrationFileLimits(Struct, frozen=True, kw_only=True):
     """Calibrations of a project."""
 
     max_calibration_bytes: int = 4 << 20
@@ -16,8 +15,7 @@ class CalibrationFileLimits:
 CALIBRATION_FILES = CalibrationFileLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigContentLimits:
+class RigContentLimits(Struct, frozen=True, kw_only=True):
     """Values in the form of a rig."""
 
     largest_m: float = 10.0
@@ -35,8 +33,7 @@ class RigContentLimits:
 RIG_CONTENT = RigContentLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigTextLimits:
+class RigTextLimits(Struct, frozen=True, kw_only=True):
     """Texts in the form of a rig."""
 
     longest_text: int = 1000
@@ -46,8 +43,7 @@ class RigTextLimits:
 RIG_TEXTS = RigTextLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigStoreLimits:
+class RigStoreLimits(Struct, frozen=True, kw_only=True):
     """Rigs of the server."""
 
     max_rigs: int = 200
@@ -63,8 +59,7 @@ class RigStoreLimits:
 RIG_STORE = RigStoreLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigUseLimits:
+class RigUseLimits(Struct, frozen=True, kw_only=True):
     """Projects by their rig."""
 
     max_cached: int = 4096

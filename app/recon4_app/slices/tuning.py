@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AlignViewTuning:
+class AlignViewTuning(Struct, frozen=True, kw_only=True):
     """Alignment on the page."""
 
     shown: int = 150_000
@@ -20,8 +18,7 @@ class AlignViewTuning:
 ALIGN_VIEW = AlignViewTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExportImageTuning:
+class ExportImageTuning(Struct, frozen=True, kw_only=True):
     """Images that are exported."""
 
     finest_m: float = 0.005
@@ -33,8 +30,7 @@ class ExportImageTuning:
 EXPORT_IMAGES = ExportImageTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ExportLimits:
+class ExportLimits(Struct, frozen=True, kw_only=True):
     """Exports that are prepared."""
 
     limit_s: float = 1800.0
@@ -50,8 +46,7 @@ class ExportLimits:
 EXPORTS = ExportLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SliceRequestLimits:
+class SliceRequestLimits(Struct, frozen=True, kw_only=True):
     """Requests for slices."""
 
     max_side_px: int = 4096
@@ -61,8 +56,7 @@ class SliceRequestLimits:
 SLICE_REQUESTS = SliceRequestLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReaderLimits:
+class ReaderLimits(Struct, frozen=True, kw_only=True):
     """Files that are read into memory."""
 
     max_bytes: int = 64 << 20
@@ -72,8 +66,7 @@ class ReaderLimits:
 READERS = ReaderLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SliceStoreLimits:
+class SliceStoreLimits(Struct, frozen=True, kw_only=True):
     """References and sheets of a project."""
 
     max_references: int = 20
@@ -87,8 +80,7 @@ class SliceStoreLimits:
 SLICE_STORE = SliceStoreLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WalkStretchTuning:
+class WalkStretchTuning(Struct, frozen=True, kw_only=True):
     """The walk during a finding, as the pages draw it."""
 
     most_positions: int = 500

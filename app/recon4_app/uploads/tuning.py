@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class UploadNameLimits:
+class UploadNameLimits(Struct, frozen=True, kw_only=True):
     """Names of uploads."""
 
     max_letters: int = 100
@@ -18,8 +17,7 @@ class UploadNameLimits:
 UPLOAD_NAMES = UploadNameLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ReceiveTuning:
+class ReceiveTuning(Struct, frozen=True, kw_only=True):
     """Bytes that arrive."""
 
     gather_bytes: int = 1 << 20
@@ -31,8 +29,7 @@ class ReceiveTuning:
 RECEIVING = ReceiveTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SettleTimes:
+class SettleTimes(Struct, frozen=True, kw_only=True):
     """An upload that is given up."""
 
     settles_within_s: float = 3.0
@@ -42,8 +39,7 @@ class SettleTimes:
 SETTLING = SettleTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TusLimits:
+class TusLimits(Struct, frozen=True, kw_only=True):
     """Heads of the tus protocol."""
 
     max_metadata: int = 8192

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BrowserMessageLimits:
+class BrowserMessageLimits(Struct, frozen=True, kw_only=True):
     """Messages of browsers."""
 
     max_message_bytes: int = 1 << 16
@@ -18,8 +16,7 @@ class BrowserMessageLimits:
 BROWSER_MESSAGES = BrowserMessageLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClientTuning:
+class ClientTuning(Struct, frozen=True, kw_only=True):
     """One browser."""
 
     kept_view_timeout_s: float = 1.0
@@ -33,8 +30,7 @@ class ClientTuning:
 CLIENTS = ClientTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointBudgetTuning:
+class PointBudgetTuning(Struct, frozen=True, kw_only=True):
     """How many points a browser is given."""
 
     phone_points: int = 300_000
@@ -54,8 +50,7 @@ class PointBudgetTuning:
 POINT_BUDGET = PointBudgetTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointerColors:
+class PointerColors(Struct, frozen=True, kw_only=True):
     """Colors of what is picked."""
 
     picked_color: tuple[int, int, int] = (255, 255, 255)
@@ -65,8 +60,7 @@ class PointerColors:
 POINTER_COLORS = PointerColors()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShowTuning:
+class ShowTuning(Struct, frozen=True, kw_only=True):
     """What a browser is shown."""
 
     phone_width_px: int = 700
@@ -81,8 +75,7 @@ class ShowTuning:
 SHOW = ShowTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ViewLimits:
+class ViewLimits(Struct, frozen=True, kw_only=True):
     """A view that a browser sends."""
 
     max_measurements: int = 200
@@ -96,8 +89,7 @@ class ViewLimits:
 VIEWS = ViewLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DetailTuning:
+class DetailTuning(Struct, frozen=True, kw_only=True):
     """Points that are loaded step by step."""
 
     batch_points: int = 60_000
@@ -111,8 +103,7 @@ class DetailTuning:
 DETAIL = DetailTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LodTuning:
+class LodTuning(Struct, frozen=True, kw_only=True):
     """Level of detail."""
 
     strata: int = 64
@@ -131,8 +122,7 @@ class LodTuning:
 LOD = LodTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MultiframeTuning:
+class MultiframeTuning(Struct, frozen=True, kw_only=True):
     """Single multiframes."""
 
     max_points: int = 150_000
@@ -146,8 +136,7 @@ class MultiframeTuning:
 MULTIFRAMES = MultiframeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PaletteColors:
+class PaletteColors(Struct, frozen=True, kw_only=True):
     """Colors of sensors."""
 
     sensor_colors: tuple[tuple[int, int, int], ...] = (
@@ -163,8 +152,7 @@ class PaletteColors:
 PALETTE = PaletteColors()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CloudPartTuning:
+class CloudPartTuning(Struct, frozen=True, kw_only=True):
     """Parts of the cloud."""
 
     base_points: int = 60_000
@@ -178,8 +166,7 @@ class CloudPartTuning:
 CLOUD_PARTS = CloudPartTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PointPickTuning:
+class PointPickTuning(Struct, frozen=True, kw_only=True):
     """Picking of points."""
 
     edge_px: float = 7.0
@@ -195,8 +182,7 @@ class PointPickTuning:
 POINT_PICKS = PointPickTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CloudPreviewTuning:
+class CloudPreviewTuning(Struct, frozen=True, kw_only=True):
     """The cloud while a map is made."""
 
     every_s: float = 1.0
@@ -214,8 +200,7 @@ class CloudPreviewTuning:
 CLOUD_PREVIEW = CloudPreviewTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ViewerPoolTimes:
+class ViewerPoolTimes(Struct, frozen=True, kw_only=True):
     """Viewers of projects."""
 
     starts_within_s: float = 60.0
@@ -227,8 +212,7 @@ class ViewerPoolTimes:
 VIEWER_POOL = ViewerPoolTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ViewerProcessTuning:
+class ViewerProcessTuning(Struct, frozen=True, kw_only=True):
     """The process of a viewer."""
 
     memory_fraction: float = 0.7
@@ -240,8 +224,7 @@ class ViewerProcessTuning:
 VIEWER_PROCESS = ViewerProcessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RelayLimits:
+class RelayLimits(Struct, frozen=True, kw_only=True):
     """The relay of WebSockets."""
 
     messages_a_second: float = 120.0
@@ -257,8 +240,7 @@ class RelayLimits:
 RELAY = RelayLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SceneTuning:
+class SceneTuning(Struct, frozen=True, kw_only=True):
     """What the scene shows."""
 
     closed_m: float = 2.0
@@ -282,8 +264,7 @@ class SceneTuning:
 SCENE = SceneTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EdgeColors:
+class EdgeColors(Struct, frozen=True, kw_only=True):
     """Colors of edges."""
 
     rejected_color: tuple[int, int, int] = (244, 67, 54)
@@ -295,8 +276,7 @@ class EdgeColors:
 EDGE_COLORS = EdgeColors()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveSceneTimes:
+class LiveSceneTimes(Struct, frozen=True, kw_only=True):
     """The scene of a capture."""
 
     silent_s: float = 30.0
@@ -306,8 +286,7 @@ class LiveSceneTimes:
 LIVE_SCENE = LiveSceneTimes()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MarkTuning:
+class MarkTuning(Struct, frozen=True, kw_only=True):
     """A marked place."""
 
     mark_color: tuple[int, int, int] = (255, 64, 160)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.units import HOUR_S
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WebhookLimits:
+class WebhookLimits(Struct, frozen=True, kw_only=True):
     """Deliveries, and how long is tried."""
 
     answer_s: float = 15.0

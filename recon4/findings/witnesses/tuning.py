@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuWitnessTuning:
+class ImuWitnessTuning(Struct, frozen=True, kw_only=True):
     """The IMU against the LiDARs."""
 
     storey_m: float = 1.0
@@ -19,8 +18,7 @@ class ImuWitnessTuning:
 IMU_WITNESS = ImuWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LoopWitnessTuning:
+class LoopWitnessTuning(Struct, frozen=True, kw_only=True):
     """Loop closures against the drift."""
 
     small_m: float = 1.0
@@ -33,8 +31,7 @@ class LoopWitnessTuning:
 LOOP_WITNESS = LoopWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlaceWitnessTuning:
+class PlaceWitnessTuning(Struct, frozen=True, kw_only=True):
     """Places that look alike."""
 
     same_place_s: float = 10.0
@@ -44,8 +41,7 @@ class PlaceWitnessTuning:
 PLACE_WITNESS = PlaceWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlacingWitnessTuning:
+class PlacingWitnessTuning(Struct, frozen=True, kw_only=True):
     """The place on earth."""
 
     large_s: float = 1.0
@@ -57,8 +53,7 @@ class PlacingWitnessTuning:
 PLACING_WITNESS = PlacingWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanarWitnessTuning:
+class PlanarWitnessTuning(Struct, frozen=True, kw_only=True):
     """2-D maps."""
 
     bridged_s: float = 1.0
@@ -87,8 +82,7 @@ class PlanarWitnessTuning:
 PLANAR_WITNESS = PlanarWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RigWitnessTuning:
+class RigWitnessTuning(Struct, frozen=True, kw_only=True):
     """The rig file against the recording."""
 
     vague_m: float = 0.01
@@ -98,8 +92,7 @@ class RigWitnessTuning:
 RIG_WITNESS = RigWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SpeedWitnessTuning:
+class SpeedWitnessTuning(Struct, frozen=True, kw_only=True):
     """The speed of a person on foot."""
 
     max_speed_m_s: float = 4.0
@@ -111,8 +104,7 @@ class SpeedWitnessTuning:
 SPEED_WITNESS = SpeedWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TurnScaleTuning:
+class TurnScaleTuning(Struct, frozen=True, kw_only=True):
     """The scale of the gyroscope by registered pairs."""
 
     fewest: int = 2
@@ -131,8 +123,7 @@ class TurnScaleTuning:
 TURN_SCALE = TurnScaleTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WeakDirectionTuning:
+class WeakDirectionTuning(Struct, frozen=True, kw_only=True):
     """Directions that the LiDAR hardly observes."""
 
     weak_degeneracy: float = 0.005
@@ -153,8 +144,7 @@ class WeakDirectionTuning:
 WEAK_DIRECTION = WeakDirectionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TrackingWitnessTuning:
+class TrackingWitnessTuning(Struct, frozen=True, kw_only=True):
     """Tracking of the odometry."""
 
     few_lost: float = 0.1
@@ -172,8 +162,7 @@ class TrackingWitnessTuning:
 TRACKING_WITNESS = TrackingWitnessTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LaserMissingTuning:
+class LaserMissingTuning(Struct, frozen=True, kw_only=True):
     """Line scans without a 2-D laser."""
 
     rests_ratio: float = 0.95

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from msgspec import structs
 
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.live.mapper.plan_match import plan_hypotheses
@@ -38,7 +39,7 @@ class PlaceIndex:
             scratch: Folder of the spill file; None = the system's temporary folder.
         """
         self._settings = settings
-        self._planes = replace(PLANES, levels=PLACE_INDEX.levels)
+        self._planes = structs.replace(PLANES, levels=PLACE_INDEX.levels)
         self._spill = SpillFile(scratch)
         self._places: list[_StoredPlace] = []
         self._at = np.zeros((64, 4))

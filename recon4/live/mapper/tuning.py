@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FollowerTuning:
+class FollowerTuning(Struct, frozen=True, kw_only=True):
     """Contents of a capture."""
 
     most_scans: int = 8
@@ -18,8 +16,7 @@ class FollowerTuning:
 FOLLOWER = FollowerTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class GnssWatchTuning:
+class GnssWatchTuning(Struct, frozen=True, kw_only=True):
     """GNSS during a capture."""
 
     fastest_m_s: float = 10.0
@@ -33,8 +30,7 @@ class GnssWatchTuning:
 GNSS_WATCH = GnssWatchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuWaitTuning:
+class ImuWaitTuning(Struct, frozen=True, kw_only=True):
     """Multiframes that wait for the IMU."""
 
     max_waiting: int = 3
@@ -46,8 +42,7 @@ class ImuWaitTuning:
 IMU_WAIT = ImuWaitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LastKnownTuning:
+class LastKnownTuning(Struct, frozen=True, kw_only=True):
     """Where the body can be after tracking was lost."""
 
     fastest_m_s: float = 3.0
@@ -64,8 +59,7 @@ class LastKnownTuning:
 LAST_KNOWN = LastKnownTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LatencyTuning:
+class LatencyTuning(Struct, frozen=True, kw_only=True):
     """Multiframes that are left out."""
 
     late_ns: int = 700_000_000
@@ -81,8 +75,7 @@ class LatencyTuning:
 LATENCY = LatencyTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveAttitudeTuning:
+class LiveAttitudeTuning(Struct, frozen=True, kw_only=True):
     """Attitude during a capture."""
 
     gain_per_s: float = 0.15
@@ -102,8 +95,7 @@ class LiveAttitudeTuning:
 LIVE_ATTITUDE = LiveAttitudeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveIntensityTuning:
+class LiveIntensityTuning(Struct, frozen=True, kw_only=True):
     """Intensities during a capture."""
 
     range_bin_m: float = 2.0
@@ -117,8 +109,7 @@ class LiveIntensityTuning:
 LIVE_INTENSITY = LiveIntensityTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveMapTuning:
+class LiveMapTuning(Struct, frozen=True, kw_only=True):
     """The map of a capture."""
 
     preview_points: int = 6000
@@ -142,8 +133,7 @@ class LiveMapTuning:
 LIVE_MAP = LiveMapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MotionWatchTuning:
+class MotionWatchTuning(Struct, frozen=True, kw_only=True):
     """What the motion shows of a rig."""
 
     sd_rad_s: float = 0.008
@@ -166,8 +156,7 @@ class MotionWatchTuning:
 MOTION_WATCH = MotionWatchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NoteTuning:
+class NoteTuning(Struct, frozen=True, kw_only=True):
     """Recent warnings of the reader."""
 
     recent_s: float = 10.0
@@ -181,8 +170,7 @@ class NoteTuning:
 NOTES = NoteTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlaceIndexTuning:
+class PlaceIndexTuning(Struct, frozen=True, kw_only=True):
     """Places along the path."""
 
     keep_every_m: float = 1.0
@@ -208,8 +196,7 @@ class PlaceIndexTuning:
 PLACE_INDEX = PlaceIndexTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanMatchTuning:
+class PlanMatchTuning(Struct, frozen=True, kw_only=True):
     """Correlation of plans of walls."""
 
     cell_m: float = 0.25
@@ -230,8 +217,7 @@ class PlanMatchTuning:
 PLAN_MATCH = PlanMatchTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecoveryTuning:
+class RecoveryTuning(Struct, frozen=True, kw_only=True):
     """Relocalization."""
 
     places_tried: int = 16
@@ -259,8 +245,7 @@ class RecoveryTuning:
 RECOVERY = RecoveryTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanMapTuning:
+class ScanMapTuning(Struct, frozen=True, kw_only=True):
     """The map of a 2-D laser."""
 
     summary_every_ns: int = 1_000_000_000
@@ -281,8 +266,7 @@ class ScanMapTuning:
 SCAN_MAP = ScanMapTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanPlaceTuning:
+class ScanPlaceTuning(Struct, frozen=True, kw_only=True):
     """Places along the path of a 2-D laser."""
 
     most_returns: int = 400
@@ -297,8 +281,7 @@ class ScanPlaceTuning:
 SCAN_PLACES = ScanPlaceTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScanTrackerTuning:
+class ScanTrackerTuning(Struct, frozen=True, kw_only=True):
     """2-D odometry of a capture."""
 
     kept_ns: int = 300_000_000
@@ -311,8 +294,7 @@ class ScanTrackerTuning:
 SCAN_TRACKER = ScanTrackerTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShownTuning:
+class ShownTuning(Struct, frozen=True, kw_only=True):
     """The path that is shown."""
 
     path_step_m: float = 0.25
@@ -324,8 +306,7 @@ class ShownTuning:
 SHOWN = ShownTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SweptLineTuning:
+class SweptLineTuning(Struct, frozen=True, kw_only=True):
     """Line scans during a capture."""
 
     preview_points: int = 2500
@@ -345,8 +326,7 @@ class SweptLineTuning:
 SWEPT_LINES = SweptLineTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LiveTrackerTuning:
+class LiveTrackerTuning(Struct, frozen=True, kw_only=True):
     """Odometry of a capture."""
 
     tried_frames: int = 20

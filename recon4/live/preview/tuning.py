@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PreviewCloudTuning:
+class PreviewCloudTuning(Struct, frozen=True, kw_only=True):
     """Preview of the map."""
 
     first_voxel_m: float = 0.1
@@ -20,8 +19,7 @@ class PreviewCloudTuning:
 PREVIEW_CLOUD = PreviewCloudTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FloorDetectionTuning:
+class FloorDetectionTuning(Struct, frozen=True, kw_only=True):
     """Floors of a building."""
 
     apart_m: float = 2.0
@@ -36,8 +34,7 @@ class FloorDetectionTuning:
 FLOOR_DETECTION = FloorDetectionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanTileTuning:
+class PlanTileTuning(Struct, frozen=True, kw_only=True):
     """The plan of what was seen, in square tiles."""
 
     cell_m: float = 0.25

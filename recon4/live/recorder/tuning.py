@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CaptureFileTuning:
+class CaptureFileTuning(Struct, frozen=True, kw_only=True):
     """The capture file."""
 
     write_every_s: float = 0.05
@@ -20,8 +19,7 @@ class CaptureFileTuning:
 CAPTURE_FILE = CaptureFileTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DeviceOpenerLimits:
+class DeviceOpenerLimits(Struct, frozen=True, kw_only=True):
     """The process that opens a device."""
 
     max_words: int = 1000
@@ -31,8 +29,7 @@ class DeviceOpenerLimits:
 DEVICE_OPENER = DeviceOpenerLimits()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class DiskTuning:
+class DiskTuning(Struct, frozen=True, kw_only=True):
     """When the disk is full."""
 
     trend_s: float = 60.0
@@ -46,8 +43,7 @@ class DiskTuning:
 DISK = DiskTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PortTuning:
+class PortTuning(Struct, frozen=True, kw_only=True):
     """UDP ports."""
 
     buffer_bytes: int = 16 << 20
@@ -59,8 +55,7 @@ class PortTuning:
 PORTS = PortTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RecorderTuning:
+class RecorderTuning(Struct, frozen=True, kw_only=True):
     """The recorder."""
 
     status_every_s: float = 0.5
@@ -76,8 +71,7 @@ class RecorderTuning:
 RECORDER = RecorderTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SerialLineTuning:
+class SerialLineTuning(Struct, frozen=True, kw_only=True):
     """A receiver on a serial line."""
 
     retry_s: float = 1.0

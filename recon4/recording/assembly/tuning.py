@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class AssemblyTuning:
+class AssemblyTuning(Struct, frozen=True, kw_only=True):
     """Where frames are cut (`assembler.py`)."""
 
     slack_ns: int = 20_000_000
@@ -24,8 +23,7 @@ class AssemblyTuning:
 ASSEMBLY = AssemblyTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RotationTuning:
+class RotationTuning(Struct, frozen=True, kw_only=True):
     """How fast a LiDAR turns, by the azimuths of its points (`rotation_rate.py`)."""
 
     slowest_hz: float = 2.0

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MandeyeTuning:
+class MandeyeTuning(Struct, frozen=True, kw_only=True):
     """What is expected of the files, and how a walk is cut into parts."""
 
     head_points: int = 50_000

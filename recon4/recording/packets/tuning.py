@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.units import SECOND_NS
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PacketHeadTuning:
+class PacketHeadTuning(Struct, frozen=True, kw_only=True):
     """How much at the beginning of a sensor's packets tells what they are."""
 
     packets: int = 200
@@ -27,8 +26,7 @@ class PacketHeadTuning:
 HEAD = PacketHeadTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CaptureTuning:
+class CaptureTuning(Struct, frozen=True, kw_only=True):
     """Sensors of one capture file."""
 
     wait_s: float = 1.0
@@ -42,8 +40,7 @@ class CaptureTuning:
 CAPTURE_STREAMS = CaptureTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClockTuning:
+class ClockTuning(Struct, frozen=True, kw_only=True):
     """The clock of a sensor against that of the recorder (`sensor_clock.py`)."""
 
     same_clock_ns: int = SECOND_NS // 2
@@ -69,8 +66,7 @@ class ClockTuning:
 CLOCKS = ClockTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PacketOrderTuning:
+class PacketOrderTuning(Struct, frozen=True, kw_only=True):
     """Packets that come late (`packet_order.py`)."""
 
     set_back_ns: int = 1_000_000_000
@@ -82,8 +78,7 @@ class PacketOrderTuning:
 PACKET_ORDER = PacketOrderTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PacketHoleTuning:
+class PacketHoleTuning(Struct, frozen=True, kw_only=True):
     """Packets that never came, and fields of view (`packet_holes.py`)."""
 
     probed: int = 100
@@ -104,8 +99,7 @@ class PacketHoleTuning:
 HOLES = PacketHoleTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SlotTuning:
+class SlotTuning(Struct, frozen=True, kw_only=True):
     """Datagrams that are decoded at once (`slots.py`)."""
 
     slot_ns: int = 100_000_000
@@ -119,8 +113,7 @@ class SlotTuning:
 SLOTS = SlotTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MixedSenderTuning:
+class MixedSenderTuning(Struct, frozen=True, kw_only=True):
     """When packets are taken for those of two sensors (`one_sender.py`).
 
     Of 16 real recordings of one sensor none goes back, at least 98.9 % of the steps are even, and

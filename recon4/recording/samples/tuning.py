@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.units import SECOND_NS
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ImuUnitTuning:
+class ImuUnitTuning(Struct, frozen=True, kw_only=True):
     """In which unit an IMU writes (`units.py`)."""
 
     fastest_rad_s: float = 12.0
@@ -34,8 +33,7 @@ class ImuUnitTuning:
 IMU_UNITS = ImuUnitTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RepeatedTuning:
+class RepeatedTuning(Struct, frozen=True, kw_only=True):
     """Samples that are copies of those before (`clean.py`)."""
 
     least_repeated: int = 10
@@ -49,8 +47,7 @@ class RepeatedTuning:
 REPEATED = RepeatedTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MeasuredSampleTuning:
+class MeasuredSampleTuning(Struct, frozen=True, kw_only=True):
     """Samples that were not measured (`measured.py`)."""
 
     least_samples: int = 50
@@ -69,8 +66,7 @@ class MeasuredSampleTuning:
 MEASURED = MeasuredSampleTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class NmeaTuning:
+class NmeaTuning(Struct, frozen=True, kw_only=True):
     """Sentences of GNSS receivers (`datagrams.py`)."""
 
     utc_within_ns: int = 5 * SECOND_NS // 2
@@ -82,8 +78,7 @@ class NmeaTuning:
 NMEA = NmeaTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HeightTuning:
+class HeightTuning(Struct, frozen=True, kw_only=True):
     """Heights above the ellipsoid or the geoid (`heights.py`)."""
 
     spread_m: float = 2.0

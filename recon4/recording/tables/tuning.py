@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class TableTuning:
+class TableTuning(Struct, frozen=True, kw_only=True):
     """How a table is read and recognized."""
 
     head_bytes: int = 64 * 1024
@@ -24,8 +23,7 @@ class TableTuning:
 TABLES = TableTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ShownTableTuning:
+class ShownTableTuning(Struct, frozen=True, kw_only=True):
     """What of a table is shown to who is asked what its columns mean."""
 
     rows: int = 5
@@ -36,8 +34,7 @@ class ShownTableTuning:
 SHOWN_TABLE = ShownTableTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CoordinateTuning:
+class CoordinateTuning(Struct, frozen=True, kw_only=True):
     """What the size of coordinates says of them (`coordinates.py`)."""
 
     near_m: float = 20_000.0

@@ -4,9 +4,9 @@ import asyncio
 import contextlib
 import re
 import threading
-from dataclasses import replace
 
 import pytest
+from msgspec import structs
 
 from recon4_app.access.login.login_service import LoginOrigin
 from recon4_app.access.login.sessions import LIVES, form_token
@@ -53,12 +53,12 @@ def test_a_socket_outlives_no_session_even_if_a_cancellation_is_lost(access, clo
     monkeypatch.setattr(
         session_middleware,
         "SESSION_WATCH",
-        replace(session_middleware.SESSION_WATCH, look_again_s=0.01),
+        structs.replace(session_middleware.SESSION_WATCH, look_again_s=0.01),
     )
     monkeypatch.setattr(
         session_middleware,
         "SESSION_WATCH",
-        replace(session_middleware.SESSION_WATCH, cancel_again_s=0.01),
+        structs.replace(session_middleware.SESSION_WATCH, cancel_again_s=0.01),
     )
     access.accounts.add("Anna", Role.VIEWER, PASSWORD)
     session = access.sessions.find(access.sessions.begin("Anna", address="?", agent="")).session

@@ -3,11 +3,11 @@
 import asyncio
 import json
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from fastapi import WebSocket
+from msgspec import structs
 
 from recon4.live.protocol import Points
 from recon4.live.session import CaptureSession
@@ -67,7 +67,7 @@ def walk(stream, k):
 
 
 def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(current_capture, monkeypatch):
-    monkeypatch.setattr(phones, "PHONE_STREAM", replace(phones.PHONE_STREAM, stalled_s=0.5))
+    monkeypatch.setattr(phones, "PHONE_STREAM", structs.replace(phones.PHONE_STREAM, stalled_s=0.5))
 
     async def ten_phones():
         clients = [Client(current_capture, stalls=k == 0) for k in range(10)]

@@ -4,11 +4,11 @@ import json
 import logging
 import subprocess
 import sys
-from dataclasses import replace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import structs
 
 from recon4_app import logs as module
 from recon4_app.jobs.folder import JobFolder
@@ -101,8 +101,8 @@ def test_both_outputs_agree_on_what_repeats(logged, capsys):
 
 
 def test_the_file_rotates(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "LOGS", replace(module.LOGS, max_log_bytes=2000))
-    monkeypatch.setattr(module, "LOGS", replace(module.LOGS, records_a_minute=10_000))
+    monkeypatch.setattr(module, "LOGS", structs.replace(module.LOGS, max_log_bytes=2000))
+    monkeypatch.setattr(module, "LOGS", structs.replace(module.LOGS, records_a_minute=10_000))
     logs = Logs(tmp_path / "server.log")
     with logs.installed():
         for n in range(2000):

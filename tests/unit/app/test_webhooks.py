@@ -9,10 +9,10 @@ import json
 import socket
 import threading
 from contextlib import contextmanager
-from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, HTTPServer
 
 import pytest
+from msgspec import structs
 
 from recon4.errors import ConfigError
 from recon4.review.newest_approval import record_newest
@@ -215,7 +215,9 @@ def test_a_name_that_leads_into_a_network_that_is_not_allowed_is_not_called(star
 
 
 def test_a_receiver_that_says_nothing_is_left_in_time(started, monkeypatch):
-    monkeypatch.setattr("recon4_app.webhooks.post.WEBHOOKS", replace(WEBHOOKS, answer_s=0.2))
+    monkeypatch.setattr(
+        "recon4_app.webhooks.post.WEBHOOKS", structs.replace(WEBHOOKS, answer_s=0.2)
+    )
     with started() as parts, mute_server() as url:
         webhook = added(parts, url)
         parts.end_job()

@@ -1,11 +1,11 @@
 """COPC: a map as an octree of points, read by another program."""
 
 import json
-from dataclasses import replace
 
 import laspy
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.errors import ConfigError, StoreError
 from recon4.export import copc, octree
@@ -29,7 +29,7 @@ def folder(tmp_path_factory):
 def path(request, folder, tmp_path, monkeypatch):
     """A map as COPC, made in memory, or in many files that are split once more."""
     if request.param == "split files":
-        small = replace(OCTREE, bucket_bits=15, points_in_memory=700, points_of_leaf=150)
+        small = structs.replace(OCTREE, bucket_bits=15, points_in_memory=700, points_of_leaf=150)
         monkeypatch.setattr(octree, "OCTREE", small)
     assert export_copc(folder, tmp_path / "map.copc.laz") == len(TileSet.open(folder))
     assert [one.name for one in tmp_path.iterdir()] == ["map.copc.laz"]
@@ -93,7 +93,7 @@ def test_points_lie_in_their_nodes_and_each_node_has_one_above_it(path):
 
 
 def test_split_files_make_a_deep_tree_of_small_nodes(folder, tmp_path, monkeypatch):
-    small = replace(OCTREE, bucket_bits=15, points_in_memory=700, points_of_leaf=150)
+    small = structs.replace(OCTREE, bucket_bits=15, points_in_memory=700, points_of_leaf=150)
     monkeypatch.setattr(octree, "OCTREE", small)
     export_copc(folder, tmp_path / "map.copc.laz")
 

@@ -1,9 +1,8 @@
 """A walk through the live map: followed, lost, and found again."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.live.mapper import tracker
 from recon4.live.mapper.live_map import LiveMap
@@ -59,7 +58,7 @@ def test_who_is_lost_is_found_again_at_an_earlier_place(walk):
 def test_noise_before_the_lidars_accuses_no_imu(walk, monkeypatch):
     """The IMU is checked by the last twelve multiframes, half of which are noise."""
     monkeypatch.setattr(
-        tracker, "LIVE_TRACKER", replace(LIVE_TRACKER, tried_frames=12, bad_frames=7)
+        tracker, "LIVE_TRACKER", structs.replace(LIVE_TRACKER, tried_frames=12, bad_frames=7)
     )
     follower = Follower(walk)
     for row in range(8):

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.errors import OutOfRange, StoreError
 from recon4.export.laz import export_laz
@@ -110,7 +111,7 @@ def voxels_of(p_map):
 
 
 def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path, monkeypatch):
-    monkeypatch.setattr(voxel_runs, "VOXEL_RUNS", replace(VOXEL_RUNS, together=1, least=7))
+    monkeypatch.setattr(voxel_runs, "VOXEL_RUNS", structs.replace(VOXEL_RUNS, together=1, least=7))
     walk = room_walk(frames=15)
     settings = MapSettings(voxel_m=0.05)
 
@@ -372,7 +373,7 @@ def test_fitted_maps_do_not_depend_on_the_number_of_bursts_and_threads(tmp_path,
     settings = MapSettings(voxel_m=0.05, surface="fitted")
 
     for threads, burst in ((2, 10**9), (2, 5000), (1, 10**9), (4, 10**9)):
-        monkeypatch.setattr(map_build, "MAP_BUILD", replace(MAP_BUILD, workers=threads))
+        monkeypatch.setattr(map_build, "MAP_BUILD", structs.replace(MAP_BUILD, workers=threads))
         build(walk, tmp_path / f"{threads} {burst}", settings, burst=burst)
 
     first, *others = (digest(folder) for folder in tmp_path.iterdir())

@@ -1,9 +1,8 @@
 """Points moved onto the surface fitted to the returns around them."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.kernels.moments import MOMENTS, add_point
 from recon4.kernels.surface_records import PLANE, Neighbors, Sides
@@ -260,7 +259,7 @@ def test_a_wall_fitted_in_parts_is_that_fitted_at_once(rng, monkeypatch):
     across = rectangle(rng, [2.033, 1.5, 1.5], [0, 1.6, 0], [0, 0, 1.2])
     records = in_voxel_order(returns(rng, across, np.array([1.0, 2.3, 2.2])), GRID)
     whole = fit_surfaces(records, GRID, noise_m=NOISE_M)
-    slabs = replace(surfaces_module.TILE_SURFACES, slab=len(records) // 6)
+    slabs = structs.replace(surfaces_module.TILE_SURFACES, slab=len(records) // 6)
     monkeypatch.setattr(surfaces_module, "TILE_SURFACES", slabs)
 
     parts = fit_surfaces(records, GRID, noise_m=NOISE_M)
@@ -281,7 +280,7 @@ def test_what_moves_changes_no_surface_and_has_none(rng, monkeypatch, parts):
     across = rectangle(rng, [2.033, 1.5, 1.5], [0, 1.6, 0], [0, 0, 1.2], DENSITY / 4)
     records = in_voxel_order(returns(rng, across, np.array([1.0, 2.3, 2.2])), GRID)
     stands = rng.random(len(records)) > 0.2
-    slabs = replace(surfaces_module.TILE_SURFACES, slab=len(records) // parts)
+    slabs = structs.replace(surfaces_module.TILE_SURFACES, slab=len(records) // parts)
     monkeypatch.setattr(surfaces_module, "TILE_SURFACES", slabs)
 
     among = fit_surfaces(records, GRID, noise_m=NOISE_M, stands=stands)

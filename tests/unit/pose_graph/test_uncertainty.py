@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.errors import StoreError
 from recon4.evaluation.ate import PosePairs, absolute_error
@@ -148,7 +149,7 @@ def test_joined_nodes_state_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     graph = chain(400)
     joined = stated(graph)
     monkeypatch.setattr(
-        uncertainty, "UNCERTAINTY", replace(uncertainty.UNCERTAINTY, max_knots=1000)
+        uncertainty, "UNCERTAINTY", structs.replace(uncertainty.UNCERTAINTY, max_knots=1000)
     )
 
     each = stated(graph)

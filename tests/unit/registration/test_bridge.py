@@ -1,9 +1,8 @@
 """A scan across a gap: laid onto the last scans, and only where one pose alone fits."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.motion import Bridges
@@ -97,7 +96,7 @@ def test_a_direction_that_nothing_observes_is_not_sure():
     """Also if the only pose that is tried is the true one."""
     rng = np.random.default_rng(1)
     last, now = seen(corridor(rng), SE3.identity(), rng), seen(corridor(rng), MOVED, rng)
-    one_start = replace(SCANS, starts=0)
+    one_start = structs.replace(SCANS, starts=0)
 
     assert sure_pose(last.scan, now, last, initial=[MOVED], settings=one_start) is None
 

@@ -1,9 +1,8 @@
 """The prior on a carrier's motion: without weight where scans observe it, decisive where not."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.registration.carrier import CarrierPrior
@@ -91,7 +90,7 @@ def test_a_far_overlay_of_ground_plans_is_taken_once_it_is_plausible(
 ) -> None:
     """A room is nearly its own mirror image: both overlays fit, one of them 2.7 m away."""
     T_true = SE3.from_rpy(0.0, 0.0, 2.2, t=[2.5, 1.0, 0.0])
-    doubtful = replace(SCANS, confident_inlier_ratio=0.99)
+    doubtful = structs.replace(SCANS, confident_inlier_ratio=0.99)
     prior = CarrierPrior.after(seconds, np.zeros(3))
 
     found = search_scans(

@@ -1,9 +1,8 @@
 """Registration of two single scans: a room with known walls, turned and moved."""
 
-import dataclasses
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.geometry.se3 import SE3
 from recon4.kernels.scans import accumulate_symmetric, neighbor_normals
@@ -109,7 +108,7 @@ def test_a_large_rotation_is_found_by_the_ground_plans():
     a, b = scan(), scan(T_true, seed=2)
 
     # A room is nearly its own mirror image: without this the wrong half turn would pass as good.
-    doubtful = dataclasses.replace(SCANS, confident_inlier_ratio=0.99)
+    doubtful = structs.replace(SCANS, confident_inlier_ratio=0.99)
 
     starts = overlay_plans(a, b, count=3, height_m=0.0)
     found = search_scans(a, b, initial=SE3.identity(), settings=doubtful)
@@ -148,7 +147,7 @@ def test_points_that_are_not_finite_are_skipped():
 
 
 def test_a_match_below_the_smallest_inlier_ratio_has_not_converged():
-    strict = dataclasses.replace(SCANS, min_inlier_ratio=1.01)
+    strict = structs.replace(SCANS, min_inlier_ratio=1.01)
 
     found = register_scans(scan(), scan(seed=2), initial=SE3.identity(), settings=strict)
 

@@ -1,10 +1,10 @@
 """Occupancy grids: beams, growth, and the files that nav2 reads."""
 
 import struct
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 from PIL import Image
 from ruamel.yaml import YAML
 
@@ -80,7 +80,9 @@ def test_a_position_far_away_is_a_clear_error_where_a_grid_grows():
 
 
 def test_a_map_with_a_position_far_away_is_bounded(monkeypatch):
-    monkeypatch.setattr(occupancy, "OCCUPANCY", replace(occupancy.OCCUPANCY, max_cells=100_000))
+    monkeypatch.setattr(
+        occupancy, "OCCUPANCY", structs.replace(occupancy.OCCUPANCY, max_cells=100_000)
+    )
     scans = scanned(furnished_room(), np.zeros((3, 3)), odometry=False).scans
     poses = np.array([[0.0, 0.0, 0.0], [1e6, -1e6, 0.5], [0.1, 0.0, 0.0]])
 

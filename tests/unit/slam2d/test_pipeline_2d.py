@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.archive.verify import verify
 from recon4.cli.main import main
@@ -159,7 +160,9 @@ def test_a_silent_laser_without_odometry_is_part_of_the_verdict(tmp_path):
 
 
 def test_a_map_whose_cells_had_to_be_enlarged_says_so(tmp_path, room, monkeypatch):
-    monkeypatch.setattr(occupancy, "OCCUPANCY", replace(occupancy.OCCUPANCY, max_cells=20_000))
+    monkeypatch.setattr(
+        occupancy, "OCCUPANCY", structs.replace(occupancy.OCCUPANCY, max_cells=20_000)
+    )
 
     summary = run(tmp_path, room.scans[:40])
 

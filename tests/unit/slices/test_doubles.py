@@ -1,7 +1,6 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.slices import doubles
 from recon4.slices.doubles import DoubleRule, find_double_walls, limit_m
@@ -120,6 +119,8 @@ def test_a_larger_table_gives_the_same_answer(tmp_path, monkeypatch):
     columns = visits(np.random.default_rng(5), [0.0, 0.05])
     tiles = write_map(tmp_path, **columns)
     expected = find_double_walls(tiles)
-    monkeypatch.setattr(doubles, "DOUBLE_WALLS", replace(doubles.DOUBLE_WALLS, first_table=64))
+    monkeypatch.setattr(
+        doubles, "DOUBLE_WALLS", structs.replace(doubles.DOUBLE_WALLS, first_table=64)
+    )
 
     assert find_double_walls(tiles) == expected

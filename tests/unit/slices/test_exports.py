@@ -4,7 +4,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-from dataclasses import replace
 
 import ezdxf
 import laspy
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 import rasterio
 import rasterio.transform
+from msgspec import structs
 
 from recon4.api.maps import OpenedMap
 from recon4.api.slices import SliceLook, write_planes
@@ -303,9 +303,9 @@ def test_a_dxf_of_too_many_points_is_refused_with_their_number_before_it_is_writ
     plane, limits = CUT.repeated(3, spacing_m=0.3), export.SLICE_EXPORT
     write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL)
     count = len(list(ezdxf.readfile(tmp_path / "s.dxf").modelspace()))
-    monkeypatch.setattr(export, "SLICE_EXPORT", replace(limits, max_dxf_points=count))
+    monkeypatch.setattr(export, "SLICE_EXPORT", structs.replace(limits, max_dxf_points=count))
     assert write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL) > count
-    monkeypatch.setattr(export, "SLICE_EXPORT", replace(limits, max_dxf_points=count // 2))
+    monkeypatch.setattr(export, "SLICE_EXPORT", structs.replace(limits, max_dxf_points=count // 2))
     monkeypatch.setattr(export, "atomic_file", None)  # nothing may be begun
 
     with pytest.raises(ConfigError, match=f"at most {count // 2} points .* got {count}: .* LAZ"):

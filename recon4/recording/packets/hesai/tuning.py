@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HesaiAngleTuning:
+class HesaiAngleTuning(Struct, frozen=True, kw_only=True):
     """Tables of the angles of one unit."""
 
     same_model_rad: float = float(np.deg2rad(2.5))
@@ -23,8 +21,7 @@ class HesaiAngleTuning:
 HESAI_ANGLES = HesaiAngleTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HesaiPacketTuning:
+class HesaiPacketTuning(Struct, frozen=True, kw_only=True):
     """What no packet exceeds."""
 
     longest: int = 1500

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LivoxPacketTuning:
+class LivoxPacketTuning(Struct, frozen=True, kw_only=True):
     """What no packet exceeds, and what files leave out."""
 
     longest_interval: int = 100_000
@@ -20,8 +19,7 @@ class LivoxPacketTuning:
 LIVOX_PACKETS = LivoxPacketTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LivoxModelTuning:
+class LivoxModelTuning(Struct, frozen=True, kw_only=True):
     """Models that shoot alike differ by half of their view (`recognition.py`)."""
 
     alike: float = 0.15
@@ -41,8 +39,7 @@ class LivoxModelTuning:
 LIVOX_VIEWS = LivoxModelTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LvxTuning:
+class LvxTuning(Struct, frozen=True, kw_only=True):
     """Clocks of the devices in a file of Livox Viewer."""
 
     same_clock_ns: int = 1_000_000_000

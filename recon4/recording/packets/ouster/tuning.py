@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OusterAddressTuning:
+class OusterAddressTuning(Struct, frozen=True, kw_only=True):
     """Several sensors behind one address."""
 
     smallest_bytes: int = 1000
@@ -21,8 +20,7 @@ class OusterAddressTuning:
 SHARED_ADDRESS = OusterAddressTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OusterColumnTuning:
+class OusterColumnTuning(Struct, frozen=True, kw_only=True):
     """What columns of one packet have in common."""
 
     longest_ns: int = 1_000_000_000
@@ -36,8 +34,7 @@ class OusterColumnTuning:
 OUSTER_COLUMNS = OusterColumnTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class OusterImuTuning:
+class OusterImuTuning(Struct, frozen=True, kw_only=True):
     """What an inertial sample may be."""
 
     max_accel_m_s2: float = 40 * STANDARD_GRAVITY_M_S2

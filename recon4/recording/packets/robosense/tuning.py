@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RoboSenseAngleTuning:
+class RoboSenseAngleTuning(Struct, frozen=True, kw_only=True):
     """Tables of the angles of one unit."""
 
     tolerance_deg: float = 3.0

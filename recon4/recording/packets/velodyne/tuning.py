@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from recon4.units import SECOND_NS
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PositionTuning:
+class PositionTuning(Struct, frozen=True, kw_only=True):
     """Position packets."""
 
     longest_age_ns: int = 5 * SECOND_NS // 2
@@ -21,8 +20,7 @@ class PositionTuning:
 POSITIONS = PositionTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WidePacketTuning:
+class WidePacketTuning(Struct, frozen=True, kw_only=True):
     """Packets of VLS-128 and HDL-64E."""
 
     most_cdeg: int = 1000

@@ -4,10 +4,10 @@ import json
 import signal
 import socket
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.live.findings import findings
 from recon4.live.newest_messages import Newest
@@ -121,7 +121,7 @@ def test_nonsense_on_the_socket_does_no_harm(session):
 
 
 def test_too_much_waiting_for_the_disk_is_dropped_and_counted(tmp_path, monkeypatch):
-    few = replace(capture_file.CAPTURE_FILE, max_waiting_bytes=10_000)
+    few = structs.replace(capture_file.CAPTURE_FILE, max_waiting_bytes=10_000)
     monkeypatch.setattr(capture_file, "CAPTURE_FILE", few)
     file = CaptureFile(tmp_path / "walk.pcap", on_written=lambda size: None)
 
