@@ -91,6 +91,7 @@ from recon4_app.slices import routes as slice_routes
 from recon4_app.slices.store import Slices
 from recon4_app.storage import routes as storage_routes
 from recon4_app.storage.project_space import ProjectSpaces
+from recon4_app.storage.storage_work import free_expired
 from recon4_app.uploads import routes as upload_routes
 from recon4_app.uploads.store import UploadStore
 from recon4_app.viewer import page, proxy
@@ -311,6 +312,7 @@ async def _maintain(parts: ServerParts) -> None:
             lambda: copies.make(renew=True),
             lambda: parts.uploads.sweep(time.time()),
             lambda: parts.trash.sweep(time.time()),
+            lambda: free_expired(parts, time.time()),
             lambda: parts.slices.exports.sweep(time.time()),
             lambda: parts.exports.sweep(time.time()),
             parts.webhooks.store.sweep,

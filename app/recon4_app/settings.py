@@ -80,6 +80,9 @@ class ServerSettings:
     """An upload without new data is removed after this long [s]."""
     trash_retention_s: float = 7 * 86400.0
     """A deleted project can be restored for this long [s]."""
+    keep_earlier_s: float = 0.0
+    """What only earlier runs of a project needed is freed this long after its last run [s]; 0 =
+    never. What an approval needs stays."""
 
     state_folder: Path | None = None
     """Folder of the server's own files; None = ``.recon4`` in ``root``. With another one the server

@@ -11,11 +11,12 @@ import shutil
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.review.approved import VERSIONS
-from recon4.store.atomic import temporary_beside
+from recon4.store.atomic import is_temporary, temporary_beside
 from recon4.store.checked import Altered
 from recon4.store.hashing import files_below
 from recon4.store.json_files import read_object
@@ -64,17 +65,18 @@ def stored_parts(root: Path) -> tuple[StoredPart, ...]:
     current = {folder.name for folder in read_artifacts(root).values()}
     seen: set[tuple[int, int]] = set()
     parts = [_file(path, seen) for path in sorted(root.iterdir()) if path.name != ARTIFACTS]
-    for path in sorted((root / ARTIFACTS).iterdir()):
-        key, damaged = path.name, path.name.startswith("damaged-")
-        stage = stages.get(key, "damaged artifact" if damaged else "not of recon4")
-        name, version = f"{ARTIFACTS}/{key}", approved.get(key)
-        size = _size(path, seen)
-        if version is not None:
-            parts.append(StoredPart(name, stage, size, None, f"approved, version {version}"))
-        elif key not in stages and not damaged:
-            parts.append(StoredPart(name, stage, size, None, "no stage accounts for it"))
+    folders = (root / ARTIFACTS).iterdir() if (root / ARTIFACTS).is_dir() else ()
+    for path in sorted(folders):
+        key, size = path.name, _size(path, seen)
+        part = partial(StoredPart, f"{ARTIFACTS}/{key}", stages.get(key, _unknown(key)), size)
+        if key in approved:
+            parts.append(part(None, f"approved, version {approved[key]}"))
+        elif is_temporary(key):
+            parts.append(part(None, "a run writes it"))
+        elif key not in stages and not _is_damaged(key):
+            parts.append(part(None, "no stage accounts for it"))
         else:
-            parts.append(StoredPart(name, stage, size, _reason(stage, key in current)))
+            parts.append(part(_reason(stages.get(key, ""), key in current)))
     return tuple(sorted(parts, key=lambda part: (-part.bytes, part.name)))
 
 
@@ -134,6 +136,17 @@ def _approved(root: Path) -> dict[str, int]:
     return found
 
 
+def _is_damaged(key: str) -> bool:
+    return key.startswith("damaged-")
+
+
+def _unknown(key: str) -> str:
+    """What a folder is that no stage made."""
+    if is_temporary(key):
+        return "unfinished artifact"
+    return "damaged artifact" if _is_damaged(key) else "not of recon4"
+
+
 def _file(path: Path, seen: set[tuple[int, int]]) -> StoredPart:
     return StoredPart(path.name, path.name, _size(path, seen), None)
 
@@ -142,7 +155,10 @@ def _size(path: Path, seen: set[tuple[int, int]]) -> int:
     """Bytes of a file, or of all files below a folder, that were not seen yet."""
     size = 0
     for one in _files(path):
-        status = os.stat(one, follow_symlinks=False)
+        try:
+            status = os.stat(one, follow_symlinks=False)
+        except FileNotFoundError:
+            continue  # a running job removes files
         if (status.st_dev, status.st_ino) not in seen:
             seen.add((status.st_dev, status.st_ino))
             size += status.st_size

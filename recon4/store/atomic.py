@@ -125,6 +125,11 @@ def link_file(source: Path, target: Path) -> None:
             shutil.copyfile(source, temporary)
 
 
+def is_temporary(name: str) -> bool:
+    """Whether a file or folder of this name is being written, or was when its process died."""
+    return _TEMPORARY.fullmatch(name) is not None
+
+
 def sweep(folder: Path) -> list[str]:
     """Remove temporary files and folders of killed recon4 processes; nothing else.
 
@@ -133,7 +138,7 @@ def sweep(folder: Path) -> list[str]:
     Returns:
         The names removed.
     """
-    orphans = sorted(entry for entry in folder.iterdir() if _TEMPORARY.fullmatch(entry.name))
+    orphans = sorted(entry for entry in folder.iterdir() if is_temporary(entry.name))
     for orphan in orphans:
         if orphan.is_dir() and not orphan.is_symlink():
             shutil.rmtree(orphan)

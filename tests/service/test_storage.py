@@ -1,11 +1,17 @@
 """What takes space on the server, and recordings deleted in two steps."""
 
+import os
+import time
+
 import httpx
 import pytest
 
-from tests.project_builder import build_project
+from recon4.archive.space import stored_parts
+from recon4.store.project import Project
+from recon4_app.storage.storage_work import free_expired
+from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.served import served
-from tests.service.running import SLOW, recording_with_gate
+from tests.service.running import SLOW, recording_with_gate, server_thread, wait_for
 from tests.service.tus_client import CHUNK, TUS, create
 
 server = served(fresh=True, worker_module=SLOW)
@@ -75,6 +81,8 @@ def test_a_recording_that_a_job_reads_is_kept(server):
     assert refused.status_code == 409 and "cancel it first" in refused.json()["detail"]
     assert recording.is_dir()
     assert items(server)["recording", "walk"]["used_by"] == ["office"]
+    kept = server.post("/api/projects/office/free", json={"what": ["frames"]})
+    assert kept.status_code == 409 and "cancel it first" in kept.json()["detail"]
     server.post(f"/api/jobs/{job}/cancel")
     server.wait(job, lambda view: view["job"]["finished"])
     assert httpx.delete(f"{server.url}/api/recordings/{folder}").status_code == 200
@@ -87,3 +95,41 @@ def test_only_what_was_uploaded_can_be_deleted(server, name):
 
     assert httpx.delete(f"{server.url}/api/recordings/{name}").status_code in (404, 405)
     assert (server.root / "recordings" / "mine").is_dir() and (server.root / "office").is_dir()
+
+
+def freeable(server, project="office"):
+    parts = server.get(f"/api/projects/{project}/storage").json()["parts"]
+    return {one["what"]: one["freeable"] for one in parts if one["freeable"]}
+
+
+def test_a_project_says_what_takes_its_space_and_frees_what_is_chosen(server):
+    build_project(server.root / "office", points=500)
+    add_multiframes(server.root / "office")
+    assert freeable(server) == {"frames": "frames", "map": "map"}
+
+    after = server.post("/api/projects/office/free", json={"what": ["frames"]}).json()
+
+    assert freeable(server) == {"map": "map"}
+    assert after["bytes"] == items(server)["project", "office"]["bytes"]
+    assert server.get("/api/projects/office").json()["bytes"] > 0
+    for body in ({"what": []}, {"what": ["all"]}):
+        assert server.post("/api/projects/office/free", json=body).status_code == 422
+    assert server.post("/api/projects/none/free", json={"what": ["map"]}).status_code == 404
+
+
+def test_earlier_runs_go_when_their_time_is_over_except_what_is_approved(tmp_path):
+    for name, age_s in (("old", 7200.0), ("new", 0.0), ("approved", 7200.0)):
+        build_project(tmp_path / name, points=500)
+        if name == "approved":
+            approve_project(tmp_path / name, tmp_path / "signing.key")
+        with Project.open(tmp_path / name) as project:
+            project.ledger.clear_current("level")
+            project.ledger.clear_current("map")
+        os.utime(tmp_path / name / "summary.json", (time.time() - age_s,) * 2)
+
+    with server_thread(tmp_path, keep_earlier_s=3600.0) as server:
+        wait_for(lambda: freeable(server, "old") == {}, "nothing was freed")
+        free_expired(server.app.state.parts, time.time())
+
+        assert {"map", "level"} <= freeable(server, "new").keys()
+        assert {"map", "level"} <= {one.what for one in stored_parts(tmp_path / "approved")}

@@ -68,6 +68,14 @@ def test_frames_map_and_what_is_damaged_can_be_freed(office):
     }
 
 
+def test_what_a_run_writes_stays(office):
+    (office / "artifacts" / ".tmp-0123456789ab-map").mkdir()
+
+    (part,) = (part for part in stored_parts(office) if part.what == "unfinished artifact")
+
+    assert (part.freeable, part.why) == (None, "a run writes it")
+
+
 def test_an_artifact_of_an_earlier_run_can_be_freed(office):
     with Project.open(office) as project:
         project.ledger.clear_current("level")

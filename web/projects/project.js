@@ -35,6 +35,7 @@ import "./export_panel.js";
 import { FindingList } from "../shared/finding_list.js";
 import { factsIn, firstText } from "../shared/verdict.js";
 import "../shared/page_head.js";
+import "./project_storage.js";
 import "./project_tools.js";
 import "./rig_section.js";
 
@@ -229,6 +230,7 @@ async function reload() {
     state.lacking = null;
     if (state.project.approval.checking) setTimeout(reload, COMPARED_AGAIN_MS);
     only("rig-section").reload();
+    only("project-storage").reload();
   } catch (error) {
     state.lacking = error;
   }
@@ -259,6 +261,7 @@ byId("reasons").addEventListener("click", (event) => {
   const again = targetOf(event).closest("a.stretch")?.getAttribute("href");
   if (again?.endsWith(location.hash)) showStretch();
 });
+only("project-storage").addEventListener("freed", reload);
 only("project-tools").addEventListener("renamed", (event) => {
   state.project = detailOf(event);
   draw();

@@ -10,6 +10,7 @@ declare global {
     "new-job": import("../projects/new_job.js").NewJob;
     "page-head": import("../shared/page_head.js").PageHead;
     "pair-view": import("../review/view.js").PairView;
+    "project-storage": import("../projects/project_storage.js").ProjectStoragePanel;
     "project-tools": import("../projects/project_tools.js").ProjectTools;
     "recording-look": import("../projects/recording_summary.js").RecordingLook;
     "review-queue": import("../review/queue.js").ReviewQueue;

@@ -979,6 +979,11 @@ export interface ProjectSpace {
   freeable: Record<string, number>;
 }
 
+export interface ProjectStorage {
+  parts: Array<StoredPart>;
+  keep_earlier_s: number;
+}
+
 export interface ProjectView {
   id: string;
   name: string;
@@ -1423,6 +1428,14 @@ export interface StoredItem {
   expires: string;
 }
 
+export interface StoredPart {
+  name: string;
+  what: string;
+  bytes: number;
+  freeable: Freeable | null;
+  why: string;
+}
+
 export interface Storey {
   floor_m: number;
   walk_m: number;
@@ -1820,6 +1833,10 @@ export interface Operations {
     path: { project_id: string };
     query: { start_s: number; end_s: number };
     response: WalkStretch;
+  };
+  "GET /api/projects/{project_id}/storage": {
+    path: { project_id: string };
+    response: ProjectStorage;
   };
   "GET /api/projects/{project_id}/thumbnail": {
     path: { project_id: string };

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 server = typer.Typer()
 
+DaysOption = Annotated[
+    float, typer.Option(min=0.0, help="Days until earlier runs are freed; 0 = never.")
+]
+
 
 @server.command()
 def serve(  # noqa: PLR0913 - what a server can be started with
@@ -38,6 +42,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
     live_address: Annotated[
         str, typer.Option(help="Network card the sensors of a live capture send to; all.")
     ] = "0.0.0.0",
+    keep_earlier: DaysOption = 0.0,
     show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
 ) -> None:
     """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
@@ -63,6 +68,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
             webhook_networks=webhook_networks_from_environment(),
             viewer_points=points,
             sensor_bind_address=live_address,
+            keep_earlier_s=86400.0 * keep_earlier,
         )
     except ConfigError as error:
         raise typer.BadParameter(str(error)) from error

@@ -42,18 +42,22 @@ def _stamp(path: str) -> FileStamp | None:
 
 
 def weigh(folder: Path) -> tuple[int, float]:
-    """Bytes below a folder, and modification time of its newest file [s]."""
-    size, changed_s = 0, 0.0
+    """Bytes below a folder, and modification time of its newest file [s].
+
+    A file with several names (hard links) counts once.
+    """
+    sizes: dict[tuple[int, int], int] = {}
+    changed_s = 0.0
     for parent, _, names in os.walk(folder):
         for name in names:
             try:
                 status = os.stat(os.path.join(parent, name), follow_symlinks=False)
             except FileNotFoundError:
                 continue  # a running job removes files
-            size += status.st_size
+            sizes[status.st_dev, status.st_ino] = status.st_size
             if not name.startswith("ledger"):  # reading modifies it too
                 changed_s = max(changed_s, status.st_mtime)
-    return size, changed_s
+    return sum(sizes.values()), changed_s
 
 
 def iso(t_s: float) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from recon4.archive.space import Freeable
+from recon4.archive.space import Freeable, StoredPart
 
 StoredKind = Literal["project", "recording", "upload", "deleted"]
 
@@ -46,3 +46,13 @@ class ProjectSpace:
     """Without files that it has twice (hard links)."""
     freeable: dict[Freeable, int]
     """What can be freed, because processing the recording makes it again -> its size [bytes]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectStorage:
+    """What takes the space of a project."""
+
+    parts: tuple[StoredPart, ...]
+    """The largest first."""
+    keep_earlier_s: float
+    """What only earlier runs needed is freed this long after the last one [s]; 0 = never."""

@@ -13,8 +13,8 @@ from recon4_app.deps import Server
 from recon4_app.error_responses import ProblemDetail
 from recon4_app.pages import page_response
 from recon4_app.projects.trash import Deleted
-from recon4_app.storage.model import ProjectSpace, StorageView
-from recon4_app.storage.storage_work import delete_recording, read_storage
+from recon4_app.storage.model import ProjectSpace, ProjectStorage, StorageView
+from recon4_app.storage.storage_work import delete_recording, read_project_storage, read_storage
 
 
 class FreeRequest(BaseModel):
@@ -51,6 +51,12 @@ def storage(server: Server) -> StorageView:
 def list_project_space(server: Server) -> list[ProjectSpace]:
     """List how much space each project takes, and what of it can be freed."""
     return server.project_spaces.all()
+
+
+@router.get("/projects/{project_id}/storage", summary="What takes the space of a project")
+def project_storage(project_id: str, server: Server) -> ProjectStorage:
+    """List the parts of a project with their sizes, and which of them can be made again."""
+    return read_project_storage(server, project_id)
 
 
 @router.post("/projects/{project_id}/free", summary="Free space of a project")

@@ -1,20 +1,26 @@
-"""Measures what takes space on the disk of the projects, and deletes uploaded recordings."""
+"""What takes space on the disk of the projects; deletes recordings and what can be made again."""
 
 from __future__ import annotations
 
+import logging
 import shutil
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from recon4.archive.space import Freeable, free_space, stored_parts
+from recon4.errors import StoreError
+from recon4.store.project import SUMMARY
 from recon4.untrusted.names import visible
 from recon4_app.deps import ServerParts
 from recon4_app.errors import Conflict, NotFound, project_page
 from recon4_app.jobs.model import JobState
 from recon4_app.jobs.space import size_below
 from recon4_app.projects.trash import Deleted
-from recon4_app.storage.model import StorageView, StoredItem
+from recon4_app.storage.model import ProjectStorage, StorageView, StoredItem
 from recon4_app.uploads.store import UPLOADED
+
+log = logging.getLogger(__name__)
 
 
 def read_storage(server: ServerParts) -> StorageView:
@@ -49,6 +55,46 @@ def delete_recording(server: ServerParts, name: str) -> Deleted:
     deleted = server.trash.put(folder)
     server.uploads.forget(name)
     return deleted
+
+
+def read_project_storage(server: ServerParts, project_id: str) -> ProjectStorage:
+    """What takes the space of a project.
+
+    Raises:
+        NotFound: If there is none of that name.
+        StoreError: If its ledger is damaged, or an approval cannot be read.
+    """
+    parts = stored_parts(server.projects.folder(project_id))
+    return ProjectStorage(parts=parts, keep_earlier_s=server.settings.keep_earlier_s)
+
+
+def free_expired(server: ServerParts, now_s: float) -> list[str]:
+    """Free what only earlier runs of projects needed, some time after the last run of each.
+
+    Returns:
+        The projects of which something was removed.
+    """
+    if not server.settings.keep_earlier_s:
+        return []
+    cards = [card for card in server.projects.all() if not server.jobs.is_busy(card.id)]
+    return [card.id for card in cards if _free_expired(server, card.id, now_s)]
+
+
+def _free_expired(server: ServerParts, project_id: str, now_s: float) -> bool:
+    try:
+        folder = server.projects.folder(project_id)
+        ran_s = (folder / SUMMARY).stat().st_mtime
+        if ran_s + server.settings.keep_earlier_s > now_s:
+            return False
+        # Opening a project changes its files: only if there is something.
+        if not any(part.freeable == Freeable.EARLIER for part in stored_parts(folder)):
+            return False
+        return bool(free_space(folder, [Freeable.EARLIER]))
+    except (NotFound, FileNotFoundError):
+        return False  # deleted meanwhile, or not finished
+    except StoreError as error:
+        log.warning("earlier runs of %s stay: %s", project_id, error)
+        return False
 
 
 def _projects(server: ServerParts) -> Iterator[StoredItem]:

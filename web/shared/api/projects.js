@@ -62,6 +62,8 @@ export const restoreProject = (/** @type {string} */ deleted_id) =>
 export const removeProject = (/** @type {string} */ deleted_id) =>
   request("DELETE /api/trash/{deleted_id}", { path: { deleted_id } });
 export const readStorage = () => request("GET /api/storage");
+export const readProjectStorage = (/** @type {string} */ project_id) =>
+  request("GET /api/projects/{project_id}/storage", { path: { project_id } });
 export const deleteRecording = (/** @type {string} */ name) =>
   request("DELETE /api/recordings/{name}", { path: { name } });
 export const readServer = () => request("GET /api/server");
