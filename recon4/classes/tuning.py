@@ -85,3 +85,23 @@ class CarrierVolumeTuning(Struct, frozen=True, kw_only=True):
 
 
 VOLUME = CarrierVolumeTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorrectionTuning:
+    """Corrections of classes by people."""
+
+    slot_ns: int = 100_000_000
+    """Times of points are kept this far apart [ns]."""
+    anchors: int = 9
+    """Most poses that lead a correction into another map."""
+    still_m: float = 0.0005
+    """A volume stays as it is if its points moved by less [m]."""
+    apart_m: float = 0.10
+    """It does not apply if its points moved against each other by more [m]: what was one wall is
+    two."""
+    wide_m: float = 0.5
+    """The turn of a volume is taken from corners at least this far from its middle [m]."""
+
+
+CORRECTIONS = CorrectionTuning()

@@ -12,6 +12,7 @@ from recon4.errors import StoreError
 from recon4.findings.tuning import AUDIT_LIST
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
+from recon4.findings.witnesses.class_corrections import ClassCorrections
 from recon4.findings.witnesses.imports import Earlier, Import
 from recon4.findings.witnesses.imu import Gravity, ImuUse, Rides, Saturation
 from recon4.findings.witnesses.lines import FirstTrajectory
@@ -55,6 +56,7 @@ def witnesses(settings: AuditReads) -> tuple[Witness, ...]:
         Heights(settings.gnss),
         Antenna(),
         Mirrors(),
+        ClassCorrections(),
         Import(),
         Rides(),
         Saturation(),

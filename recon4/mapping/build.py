@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.mapping.buckets import TileBuckets
+from recon4.mapping.class_corrections import ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs, MapNotes
@@ -61,6 +62,8 @@ class MapInputs:
     """Of the multiframes; None = the map has no deviations of its points."""
     classes: PointClasses | None = None
     """Of the measured points; None = nothing is known to move, to be the carrier or reflected."""
+    corrections: ClassVolumes | None = None
+    """Of classes by people; None = there are none."""
 
 
 def build_map(
@@ -95,17 +98,19 @@ def build_map(
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         starts = _distribute(inputs, buckets, settings=settings, progress=progress)
         paths = SensorPaths.of(starts, inputs.trajectory, rig)
-        recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, inputs.covariances)
+        parts = inputs.covariances, inputs.corrections
+        recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, *parts)
         with TileWriter(out, _fields(recipe), tile_m=grid.tile_m, paths=paths) as writer:
-            removed = _finish_tiles(buckets, recipe, writer, progress=progress)
+            done = _finish_tiles(buckets, recipe, writer, progress=progress)
             writer.notes = MapNotes(
                 voxel_m=settings.voxel_m,
                 crs=inputs.crs,
                 sensors=tuple(sensor.name for sensor in rig.sensors),
-                removed=dict(removed),
+                removed=dict(done.removed),
+                corrected=_counts(inputs.corrections, done.corrected),
             )
     made = TileSet.open(out)
-    progress.event(MapBuilt(points=len(made), removed=dict(removed)))
+    progress.event(MapBuilt(points=len(made), removed=dict(done.removed)))
     return made
 
 
@@ -150,39 +155,54 @@ def _distribute(
     return starts
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Done:
+    """What became of points."""
+
+    removed: Counter[str]
+    corrected: Counter[int]
+    """Number of a correction of classes -> how many points it changed."""
+
+
 def _finish_tile(
     tile: Tile, records: Records, *, recipe: Recipe, means: TileMeans, writer: TileWriter
-) -> tuple[PackedTile, Counter[str]]:
-    """Make a tile and compress it; with what was removed from it."""
+) -> tuple[PackedTile, _Done]:
+    """Make a tile and compress it."""
     made = make_tile(records, tile, recipe, means=means)
     packed = writer.pack(tile, made.blocks, points=made.points, strays=made.strays, each=means.each)
-    return packed, made.removed
+    return packed, _Done(made.removed, made.corrected)
 
 
 def _finish_tiles(
     buckets: TileBuckets, recipe: Recipe, writer: TileWriter, *, progress: Progress
-) -> Counter[str]:
-    """Write all tiles; what was removed from them."""
+) -> _Done:
+    """Write all tiles; what became of their points."""
     removed: Counter[str] = Counter()
+    corrected: Counter[int] = Counter()
     tiles = buckets.tiles()
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
         made = _made_tiles(buckets, pool, recipe=recipe, writer=writer)
         for packed, part in track(made, progress, what="map", unit="tiles", total=len(tiles)):
             writer.write(packed)
-            removed += part
-    return removed
+            removed += part.removed
+            corrected += part.corrected
+    return _Done(removed, corrected)
+
+
+def _counts(corrections: ClassVolumes | None, changed: Counter[int]) -> tuple[int, ...]:
+    return tuple(changed[k] for k in range(len(corrections.steps))) if corrections else ()
 
 
 def _made_tiles(
     buckets: TileBuckets, pool: ThreadPoolExecutor, *, recipe: Recipe, writer: TileWriter
-) -> Iterator[tuple[PackedTile, Counter[str]]]:
+) -> Iterator[tuple[PackedTile, _Done]]:
     """Tiles in their order: several small ones at a time, of a large one several parts.
 
     So there is never more than one large tile in memory.
     """
     finish = partial(_finish_tile, recipe=recipe, writer=writer)
     small, large = TileMeans(Scratch()), TileMeans(None, partial(in_order, pool))
-    waiting: deque[Future[tuple[PackedTile, Counter[str]]]] = deque()
+    waiting: deque[Future[tuple[PackedTile, _Done]]] = deque()
     try:
         for tile in buckets.tiles():
             records = buckets.read(tile)

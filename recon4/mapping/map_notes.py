@@ -33,6 +33,8 @@ class MapNotes:
     """Names of the sensors, in the order of their numbers in the points."""
     removed: Mapping[str, int] = field(default_factory=dict)
     """Reason -> number of points that are not in the map."""
+    corrected: tuple[int, ...] = ()
+    """Points that each correction of classes changed; empty = there are none."""
 
     @staticmethod
     def of(facts: Mapping[str, Any]) -> MapNotes:
@@ -47,17 +49,19 @@ class MapNotes:
             crs=MapCrs(crs["wkt"], tuple(crs["origin_m"])) if crs else None,
             sensors=tuple(str(name) for name in facts.get("sensors", ())),
             removed={str(name): int(n) for name, n in facts.get("removed", {}).items()},
+            corrected=tuple(int(n) for n in facts.get("corrected", ())),
         )
 
     def to_json(self) -> dict[str, object]:
         """Entries of ``tiles.json``."""
         crs = self.crs and {"wkt": self.crs.wkt, "origin_m": list(self.crs.origin_m)}
-        return {
+        record: dict[str, object] = {
             "voxel_m": self.voxel_m,
             "crs": crs,
             "sensors": list(self.sensors),
             "removed": dict(self.removed),
         }
+        return record | ({"corrected": list(self.corrected)} if self.corrected else {})
 
 
 def read_map_list(path: Path) -> dict[str, Any]:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.se3 import Array
 from recon4.kernels.halves import round_to_half
 from recon4.kernels.surface_points import spread_surfaces
 from recon4.kernels.surface_records import Moved
@@ -40,6 +41,9 @@ from recon4.model.classes import PointClass, is_delivered
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
+
+if TYPE_CHECKING:  # it reads tiles, too
+    from recon4.mapping.class_corrections import ClassVolumes
 
 DEVIATION = "position_sd_m"
 FIELDS: dict[str, tuple[str, int]] = {
@@ -90,6 +94,20 @@ class Recipe:
     """Standard deviation of a range [m]."""
     covariances: PoseCovariances | None = None
     """Of the multiframes; None = no deviations of the points."""
+    corrections: ClassVolumes | None = None
+    """Of classes by people; None = there are none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TilePlaces:
+    """Where the points of a tile are, from its origin [m]."""
+
+    measured: NDArray[np.float32]
+    """Of all records, where they were measured, (N, 3)."""
+    origin_m: Array
+    """Of the tile in the map, (3,)."""
+    in_map: Callable[[NDArray[np.intp]], NDArray[np.float32]]
+    """Of some rows (M,), where the map has them, (M, 3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,6 +121,8 @@ class MadeTile:
     """Rows of the first blocks."""
     strays: int = 0
     """Rows of the other blocks, left out of the map: stray returns, the carrier, what moves."""
+    corrected: Counter[int] = field(default_factory=Counter)
+    """Number of a correction of classes -> how many points it changed."""
 
 
 def make_tile(records: Records, tile: Tile, recipe: Recipe, *, means: TileMeans) -> MadeTile:
@@ -130,12 +150,17 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, means: TileMeans)
         removed["lonely"] = int(lonely.sum())
         own &= ~lonely
         columns = partial(_raw_columns, records, normals, recipe=recipe)
+    origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
+    corrected: Counter[int] = Counter()
+    if recipe.corrections is not None:
+        places = TilePlaces(records["xyz"], origin_m, lambda rows: columns(rows)["xyz"])
+        corrected = recipe.corrections.apply_to_tile(classes, np.flatnonzero(own), places)
     delivered = is_delivered(classes)
     points, left_out = np.flatnonzero(own & delivered), np.flatnonzero(own & ~delivered)
-    block = partial(_block, columns_of=columns, classes=classes, tile=tile, recipe=recipe)
+    block = partial(_block, columns_of=columns, classes=classes, origin_m=origin_m, recipe=recipe)
     rows = chain(stored_blocks(points), stored_blocks(left_out))
     blocks = (partial(block, part) for part in rows)
-    return MadeTile(removed, blocks, len(points), len(left_out))
+    return MadeTile(removed, blocks, len(points), len(left_out), corrected)
 
 
 def _block(
@@ -143,13 +168,13 @@ def _block(
     *,
     columns_of: Callable[[NDArray[np.intp]], Columns],
     classes: NDArray[np.uint8],
-    tile: Tile,
+    origin_m: Array,
     recipe: Recipe,
 ) -> Columns:
     columns = columns_of(rows)
     columns["classification"] = classes[rows]
     if recipe.covariances:
-        p_map = columns["xyz"] + np.array(tile, dtype=np.float64) * recipe.grid.tile_m
+        p_map = columns["xyz"] + origin_m
         columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
     return columns
 

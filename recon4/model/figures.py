@@ -181,6 +181,30 @@ class PlaneThickness(msgspec.Struct, frozen=True, kw_only=True):
     """The tiles with the thickest surfaces."""
 
 
+class CorrectedClass(msgspec.Struct, frozen=True, kw_only=True):
+    """A correction of classes by a person, and what became of it in a map."""
+
+    id: str
+    to: str
+    """Title of the new class."""
+    who: str
+    why: str
+    time: str
+    """When it was decided, UTC, ISO 8601."""
+    points_then: int
+    """Points that it changed in the map that the person looked at."""
+    points: int
+    """Points that it changed in this one."""
+    applied: bool
+    """Whether its points lie together as they did; if not, it changes none."""
+    moved_m: float | None
+    """How far they have moved since [m]; None = this walk no longer has them."""
+    apart_m: float | None
+    """How far they have moved against each other [m]."""
+    place_m: Point
+    """Middle of its volume, as decided [m]."""
+
+
 class MapFigures(Figures, frozen=True, kw_only=True):
     """The map."""
 
@@ -195,6 +219,8 @@ class MapFigures(Figures, frozen=True, kw_only=True):
     """Of the surfaces, as delivered; None = of an earlier version."""
     thickness_as_measured: PlaneThickness | None = None
     """The same of the points as measured; None = the points lie there."""
+    corrections: tuple[CorrectedClass, ...] = ()
+    """Of classes by people, in the order in which they apply."""
 
 
 class ClassFigures(Figures, frozen=True, kw_only=True):

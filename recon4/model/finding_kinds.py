@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 6
+AUDIT_VERSION = 7
 """Raise it when witnesses find something else in the same walk: then finished projects are audited
 again."""
 
@@ -94,6 +94,8 @@ class FindingKind(StrEnum):
 
     # The map
     MIRROR = "MIRROR"
+    CLASSES_MOVED = "CLASSES-MOVED"
+    CLASSES_NOT_CORRECTED = "CLASSES-NOT-CORRECTED"
 
     # Line scans: 2-D laser and profiler
     LASER_MISSING = "LASER-MISSING"

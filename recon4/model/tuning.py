@@ -72,3 +72,22 @@ class GeoidTuning(Struct, frozen=True, kw_only=True):
 
 
 GEOID = GeoidTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VolumeTuning:
+    """Volumes that people draw in a map."""
+
+    farthest_m: float = 1e8
+    """Largest coordinate [m]."""
+    longest_m: float = 1e5
+    """Longest edge [m]."""
+    most_corners: int = 500
+    """Corners of a polygon."""
+    least_m2: float = 1e-9
+    """Least area of a polygon [m²]."""
+    axes: float = 1e-6
+    """Axes are as far from length 1 and a right angle at most."""
+
+
+VOLUMES = VolumeTuning()

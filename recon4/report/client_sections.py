@@ -257,7 +257,21 @@ def _classes(assessed: Assessment, words: Words) -> Section:
         )
     )
     tables = (Table(head=head, rows=rows, texts=(3,)),) if rows else ()
-    return Section(title=words("section.classes"), text=(words("text.classes"),), tables=tables)
+    corrected = _corrected(assessed, words)
+    text = (words("text.classes"), *((words("text.corrected"),) if corrected else ()))
+    return Section(title=words("section.classes"), text=text, tables=(*tables, *corrected))
+
+
+def _corrected(assessed: Assessment, words: Words) -> tuple[Table, ...]:
+    """What people corrected of the classes of the map's points."""
+    found = assessed.results.map.corrections if assessed.results.map else ()
+    names = ("class", "points", "who", "date", "why")
+    rows = tuple(
+        (shown(one.to), grouped(one.points), shown(one.who), shown(one.time[:10]), shown(one.why))
+        for one in found
+    )
+    head = tuple(words(f"table.{name}") for name in names)
+    return (Table(head=head, rows=rows, texts=(2, 3, 4)),) if rows else ()
 
 
 def _comparison(assessed: Assessment, words: Words) -> Section:

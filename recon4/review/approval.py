@@ -43,6 +43,7 @@ _FIGURES = (
     "edges",
     "crs",
     "rig_origin",
+    "corrections",
     "warnings",  # before format 3 of the summary
     "findings",
 )

@@ -16,6 +16,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.class_corrections import ClassCorrection
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import AUTOMATIC
 from recon4.model.site_control import SiteControl
@@ -49,12 +50,17 @@ class DecisionKind(StrEnum):
     CONTROL = "control"
     """Control points place the map; those of an earlier row no longer do. None of them: the map is
     placed as without."""
+    CLASSIFY = "classify"
+    """Points in a volume get another class."""
+    WITHDRAW = "withdraw"
+    """Such a correction no longer applies, whatever was decided since."""
 
 
 MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
 """Kinds with a measurement of their own."""
 ABOUT_MAPS = (DecisionKind.APPROVE, DecisionKind.ACKNOWLEDGE)
 """Kinds that change no decision, so they cannot be undone."""
+ABOUT_CLASSES = (DecisionKind.CLASSIFY, DecisionKind.WITHDRAW)
 ABOUT_PAIRS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)
 
 
@@ -120,6 +126,10 @@ class DecisionBody(TypedDict):
     """Fields of `SeenFinding`; only there in an acknowledgment."""
     control: NotRequired[Mapping[str, object]]
     """Fields of `SiteControl`; only there in a row about control points."""
+    correction: NotRequired[Mapping[str, object]]
+    """Fields of `ClassCorrection`; only there in a row that gives points another class."""
+    withdraws: NotRequired[str]
+    """Id of a correction; only there in a row that withdraws one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -141,6 +151,12 @@ class Decision:
     """Of `ACKNOWLEDGE`."""
     control: SiteControl | None = None
     """Of `CONTROL`."""
+    correction: ClassCorrection | None = None
+    """Of `CLASSIFY`."""
+    withdraws: str = ""
+    """Id of the correction that is withdrawn; of `WITHDRAW`."""
+    time: str = ""
+    """When it was written, UTC, ISO 8601; empty before."""
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
@@ -160,6 +176,13 @@ class Decision:
             raise ConfigError("an acknowledgment needs a finding and a note, no other decision one")
         if (self.kind is DecisionKind.CONTROL) != (self.control is not None):
             raise ConfigError(f"a decision to {self.kind} with or without control points")
+        self._check_correction()
+
+    def _check_correction(self) -> None:
+        if (self.kind is DecisionKind.CLASSIFY) != (self.correction is not None):
+            raise ConfigError(f"a decision to {self.kind} with or without a correction of classes")
+        if (self.kind is DecisionKind.WITHDRAW) != bool(self.withdraws):
+            raise ConfigError(f"a decision to {self.kind} with or without what is withdrawn")
 
     def body(self) -> DecisionBody:
         """What the journal stores beside its columns."""
@@ -172,6 +195,10 @@ class Decision:
             body["finding"] = to_plain(self.finding)
         if self.control:
             body["control"] = to_plain(self.control)
+        if self.correction:
+            body["correction"] = to_plain(self.correction)
+        if self.withdraws:
+            body["withdraws"] = self.withdraws
         return body
 
     @staticmethod
@@ -193,6 +220,8 @@ class Decision:
                 facts=msgspec.convert(body["facts"], ApprovalFacts | None),
                 finding=msgspec.convert(body.get("finding"), SeenFinding | None),
                 control=msgspec.convert(body.get("control"), SiteControl | None),
+                correction=msgspec.convert(body.get("correction"), ClassCorrection | None),
+                withdraws=body.get("withdraws", ""),
             )
         except (KeyError, TypeError, ValueError, msgspec.ValidationError) as error:
             raise StoreError(f"the journal has a row that is no decision: {error}") from error
@@ -213,6 +242,19 @@ class Standing:
     """Replaces the automatic measurement; None = that one applies."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StandingCorrection:
+    """A correction of classes in force."""
+
+    id: str
+    """Of its contents."""
+    correction: ClassCorrection
+    who: str
+    why: str
+    time: str
+    """When it was decided, UTC, ISO 8601."""
+
+
 @dataclass(frozen=True, slots=True)
 class Decided:
     """The decisions in force: the fold over a journal."""
@@ -225,11 +267,13 @@ class Decided:
     """Number of decisions that can be redone."""
     control: SiteControl | None = None
     """What places the map; None = no control points."""
+    corrections: tuple[StandingCorrection, ...] = ()
+    """Of classes, in the order in which they apply."""
 
     @property
     def key(self) -> str:
-        """SHA-256 of the decisions in force, independent of when they were made."""
-        return joined_key(self.pairs_key, self.control_key)
+        """SHA-256 of the decisions in force, those about pairs whenever they were made."""
+        return joined_key(self.pairs_key, self.control_key, self.classes_key)
 
     @property
     def pairs_key(self) -> str:
@@ -241,16 +285,28 @@ class Decided:
         """SHA-256 of the control points; None = there are none."""
         return hash_json(to_plain(self.control)) if self.control else None
 
+    @property
+    def classes_key(self) -> str | None:
+        """SHA-256 of the corrections of classes; None = there are none."""
+        return hash_json(to_plain(self.corrections)) if self.corrections else None
+
     def __bool__(self) -> bool:
-        return bool(self.standing) or self.control is not None
+        return bool(self.standing or self.corrections) or self.control is not None
 
 
 NOTHING_DECIDED = Decided()
 
 
-def joined_key(pairs_key: str, control_key: str | None) -> str:
-    """`Decided.key` of its two parts; without control points that of the pairs."""
+def joined_key(pairs_key: str, control_key: str | None, classes_key: str | None) -> str:
+    """`Decided.key` of its parts; without control points and corrections that of the pairs."""
+    if classes_key is not None:
+        return hash_json([pairs_key, control_key, classes_key])
     return pairs_key if control_key is None else hash_json([pairs_key, control_key])
+
+
+def correction_id(correction: ClassCorrection) -> str:
+    """The name of a correction: twelve digits of the SHA-256 of its contents."""
+    return hash_json(to_plain(correction))[:12]
 
 
 def fold(decisions: Iterable[Decision]) -> Decided:
@@ -274,13 +330,30 @@ def fold(decisions: Iterable[Decision]) -> Decided:
             undone.clear()
     standing: dict[Pair, Standing] = {}
     control: SiteControl | None = None
+    corrections: dict[str, StandingCorrection] = {}
     for decision in done:
         if decision.control is not None:
             control = decision.control if decision.control.targets else None
+        elif decision.kind in ABOUT_CLASSES:
+            _correct(corrections, decision)
         else:
             _stand(standing, decision)
     ordered = tuple(standing[pair] for pair in sorted(standing))
-    return Decided(ordered, len(done), len(undone), control)
+    return Decided(ordered, len(done), len(undone), control, tuple(corrections.values()))
+
+
+def _correct(corrections: dict[str, StandingCorrection], decision: Decision) -> None:
+    if decision.correction is None:
+        corrections.pop(decision.withdraws, None)
+        return
+    name = correction_id(decision.correction)
+    corrections[name] = StandingCorrection(
+        id=name,
+        correction=decision.correction,
+        who=decision.who,
+        why=decision.why,
+        time=decision.time,
+    )
 
 
 def _stand(standing: dict[Pair, Standing], decision: Decision) -> None:

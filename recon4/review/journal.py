@@ -10,12 +10,19 @@ import json
 import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.review.decisions import Decided, Decision, DecisionKind, fold
+from recon4.review.decisions import (
+    ABOUT_CLASSES,
+    Decided,
+    Decision,
+    DecisionKind,
+    correction_id,
+    fold,
+)
 from recon4.store.atomic import raise_if_full
 from recon4.store.hashing import CHAIN_START, hash_json
 from recon4.store.seal import changing
@@ -49,11 +56,12 @@ CREATE TRIGGER IF NOT EXISTS no_change BEFORE UPDATE ON journal
 CREATE TRIGGER IF NOT EXISTS no_removal BEFORE DELETE ON journal
     BEGIN SELECT RAISE(ABORT, 'the journal is only appended to'); END;
 """
+_CHANGE_CLASSES = (*ABOUT_CLASSES, DecisionKind.UNDO, DecisionKind.REDO)
 _COLUMNS = "seq, time, who, kind, frame_i, frame_j, body, why, prev_hash, hash"
 
 
 class NothingToUndo(StoreError):
-    """Undo or redo with nothing left to undo or redo."""
+    """Undo, redo or withdrawal with nothing left to undo, redo or withdraw."""
 
 
 class JournalChanged(StoreError):
@@ -96,7 +104,8 @@ class JournalRow:
             body = json.loads(self.body)
         except ValueError as error:
             raise StoreError(f"row {self.seq} of the journal is damaged: {error}") from error
-        return Decision.of(self.kind, self.who, self.why, pair=pair, body=body)
+        found = Decision.of(self.kind, self.who, self.why, pair=pair, body=body)
+        return replace(found, time=self.time)
 
 
 def read_rows(root: Path) -> list[JournalRow]:
@@ -137,9 +146,9 @@ def append(
         seen_seq: Last row that the person saw; None = not known.
 
     Raises:
-        NothingToUndo: If there is no decision to undo or redo.
-        JournalChanged: If the last row is not ``after_seq``, or another person decided about the
-            same pair after ``seen_seq``.
+        NothingToUndo: If there is no decision to undo or redo, or no such correction.
+        JournalChanged: If the last row is not ``after_seq``, another person decided about the same
+            pair or corrected classes after ``seen_seq``, or the same correction is there already.
         StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
     """
     with changing(root, NAME), _database(root / NAME, write=True) as db:
@@ -147,7 +156,7 @@ def append(
         rows = _rows(db)
         _check(rows, decision, after_seq)
         if seen_seq is not None:
-            _check_pair(rows[seen_seq:], decision)
+            _check_unseen(rows[seen_seq:], decision)
         row = _next(rows, decision)
         db.execute(
             f"INSERT INTO journal ({_COLUMNS}) VALUES (?,?,?,?,?,?,?,?,?,?)",
@@ -188,15 +197,35 @@ def _check(rows: Sequence[JournalRow], decision: Decision, after_seq: int | None
         left = decided.undoable if decision.kind is DecisionKind.UNDO else decided.redoable
         if not left:
             raise NothingToUndo(f"there is nothing to {decision.kind}")
+    if decision.kind in ABOUT_CLASSES:
+        _check_correction(fold(row.decision() for row in rows), decision)
 
 
-def _check_pair(unseen: Sequence[JournalRow], decision: Decision) -> None:
-    """Reject a decision about a pair that another person decided meanwhile."""
-    for row in reversed(unseen):
-        if (row.frame_i, row.frame_j) == decision.pair and row.who != decision.who:
+def _check_correction(decided: Decided, decision: Decision) -> None:
+    """Withdraw only what is in force, and decide nothing twice."""
+    there = {one.id: one for one in decided.corrections}
+    if decision.correction is None:
+        if decision.withdraws not in there:
+            raise NothingToUndo(f"no correction of classes {decision.withdraws} is in force")
+        return
+    same = there.get(correction_id(decision.correction))
+    if same is not None:
+        raise JournalChanged(f"{same.who} made the same correction of classes already")
+
+
+def _check_unseen(unseen: Sequence[JournalRow], decision: Decision) -> None:
+    """Reject a decision about what another person decided meanwhile."""
+    others = [row for row in reversed(unseen) if row.who != decision.who]
+    for row in others:
+        if decision.pair is not None and (row.frame_i, row.frame_j) == decision.pair:
             raise JournalChanged(
                 f"{row.who} decided about this pair meanwhile ({row.kind}): look at it again, then "
                 "decide"
+            )
+        if decision.correction is not None and row.kind in _CHANGE_CLASSES:
+            raise JournalChanged(
+                f"{row.who} changed corrections of classes meanwhile ({row.kind}): count again, "
+                "then apply"
             )
 
 

@@ -44,7 +44,8 @@ def decisions_in_map(root: Path) -> str | None:
         return None
     keys = artifact_keys(summary)
     pairs = _input(root, keys.get("review"), "decisions") or NOTHING_DECIDED.key
-    return joined_key(pairs, _input(root, keys.get("level"), "control"))
+    control = _input(root, keys.get("level"), "control")
+    return joined_key(pairs, control, _input(root, keys.get("map"), "corrections"))
 
 
 def _input(root: Path, key: str | None, name: str) -> str | None:

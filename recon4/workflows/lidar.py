@@ -43,7 +43,7 @@ def from_review(run: Run) -> None:
     points = run.measurements | {"odometry": "odometry", "level": "level"}
     run.stage(INTENSITY, **points)
     run.stage(CLASSES, **points)
-    run.stage(MAP, **points, intensity="intensity", classes="classes")
+    run.stage(MAP, **points, **run.corrections, intensity="intensity", classes="classes")
 
 
 LIDAR = Workflow(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.findings.walk import path_length_m
-from recon4.model.figures import UncertaintyFigures
+from recon4.model.figures import CorrectedClass, UncertaintyFigures
 from recon4.model.finding import Finding, Level, Value, worst_first
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig_origin import RigOrigin
@@ -49,6 +49,8 @@ class Summary(RunSummary):
     """Serial numbers, date and accuracy of the rig's calibration; null = not known."""
     uncertainty: UncertaintyFigures | None
     """How well the poses are known; null = not stated."""
+    corrections: tuple[CorrectedClass, ...]
+    """Of classes by people."""
     approval: Stamp | None
     """Who approved these results, when, as which version; null = a draft."""
 
@@ -90,6 +92,7 @@ def _summary(root: Path, made: _FinishedMap) -> Summary:
         verdict=assessed.verdict,
         uncertainty=level.uncertainty,
         findings=worst_first((*assessed.findings, *altered)),
+        corrections=figures_of(runs, stages.MAP).corrections,
         approval=approval.stamp if approval else None,
     )
 

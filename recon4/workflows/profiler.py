@@ -34,7 +34,7 @@ def from_review(run: Run) -> None:
     points = {"frames": "frames", "odometry": "odometry", "level": "level"}
     run.stage(INTENSITY, **points)
     run.stage(CLASSES, **points)
-    run.stage(MAP, **points, intensity="intensity", classes="classes")
+    run.stage(MAP, **points, **run.corrections, intensity="intensity", classes="classes")
 
 
 PROFILER = Workflow(

@@ -25,7 +25,7 @@ from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.model.site_control import SiteControl
-from recon4.review.decisions import Standing
+from recon4.review.decisions import Standing, StandingCorrection
 from recon4.settings.reads import (
     AuditReads,
     CalibrationReads,
@@ -262,47 +262,33 @@ def _map(
     intensity: Path,
     classes: Path,
     calibration: Path | None = None,
+    corrections: tuple[StandingCorrection, ...] = (),
 ) -> MapFigures:
-    from recon4.evaluation.thickness import plane_thickness
-    from recon4.export.laz import export_laz
-    from recon4.export.points import CRS_OF_MAP, OutputCrs
-    from recon4.georeference.crs_file import read_crs
     from recon4.mapping.build import MapInputs, build_map
     from recon4.sandbox.freed_memory import return_freed_memory
     from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.classes import StoredClasses
     from recon4.store.frames import open_frames
+    from recon4.workflows.corrected_classes import corrections_in
+    from recon4.workflows.map_figures import map_figures, write_map_laz
     from recon4.workflows.result_files import covariances_of
 
     store = open_frames(frames, calibration, odometry)
     covariances_at = covariances_of(level)
+    trajectory = load_trajectory(level / "trajectory.npz")
+    placed = corrections_in(corrections, trajectory)
     inputs = MapInputs(
         store,
-        load_trajectory(level / "trajectory.npz"),
+        trajectory,
         load_intensity_table(intensity / "table.npz"),
         covariances=covariances_at and covariances_at(store.t_mid_ns),
         classes=StoredClasses.open(classes),
+        corrections=placed.volumes,
     )
     tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
-    crs = read_crs(level)
     return_freed_memory()
-    export_laz(
-        context.out,
-        context.out / "map.laz",
-        OutputCrs(crs.wkt, crs.to_crs) if crs else CRS_OF_MAP,
-        progress=context.progress,
-    )
-    low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)
-    return MapFigures(
-        points=len(tiles),
-        bounds_m=(low, high),
-        strays=tiles.strays,
-        surface="fitted" if tiles.surface == "fitted" else "raw",
-        thickness=plane_thickness(tiles),
-        thickness_as_measured=(
-            plane_thickness(tiles.as_measured()) if tiles.surface == "fitted" else None
-        ),
-    )
+    write_map_laz(context.out, level, progress=context.progress)
+    return map_figures(tiles, placed)
 
 
 def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures:

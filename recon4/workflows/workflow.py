@@ -69,6 +69,12 @@ class Run:
         return {"control": Input(key, found)}
 
     @property
+    def corrections(self) -> dict[str, Input]:
+        """Input of the stage that makes the map: corrections of classes, if there are any."""
+        key = self.decided.classes_key
+        return {} if key is None else {"corrections": Input(key, self.decided.corrections)}
+
+    @property
     def calibration(self) -> CalibrationFigures | None:
         """What the recording says of its rig; None = they were not compared."""
         found = self.runner.runs.get(CALIBRATION.name)

@@ -92,6 +92,8 @@ MAY_IMPORT = {
     }
     | {"recon4.report.approval"}
     | {f"recon4.findings.{name}" for name in ("summary_notes", "review_problems", "wording")},
+    "recon4/review/class_corrections.py": STAGE
+    | {"recon4.classes.corrections", "recon4.mapping.tiles", "recon4.review"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.mapping"},
     "recon4/mapping/build.py": STAGE | {"recon4.mapping", "recon4.sandbox.freed_memory"},
@@ -166,6 +168,7 @@ NOBODY_IMPORTS = {
     "recon4.pipeline": {
         "recon4/api/running.py",
         "recon4/cli/main.py",
+        "recon4/cli/classify.py",
         "recon4/cli/control.py",
         "recon4/cli/findings.py",
         "recon4/workflows/calibration_methods.py",
@@ -197,7 +200,7 @@ ONLY_HERE = {
         "app/recon4_app/viewer/cloud/palette.py",
     },
     "ezdxf": {"recon4/slices/export.py", "recon4/products/drawing.py"},
-    "shapely": {"recon4/products"},
+    "shapely": {"recon4/products", "recon4/model/volumes.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
     "typer": {"recon4/cli", "app/recon4_app/cli"},

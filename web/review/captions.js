@@ -23,6 +23,8 @@ export const KINDS = {
   approve: "approved the map",
   acknowledge: "acknowledged a finding",
   control: "changed the control points",
+  classify: "corrected classes of points",
+  withdraw: "withdrew a correction of classes",
 };
 
 /**

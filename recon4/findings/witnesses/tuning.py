@@ -170,3 +170,14 @@ class LaserMissingTuning(Struct, frozen=True, kw_only=True):
 
 
 LASER_MISSING = LaserMissingTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClassCorrectionTuning:
+    """Corrections of classes by people."""
+
+    told_m: float = 0.05
+    """A volume that followed its points farther is named [m]."""
+
+
+CLASS_CORRECTIONS = ClassCorrectionTuning()

@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from recon4.errors import ConfigError, StoreError
+from recon4.model.class_corrections import Anchor, ClassCorrection, Reclassified
+from recon4.model.classes import PointClass
 from recon4.model.site_control import SeenTarget, SiteControl
+from recon4.model.volumes import Prism
 from recon4.review.decisions import (
     ABOUT_MAPS,
     NOTHING_DECIDED,
@@ -20,6 +24,7 @@ from recon4.review.decisions import (
     DecisionKind,
     Measurement,
     SeenFinding,
+    correction_id,
     fold,
     numbers_of,
     pose_of,
@@ -64,6 +69,19 @@ def control_points(*names):
     )
 
 
+def correction(x=0.0):
+    return ClassCorrection(
+        what=Reclassified(
+            volume=Prism(polygon_m=((x, 0.0), (x + 1.0, 0.0), (x, 1.0)), low_m=0.1, high_m=0.3),
+            to=int(PointClass.MOVING),
+            only=(int(PointClass.UNCLASSIFIED),),
+        ),
+        points=12,
+        map_key="ab",
+        anchors=(Anchor(t_ns=1_700_000_000_000_000_001, T_map_body=HERE),),
+    )
+
+
 def decide(kind, pair=(2, 7), who="Eva", **more):
     if kind in (DecisionKind.UNDO, DecisionKind.REDO, DecisionKind.APPROVE):
         return Decision(kind=kind, who=who, **more)
@@ -71,6 +89,10 @@ def decide(kind, pair=(2, 7), who="Eva", **more):
         return Decision(kind=kind, who=who, **{"why": "seen on site", "finding": SEEN, **more})
     if kind is DecisionKind.CONTROL:
         return Decision(kind=kind, who=who, **{"control": control_points("A"), **more})
+    if kind is DecisionKind.CLASSIFY:
+        return Decision(kind=kind, who=who, **{"correction": correction(), **more})
+    if kind is DecisionKind.WITHDRAW:
+        return Decision(kind=kind, who=who, **{"withdraws": correction_id(correction()), **more})
     if kind in (DecisionKind.REPLACE, DecisionKind.ADD):
         more.setdefault("measurement", MEASURED)
     return Decision(kind=kind, who=who, pair=pair, **more)
@@ -242,6 +264,33 @@ def test_control_points_are_read_back_as_they_were_written():
     assert Decision.of("control", "Eva", "", pair=None, body=body) == one
     with pytest.raises(ConfigError, match="control points"):
         decide(DecisionKind.CONTROL, control=None)
+
+
+def test_corrections_of_classes_apply_in_their_order_until_they_are_withdrawn():
+    first, second = (decide(DecisionKind.CLASSIFY, correction=correction(x)) for x in (0.0, 5.0))
+    rows = [decide(DecisionKind.REJECT), first, second]
+    both = fold(rows)
+
+    assert [one.correction for one in both.corrections] == [correction(0.0), correction(5.0)]
+    assert fold([rows[0], second, first]).key != both.key
+    one = fold([*rows, decide(DecisionKind.WITHDRAW)])
+    assert one.corrections == both.corrections[1:]
+    assert fold([*rows, decide(DecisionKind.WITHDRAW), decide(DecisionKind.UNDO)]) == replace(
+        both, redoable=1
+    )
+    neither = fold([*rows, decide(DecisionKind.UNDO), decide(DecisionKind.UNDO)])
+    assert neither.key == fold(rows[:1]).key
+    assert neither.classes_key is None
+
+
+def test_a_correction_of_classes_is_read_back_as_it_was_written():
+    one = decide(DecisionKind.CLASSIFY)
+    body = json.loads(json.dumps(one.body()))
+
+    assert Decision.of("classify", "Eva", "", pair=None, body=body) == one
+    body["correction"]["what"]["volume"]["high_m"] = 0.1
+    with pytest.raises(StoreError, match="not empty"):
+        Decision.of("classify", "Eva", "", pair=None, body=body)
 
 
 @settings(max_examples=10, deadline=None)

@@ -21,6 +21,7 @@ from recon4.review.journal import (
     read_decided,
     read_rows,
 )
+from tests.unit.review.test_decisions import correction, decide
 
 
 def reject(j, who="Eva", why=""):
@@ -156,3 +157,34 @@ def test_a_damaged_journal_is_one_clear_error(tmp_path):
 
     with pytest.raises(StoreError, match=NAME):
         read_rows(tmp_path)
+
+
+def classify(who="Eva", x=0.0):
+    return decide(DecisionKind.CLASSIFY, who=who, correction=correction(x))
+
+
+def test_two_people_who_correct_classes_at_once_look_again(tmp_path):
+    seen = append(tmp_path, classify()).seq
+    append(tmp_path, reject(7, who="Jan"))
+    append(tmp_path, classify(x=5.0), seen_seq=seen)  # Jan decided about something else
+
+    with pytest.raises(JournalChanged, match="Eva changed corrections of classes meanwhile"):
+        append(tmp_path, classify(who="Jan", x=9.0), seen_seq=seen)
+    with pytest.raises(JournalChanged, match="Eva made the same correction"):
+        append(tmp_path, classify(who="Jan"))
+    assert len(read_rows(tmp_path)) == 3
+
+
+def test_only_a_correction_in_force_is_withdrawn(tmp_path):
+    row = append(tmp_path, classify())
+    (one,) = read_decided(tmp_path).corrections
+    withdrawal = Decision(kind=DecisionKind.WITHDRAW, who="Jan", withdraws=one.id)
+
+    append(tmp_path, withdrawal)
+
+    assert (one.who, one.time) == ("Eva", row.time)
+    assert read_decided(tmp_path).corrections == ()
+    with pytest.raises(NothingToUndo, match=f"no correction of classes {one.id}"):
+        append(tmp_path, withdrawal)
+    append(tmp_path, undo())
+    assert read_decided(tmp_path).corrections == (one,)

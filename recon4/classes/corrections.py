@@ -1,0 +1,185 @@
+"""Corrections of classes by people: counted in a map before they are made, and led into the next.
+
+A correction is a volume in the frame of the map that a person looked at. It keeps where the body
+was when it measured some of the points, its anchors: by their poses in another map of the same walk
+the volume follows its points, or does not apply where they no longer lie together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.classes.tuning import CORRECTIONS
+from recon4.errors import StoreError
+from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.mapping.class_corrections import ClassVolume, ClassVolumes
+from recon4.mapping.tile import Columns
+from recon4.mapping.tiles import Tile, TileSet
+from recon4.mapping.tuning import TILES
+from recon4.model.class_corrections import Anchor, ClassCorrection, Reclassified
+from recon4.model.classes import CLASSES, PointClass
+from recon4.model.trajectory import Times, Trajectory
+from recon4.model.volumes import Volume, bounds_of, contains, corners_of, moved
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CountedPoints:
+    """What a correction would change in a map."""
+
+    changed: dict[int, int]
+    """Class now -> how many points change."""
+    inside: dict[int, int]
+    """Class now -> how many points are in the volume, those that the map leaves out as well."""
+    t_ns: Times
+    """Times of some of the points that change, every tenth of a second at most once [ns], (T,)."""
+    away_m: float
+    """From the volume to the bounds of the map; 0 = they meet [m]."""
+
+    @property
+    def points(self) -> int:
+        """How many points change."""
+        return sum(self.changed.values())
+
+    def why_none(self, what: Reclassified) -> str:
+        """Why no point changes; empty if one does."""
+        if self.changed:
+            return ""
+        if self.away_m > 0.0:
+            return f"there is no point in it: the map ends {self.away_m:.1f} m away"
+        if not self.inside:
+            return "there is no point in it"
+        there = ", ".join(
+            f"{CLASSES[PointClass(one)].title} ({count})" for one, count in self.inside.items()
+        )
+        if {*self.inside} == {what.to}:
+            return f"all points in it are {CLASSES[PointClass(what.to)].title} already"
+        return f"no point in it has a class that is corrected; it has {there}"
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedCorrection:
+    """A correction in another map of the walk."""
+
+    what: Reclassified | None
+    """With its volume where the points now are; None = they no longer lie together."""
+    moved_m: float
+    """How far the points have moved at most [m]."""
+    apart_m: float
+    """How far they have moved against each other [m]; infinite = the walk no longer has them."""
+
+
+def count_points(
+    tiles: TileSet, what: Reclassified, before: Sequence[Reclassified] = ()
+) -> CountedPoints:
+    """Count what a correction would change.
+
+    Args:
+        tiles: The map.
+        what: The correction, in its frame.
+        before: Corrections that are not in this map yet and apply first.
+
+    Raises:
+        StoreError: If the points of the map have no classes, or it cannot be read.
+    """
+    if "classification" not in tiles.fields:
+        raise StoreError(
+            "the points of this map have no classes: an earlier version of recon4 made it; process "
+            "its recording again"
+        )
+    new, pending = ClassVolume.of(what), ClassVolumes.of(before)
+    changed, inside = np.zeros(256, np.int64), np.zeros(256, np.int64)
+    slots: set[int] = set()
+    for tile, columns in _parts_in(tiles, new):
+        p_map = columns["xyz"].astype(np.float64) + tile.origin_m
+        within = contains(what.volume, p_map)
+        classes = columns["classification"][within].copy()
+        pending.apply(classes, p_map[within])
+        inside += np.bincount(classes, minlength=256)
+        hit = new.changes[classes]
+        changed += np.bincount(classes[hit], minlength=256)
+        slots |= set((columns["t_ns"][within][hit] // CORRECTIONS.slot_ns).tolist())
+    t_ns = np.array(sorted(slots), np.int64) * CORRECTIONS.slot_ns + CORRECTIONS.slot_ns // 2
+    return CountedPoints(_counted(changed), _counted(inside), t_ns, _away_m(tiles, what.volume))
+
+
+def correction_of(
+    what: Reclassified, counted: CountedPoints, trajectory: Trajectory, *, map_key: str
+) -> ClassCorrection:
+    """A correction as the journal keeps it.
+
+    Args:
+        what: In the frame of the map.
+        counted: What it changes there, one point at least.
+        trajectory: ``T_map_body`` of that map.
+        map_key: Its key.
+    """
+    many = min(CORRECTIONS.anchors, len(counted.t_ns))
+    rows = np.unique(np.linspace(0, len(counted.t_ns) - 1, many).round().astype(np.intp))
+    t_ns = np.unique(np.clip(counted.t_ns[rows], trajectory.t_ns[0], trajectory.t_ns[-1]))
+    poses = trajectory.at(t_ns)
+    anchors = tuple(
+        Anchor(t_ns=int(t), T_map_body=(*map(float, pose.t), *map(float, pose.quat_xyzw())))
+        for t, pose in zip(t_ns, (poses[k] for k in range(len(t_ns))), strict=True)
+    )
+    return ClassCorrection(what=what, points=counted.points, map_key=map_key, anchors=anchors)
+
+
+def place_correction(correction: ClassCorrection, trajectory: Trajectory) -> PlacedCorrection:
+    """Lead a correction into a map.
+
+    Args:
+        correction: In the frame of the map that the person looked at.
+        trajectory: ``T_map_body`` of the map that is made.
+    """
+    t_ns = np.array([one.t_ns for one in correction.anchors], np.int64)
+    if not len(trajectory) or t_ns[0] < trajectory.t_ns[0] or t_ns[-1] > trajectory.t_ns[-1]:
+        return PlacedCorrection(None, np.inf, np.inf)
+    volume = correction.what.volume
+    corners = _wide(corners_of(volume))
+    places = np.array([one.T_map_body for one in correction.anchors])
+    T_old_body = SE3.from_quat(places[:, 3:], places[:, :3])
+    T_new_old = trajectory.at(t_ns) @ T_old_body.inverse()
+    there = np.array([T_new_old[k] @ corners for k in range(len(t_ns))])
+    T = align_points(there.mean(axis=0), corners)
+    apart_m = float(np.linalg.norm(there - T @ corners, axis=2).max())
+    moved_m = float(np.linalg.norm(there - corners, axis=2).max())
+    if apart_m > CORRECTIONS.apart_m:
+        return PlacedCorrection(None, moved_m, apart_m)
+    if moved_m < CORRECTIONS.still_m:
+        return PlacedCorrection(correction.what, moved_m, apart_m)
+    return PlacedCorrection(replace(correction.what, volume=moved(volume, T)), moved_m, apart_m)
+
+
+def _parts_in(tiles: TileSet, one: ClassVolume) -> Iterator[tuple[Tile, Columns]]:
+    """What is stored of the tiles that a volume meets, with what the map leaves out."""
+    for tile in tiles:
+        parts = [tile] if len(tile) else []
+        if tile.strays:
+            parts.append(tile.stray_part(tiles.tile_m))
+        for part in parts:
+            low_m, high_m = np.array(part.low_m), np.array(part.high_m)
+            if one.meets(low_m - TILES.margin_m, high_m + TILES.margin_m):
+                yield part, part.read(["xyz", "classification", "t_ns"])
+
+
+def _counted(counts: NDArray[np.int64]) -> dict[int, int]:
+    return {int(k): int(counts[k]) for k in np.flatnonzero(counts)}
+
+
+def _away_m(tiles: TileSet, volume: Volume) -> float:
+    """Distance from the box around a volume to that around the map [m]."""
+    (low, high), (first, last) = bounds_of(volume), tiles.bounds_m
+    between = np.maximum(np.maximum(first - high, low - last), 0.0)
+    return float(np.linalg.norm(between)) if np.isfinite(between).all() else 0.0
+
+
+def _wide(corners: Array) -> Array:
+    """Corners farther apart, so that those of a thin volume determine its turn."""
+    middle = corners.mean(axis=0)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    half = np.maximum((high - low) / 2.0, CORRECTIONS.wide_m)
+    return np.asarray(middle + half * (2.0 * np.indices((2, 2, 2)).reshape(3, 8).T - 1.0))

@@ -1,0 +1,161 @@
+"""Volumes in a map: boxes, balls, and polygons that are extended along their normal."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.tuning import VOLUMES
+
+Vector: TypeAlias = tuple[float, float, float]
+
+
+class Box(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="box"):
+    """A box with any orientation."""
+
+    center_m: Vector
+    """In the map [m]."""
+    size_m: Vector
+    """Along u, v and u × v [m]."""
+    u: Vector = (1.0, 0.0, 0.0)
+    """Unit vectors along two edges, in the map."""
+    v: Vector = (0.0, 1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        _check("box", self.center_m, self.u, self.v)
+        _check_lengths("box", self.size_m)
+
+
+class Sphere(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="sphere"):
+    """A ball."""
+
+    center_m: Vector
+    """In the map [m]."""
+    radius_m: float
+
+    def __post_init__(self) -> None:
+        _check("sphere", self.center_m)
+        _check_lengths("sphere", (self.radius_m,))
+
+
+class Prism(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="prism"):
+    """A polygon in a plane, extended along the normal u × v; the plane is level by default."""
+
+    polygon_m: tuple[tuple[float, float], ...]
+    """Its corners along u and v, in order, not closed [m]."""
+    low_m: float
+    high_m: float
+    """Where it begins and ends along the normal [m]."""
+    origin_m: Vector = (0.0, 0.0, 0.0)
+    """Place in the map where u, v and the distance along the normal are 0 [m]."""
+    u: Vector = (1.0, 0.0, 0.0)
+    v: Vector = (0.0, 1.0, 0.0)
+
+    def __post_init__(self) -> None:
+        from shapely import Polygon, is_valid_reason
+
+        corners = [x for corner in self.polygon_m for x in corner]
+        _check("prism", (*self.origin_m, *corners, self.low_m, self.high_m), self.u, self.v)
+        _check_lengths("prism", (self.high_m - self.low_m,))
+        if not 3 <= len(self.polygon_m) <= VOLUMES.most_corners:
+            raise ConfigError(
+                f"prism: expected 3 to {VOLUMES.most_corners} corners, got {len(self.polygon_m)}"
+            )
+        polygon = Polygon(self.polygon_m)
+        if not polygon.is_valid or polygon.area < VOLUMES.least_m2:
+            raise ConfigError(
+                f"prism: expected a polygon whose edges do not cross: {is_valid_reason(polygon)}"
+            )
+
+
+Volume: TypeAlias = Box | Sphere | Prism
+
+
+def contains(volume: Volume, p_map: Array) -> NDArray[np.bool_]:
+    """Which points of the map are in a volume, (N, 3) [m] -> (N,)."""
+    if isinstance(volume, Sphere):
+        away_m = np.linalg.norm(p_map - np.array(volume.center_m), axis=1)
+        return np.asarray(away_m <= volume.radius_m)
+    p = (p_map - _origin(volume)) @ _axes(volume).T
+    if isinstance(volume, Box):
+        return np.asarray(np.all(np.abs(p) <= np.array(volume.size_m) / 2.0, axis=1))
+    from shapely import Polygon, contains_xy, prepare
+
+    inside = (p[:, 2] >= volume.low_m) & (p[:, 2] <= volume.high_m)
+    polygon = Polygon(volume.polygon_m)
+    prepare(polygon)
+    inside[inside] = contains_xy(polygon, p[inside, 0], p[inside, 1])
+    return np.asarray(inside)
+
+
+def corners_of(volume: Volume) -> Array:
+    """Corners of a box around a volume, along its own axes, in the map [m], (8, 3)."""
+    if isinstance(volume, Sphere):
+        low, high = np.full(3, -volume.radius_m), np.full(3, volume.radius_m)
+    elif isinstance(volume, Box):
+        low, high = -np.array(volume.size_m) / 2.0, np.array(volume.size_m) / 2.0
+    else:
+        polygon = np.array(volume.polygon_m)
+        low = np.array([*polygon.min(axis=0), volume.low_m])
+        high = np.array([*polygon.max(axis=0), volume.high_m])
+    which = np.indices((2, 2, 2)).reshape(3, 8).T
+    return np.asarray(np.where(which, high, low) @ _axes(volume) + _origin(volume))
+
+
+def bounds_of(volume: Volume) -> tuple[Array, Array]:
+    """Smallest and largest coordinates of a volume in the map [m], (3,) each."""
+    corners = corners_of(volume)
+    return corners.min(axis=0), corners.max(axis=0)
+
+
+def moved(volume: Volume, T_new_old: SE3) -> Volume:
+    """The same volume in another map.
+
+    Args:
+        volume: In the old map.
+        T_new_old: Pose of the old map in the new one.
+    """
+    origin = _vector(T_new_old @ _origin(volume))
+    if isinstance(volume, Sphere):
+        return msgspec.structs.replace(volume, center_m=origin)
+    u, v = (_vector(T_new_old.R @ np.array(axis)) for axis in (volume.u, volume.v))
+    if isinstance(volume, Box):
+        return msgspec.structs.replace(volume, center_m=origin, u=u, v=v)
+    return msgspec.structs.replace(volume, origin_m=origin, u=u, v=v)
+
+
+def _origin(volume: Volume) -> Array:
+    return np.array(volume.origin_m if isinstance(volume, Prism) else volume.center_m)
+
+
+def _axes(volume: Volume) -> Array:
+    """Unit vectors u, v and u × v, rows of (3, 3)."""
+    if isinstance(volume, Sphere):
+        return np.eye(3)
+    return np.array([volume.u, volume.v, np.cross(volume.u, volume.v)])
+
+
+def _check(name: str, numbers: tuple[float, ...], *axes: Vector) -> None:
+    every = np.array([*numbers, *(x for axis in axes for x in axis)])
+    if not np.isfinite(every).all() or np.abs(every).max() > VOLUMES.farthest_m:
+        raise ConfigError(f"{name}: expected finite coordinates, got {every.tolist()}")
+    if axes and np.abs(np.array(axes) @ np.array(axes).T - np.eye(2)).max() > VOLUMES.axes:
+        raise ConfigError(f"{name}: expected u and v of length 1 at a right angle, got {axes}")
+
+
+def _check_lengths(name: str, lengths_m: tuple[float, ...]) -> None:
+    if not all(0.0 < length_m <= VOLUMES.longest_m for length_m in lengths_m):
+        raise ConfigError(
+            f"{name}: expected a volume that is not empty, up to {VOLUMES.longest_m:.0f} m long, "
+            f"got {', '.join(f'{length_m:g} m' for length_m in lengths_m)}"
+        )
+
+
+def _vector(values: Array) -> Vector:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -1,0 +1,37 @@
+"""The file and the figures of a map that was made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.evaluation.thickness import plane_thickness
+from recon4.export.laz import export_laz
+from recon4.export.points import CRS_OF_MAP, OutputCrs
+from recon4.georeference.crs_file import read_crs
+from recon4.mapping.tiles import TileSet
+from recon4.model.figures import MapFigures
+from recon4.progress import Progress
+from recon4.workflows.corrected_classes import CorrectionsInMap, corrected
+
+
+def map_figures(tiles: TileSet, corrections: CorrectionsInMap) -> MapFigures:
+    """Figures of a map with the corrections of classes that it was made with."""
+    low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)
+    return MapFigures(
+        points=len(tiles),
+        bounds_m=(low, high),
+        strays=tiles.strays,
+        surface="fitted" if tiles.surface == "fitted" else "raw",
+        thickness=plane_thickness(tiles),
+        thickness_as_measured=(
+            plane_thickness(tiles.as_measured()) if tiles.surface == "fitted" else None
+        ),
+        corrections=corrected(corrections, tiles.notes.corrected),
+    )
+
+
+def write_map_laz(folder: Path, level: Path, *, progress: Progress) -> None:
+    """Write ``map.laz`` beside the tiles of a map, in the CRS of the stage ``level``."""
+    crs = read_crs(level)
+    out = OutputCrs(crs.wkt, crs.to_crs) if crs else CRS_OF_MAP
+    export_laz(folder, folder / "map.laz", out, progress=progress)
