@@ -20,6 +20,7 @@ import recon4
 from recon4.cli.backup import backups
 from recon4.cli.batch import batches
 from recon4.cli.calibration import calibration
+from recon4.cli.classify import classify
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.control import control
 from recon4.cli.delivery import delivery, is_delivery, show_checked
@@ -58,6 +59,7 @@ for _part in (server, assistant, live, simulation, slices, backups, space):
     app.add_typer(_part)
 for _part in (
     calibration,
+    classify,
     control,
     evaluation,
     exports,

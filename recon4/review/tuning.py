@@ -153,3 +153,19 @@ class CertificateTuning(Struct, frozen=True, kw_only=True):
 
 
 CERTIFICATES = CertificateTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CorrectionFileTuning:
+    """Lists of corrections of classes."""
+
+    max_bytes: int = 4 << 20
+    most: int = 1000
+    """Corrections in a list."""
+    columns: frozenset[str] = frozenset(
+        ("shape", "to", "only", "why", "x", "y", "z", "dx", "dy", "dz", "yaw_deg", "radius")
+    ) | {"polygon", "low", "high"}
+    """Of a table."""
+
+
+CORRECTION_FILES = CorrectionFileTuning()

@@ -1,0 +1,144 @@
+"""The command ``recon4 classify``: give points of a map another class."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from getpass import getuser
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from recon4.cli.confinement import confine_command
+from recon4.cli.terminal import write
+from recon4.errors import ConfigError
+
+if TYPE_CHECKING:
+    from recon4.model.class_corrections import ClassCorrection
+    from recon4.review.correction_files import ListedCorrection
+
+classify = typer.Typer()
+
+
+@classify.command("classify")
+def classify_points(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    corrections: Annotated[
+        Path | None,
+        typer.Argument(help="List of volumes and their new classes, .json or a table."),
+    ] = None,
+    *,
+    undo: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ID", help="Withdraw a correction; repeatable. `all` = each."),
+    ] = None,
+    apply: Annotated[
+        bool, typer.Option("--apply", help="Note the corrections and make the map again.")
+    ] = False,
+) -> None:
+    """List the corrections of classes of a map, count what new ones would change, apply or undo.
+
+    Without --apply the map and its journal stay as they are.
+    """
+    confine_command(write=[project])
+    if corrections and undo:
+        raise ConfigError("expected CORRECTIONS or --undo, got both")
+    if corrections:
+        return _correct(project, corrections, apply=apply)
+    if undo:
+        return _withdraw(project, undo, apply=apply)
+    if apply:
+        raise ConfigError("--apply: expected CORRECTIONS or --undo")
+    _list(project)
+
+
+def _list(project: Path) -> None:
+    from recon4.review.class_corrections import corrections_in_map, described, waiting
+    from recon4.review.journal import read_decided
+    from recon4.review.state import read_summary
+    from recon4.store.project import read_artifacts
+
+    read_artifacts(project)  # raises if it is no project
+    decided, in_map = read_decided(project), corrections_in_map(read_summary(project))
+    for one in decided.corrections:
+        write(described(one) + ("" if one.id in in_map else "  not in the map yet"))
+    for name in waiting(decided, in_map).withdrawn:
+        write(f"{name}  is still in the map: it is withdrawn, or others come before it")
+    if not decided.corrections:
+        write("no correction of classes")
+
+
+def _correct(project: Path, path: Path, *, apply: bool) -> None:
+    from recon4.review.correction_files import read_corrections
+
+    listed = read_corrections(path)
+    made, seen = _counted(project, listed)
+    if apply:
+        _note(project, [(one, entry.why) for one, entry in zip(made, listed, strict=True)], seen)
+        _make_again(project)
+
+
+def _counted(
+    project: Path, listed: Sequence[ListedCorrection]
+) -> tuple[list[ClassCorrection], int]:
+    """Corrections as the journal keeps them, and the number of its rows that were seen.
+
+    Raises:
+        ConfigError: If one of them changes no point.
+    """
+    from recon4.model.class_corrections import titles_of
+    from recon4.review.class_corrections import corrections_in_map, try_correction, waiting
+    from recon4.review.decisions import fold
+    from recon4.review.journal import read_rows
+    from recon4.review.state import read_summary
+    from recon4.store.project import read_artifacts
+
+    artifacts, rows = read_artifacts(project), read_rows(project)
+    decided = fold(row.decision() for row in rows)
+    before = list(waiting(decided, corrections_in_map(read_summary(project))).corrections)
+    made: list[ClassCorrection] = []
+    for one in listed:
+        trial = try_correction(artifacts, one.what, [*before, *made])
+        if trial.correction is None:
+            raise ConfigError(f"{one.where}: {trial.refused}; nothing was changed")
+        now = ", ".join(f"{count} {title}" for title, count in trial.now.items())
+        to = titles_of([one.what.to])[0]
+        write(f"{one.where}: {trial.points} points, now: {now} -> {to}")
+        made.append(trial.correction)
+    return made, len(rows)
+
+
+def _note(project: Path, made: Sequence[tuple[ClassCorrection, str]], seen: int) -> None:
+    from recon4.review.decisions import Decision, DecisionKind
+    from recon4.review.journal import append
+
+    for one, why in made:
+        decision = Decision(kind=DecisionKind.CLASSIFY, who=getuser(), why=why, correction=one)
+        append(project, decision, seen_seq=seen)
+
+
+def _withdraw(project: Path, ids: Sequence[str], *, apply: bool) -> None:
+    from recon4.review.class_corrections import described
+    from recon4.review.decisions import Decision, DecisionKind
+    from recon4.review.journal import append, read_decided
+
+    there = {one.id: one for one in read_decided(project).corrections}
+    chosen = list(there) if list(ids) == ["all"] else list(dict.fromkeys(ids))
+    unknown = [one for one in chosen if one not in there]
+    if unknown or not chosen:
+        raise ConfigError(f"no correction {', '.join(unknown)}; there are: {', '.join(there)}")
+    for one in chosen:
+        write(f"withdraw {described(there[one])}")
+        if apply:
+            append(project, Decision(kind=DecisionKind.WITHDRAW, who=getuser(), withdraws=one))
+    if apply:
+        _make_again(project)
+
+
+def _make_again(project: Path) -> None:
+    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.pipeline import remake
+
+    with watcher() as progress:
+        summary = remake(project, progress=progress)
+    write(describe_summary(summary))

@@ -1,0 +1,152 @@
+"""Lists of corrections of classes as JSON or as a table, for ``recon4 classify``."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import msgspec
+
+from recon4.errors import ConfigError
+from recon4.model.class_corrections import Reclassified, class_named
+from recon4.model.volumes import Box, Prism, Sphere, Volume
+from recon4.review.tuning import CORRECTION_FILES
+from recon4.untrusted.bounded import read_text_limited
+from recon4.untrusted.names import check_note
+
+
+@dataclass(frozen=True, slots=True)
+class ListedCorrection:
+    """A correction in a file."""
+
+    where: str
+    """File and line or number, for messages."""
+    what: Reclassified
+    why: str
+
+
+class _Entry(msgspec.Struct, forbid_unknown_fields=True):
+    """A correction in a JSON file."""
+
+    volume: Volume
+    to: str
+    only: tuple[str, ...] = ()
+    why: str = ""
+
+
+def read_corrections(path: Path) -> tuple[ListedCorrection, ...]:
+    """Read a list of corrections: ``.json``, else a table with a row for each.
+
+    Raises:
+        ConfigError: If the file is no such list, with the line and what was expected.
+    """
+    text = read_text_limited(path, CORRECTION_FILES.max_bytes, failure=ConfigError)
+    of = _of_json if path.suffix.lower() == ".json" else _of_table
+    found = tuple(of(text, path.name))
+    if not 1 <= len(found) <= CORRECTION_FILES.most:
+        raise ConfigError(
+            f"{path.name}: expected 1 to {CORRECTION_FILES.most} corrections, got {len(found)}"
+        )
+    return found
+
+
+def _of_json(text: str, name: str) -> Iterable[ListedCorrection]:
+    try:
+        entries = json.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise ConfigError(f"{name} is no JSON: {error}") from error
+    if not isinstance(entries, list):
+        raise ConfigError(f"{name}: expected a list of corrections")
+    for k, entry in enumerate(entries, start=1):
+        where = f"{name}, correction {k}"
+        try:
+            one = msgspec.convert(entry, _Entry)
+        except msgspec.ValidationError as error:
+            raise ConfigError(f"{where}: {error}") from error
+        yield _listed(where, one.volume, one.to, only=one.only, why=one.why)
+
+
+def _of_table(text: str, name: str) -> Iterable[ListedCorrection]:
+    header = text.partition("\n")[0]
+    rows = csv.DictReader(io.StringIO(text), delimiter=";" if ";" in header else ",")
+    names = {*(rows.fieldnames or ())}
+    if not {"shape", "to"} <= names or names - CORRECTION_FILES.columns:
+        raise ConfigError(
+            f"{name}: expected the columns shape and to, and of "
+            f"{', '.join(sorted(CORRECTION_FILES.columns))}, got {', '.join(sorted(names))}"
+        )
+    for row in rows:
+        where = f"{name}, line {rows.line_num}"
+        if None in row:
+            raise ConfigError(f"{where}: more cells than the header names")
+        cells = {key: (value or "").strip() for key, value in row.items()}
+        only = tuple(one for one in cells.get("only", "").split("|") if one.strip())
+        try:
+            volume = _volume(cells)
+        except ConfigError as error:
+            raise ConfigError(f"{where}: {error}") from error
+        yield _listed(where, volume, cells["to"], only=only, why=cells.get("why", ""))
+
+
+def _listed(
+    where: str, volume: Volume, to: str, *, only: Iterable[str], why: str
+) -> ListedCorrection:
+    try:
+        what = Reclassified(
+            volume=volume,
+            to=int(class_named(to)),
+            only=tuple(int(class_named(one)) for one in only),
+        )
+        note = check_note(why, what="why") if why else ""
+        return ListedCorrection(where, what, note)
+    except ConfigError as error:
+        raise ConfigError(f"{where}: {error}") from error
+
+
+def _volume(cells: Mapping[str, str]) -> Volume:
+    match cells["shape"]:
+        case "box":
+            x, y, z = (_number(cells, name) for name in ("x", "y", "z"))
+            dx, dy, dz = (_number(cells, name) for name in ("dx", "dy", "dz"))
+            yaw = math.radians(_number(cells, "yaw_deg", usual=0.0))
+            u, v = (math.cos(yaw), math.sin(yaw), 0.0), (-math.sin(yaw), math.cos(yaw), 0.0)
+            return Box(center_m=(x, y, z), size_m=(dx, dy, dz), u=u, v=v)
+        case "sphere":
+            x, y, z = (_number(cells, name) for name in ("x", "y", "z"))
+            return Sphere(center_m=(x, y, z), radius_m=_number(cells, "radius"))
+        case "prism":
+            low, high = _number(cells, "low"), _number(cells, "high")
+            return Prism(polygon_m=_polygon(cells.get("polygon", "")), low_m=low, high_m=high)
+        case other:
+            raise ConfigError(f"shape: expected box, sphere or prism, got {other!r}")
+
+
+def _polygon(text: str) -> tuple[tuple[float, float], ...]:
+    """Corners of ``x y, x y, x y`` or ``x y | x y | x y``."""
+    corners: list[tuple[float, float]] = []
+    for corner in text.replace("|", ",").split(","):
+        numbers = corner.split()
+        if len(numbers) != 2:
+            raise ConfigError(f"polygon: expected corners as 'x y, x y, x y', got {text[:60]!r}")
+        x, y = (_float(one, "polygon") for one in numbers)
+        corners.append((x, y))
+    return tuple(corners)
+
+
+def _number(cells: Mapping[str, str], name: str, *, usual: float | None = None) -> float:
+    text = cells.get(name, "")
+    if not text and usual is not None:
+        return usual
+    return _float(text, name)
+
+
+def _float(text: str, name: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise ConfigError(f"{name}: expected a number, got {text[:40]!r}") from error
