@@ -75,7 +75,7 @@ from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.store import ProjectStore
 from recon4_app.projects.thumbnail import Thumbnails
 from recon4_app.projects.trash import Trash
-from recon4_app.review import acknowledgment_routes
+from recon4_app.review import acknowledgment_routes, correction_routes
 from recon4_app.review import routes as review_routes
 from recon4_app.review.hash_checks import ApprovalChecks
 from recon4_app.review.newest_approvals import record_all
@@ -170,7 +170,7 @@ def _routes() -> list[BaseRoute]:
     more = (choices, server_routes, metrics_routes, docs_pages)
     for part in (*more, reference_routes, align_routes, site_routes):
         router.include_router(part.router)
-    for part in (acknowledgment_routes, annotation_routes):
+    for part in (acknowledgment_routes, annotation_routes, correction_routes):
         router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
