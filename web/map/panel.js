@@ -5,6 +5,7 @@ import { slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
 import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
+import { corrections } from "./corrections.js";
 import { measuredSection } from "./measured_panel.js";
 import { notesSection } from "./notes.js";
 import { colorShown, colorsOf, endsShown, heightsOf, heightsShown, page } from "./page.js";
@@ -35,7 +36,8 @@ export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */
         <h2 id="layers-title">Layers</h2>
         ${layers(act)}
       </section>
-      ${placesSections(act)} ${measuredSection(act)} ${notesSection(act)} ${savedSection(act)}`,
+      ${corrections(index)} ${placesSections(act)} ${measuredSection(act)} ${notesSection(act)}
+      ${savedSection(act)}`,
     element,
   );
 }

@@ -3,6 +3,7 @@
 declare global {
   interface HTMLElementTagNameMap {
     "export-panel": import("../projects/export_panel.js").ExportPanel;
+    "class-corrections": import("../shared/class_corrections.js").ClassCorrections;
     "folder-browser": import("../projects/folder_browser.js").FolderBrowser;
     "job-log": import("../projects/project_tools.js").JobLog;
     "job-status": import("../projects/job_status.js").JobStatus;

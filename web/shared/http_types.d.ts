@@ -115,6 +115,14 @@ export interface BeamsContent {
   azimuth_deg: Array<number>;
 }
 
+export interface BoxSpec {
+  shape: "box";
+  center_m: [number, number, number];
+  size_m: [number, number, number];
+  u?: [number, number, number];
+  v?: [number, number, number];
+}
+
 export interface CalibratedVersion {
   rig: string;
   create?: boolean;
@@ -267,6 +275,42 @@ export interface ControlState {
 export interface ControlVerdict {
   level: "good" | "warning" | "bad" | "note";
   text: string;
+}
+
+export interface CorrectionCount {
+  points: number;
+  now: Record<string, number>;
+  inside: number;
+  refused: string;
+  seq: number;
+}
+
+export interface CorrectionSpec {
+  volume: any;
+  to: string;
+  only?: Array<string>;
+  map: string;
+}
+
+export interface CorrectionView {
+  id: string;
+  to: string;
+  only: Array<string>;
+  points: number;
+  who: string;
+  why: string;
+  time: string;
+  in_map: boolean;
+}
+
+export interface CorrectionsView {
+  seq: number;
+  corrections: Array<CorrectionView>;
+  withdrawn: Array<string>;
+  may_correct: boolean;
+  may_process: boolean;
+  classes: Array<string>;
+  left_out: Array<string>;
 }
 
 export interface Credentials {
@@ -735,6 +779,15 @@ export interface NewCapture {
   place?: string;
 }
 
+export interface NewCorrection {
+  volume: any;
+  to: string;
+  only?: Array<string>;
+  map: string;
+  why?: string;
+  seen_seq: number;
+}
+
 export interface NewDecision {
   kind: "accept" | "reject" | "restore" | "replace" | "add";
   frame_i: number;
@@ -939,6 +992,16 @@ export interface PredictedPose {
   frame_i: number;
   frame_j: number;
   T_i_j: Array<number>;
+}
+
+export interface PrismSpec {
+  shape: "prism";
+  polygon_m: Array<[number, number]>;
+  low_m: number;
+  high_m: number;
+  origin_m?: [number, number, number];
+  u?: [number, number, number];
+  v?: [number, number, number];
 }
 
 export interface ProblemDetail {
@@ -1384,6 +1447,12 @@ export interface SnapPoint {
   sd_m: number;
 }
 
+export interface SphereSpec {
+  shape: "sphere";
+  center_m: [number, number, number];
+  radius_m: number;
+}
+
 export interface StageStatus {
   stage: string;
   state: string;
@@ -1567,6 +1636,10 @@ export interface Operations {
     path: { project_id: string; note_id: string };
     response: string;
   };
+  "DELETE /api/projects/{project_id}/review/classes/{correction}": {
+    path: { project_id: string; correction: string };
+    response: CorrectionsView;
+  };
   "DELETE /api/projects/{project_id}/slices/control/site": {
     path: { project_id: string };
     response: string;
@@ -1744,6 +1817,10 @@ export interface Operations {
   "GET /api/projects/{project_id}/review/acknowledgments": {
     path: { project_id: string };
     response: AcknowledgmentsView;
+  };
+  "GET /api/projects/{project_id}/review/classes": {
+    path: { project_id: string };
+    response: CorrectionsView;
   };
   "GET /api/projects/{project_id}/review/effect": {
     path: { project_id: string };
@@ -2063,6 +2140,16 @@ export interface Operations {
     path: { project_id: string };
     body: Approve;
     response: ReviewView;
+  };
+  "POST /api/projects/{project_id}/review/classes": {
+    path: { project_id: string };
+    body: NewCorrection;
+    response: CorrectionsView;
+  };
+  "POST /api/projects/{project_id}/review/classes/count": {
+    path: { project_id: string };
+    body: CorrectionSpec;
+    response: CorrectionCount;
   };
   "POST /api/projects/{project_id}/review/decisions": {
     path: { project_id: string };

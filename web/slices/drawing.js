@@ -33,6 +33,7 @@ export const page = {
   measuring: false,
   measured: /** @type {PickView[]} */ ([]), // at most two points
   picked: /** @type {PickView | null} */ (null),
+  outline: /** @type {import("./findings.js").Outline} */ ({ corners: [], drawing: false }),
   reading: "", // what is known of the picked points
   mode: /** @type {"split" | "swipe"} */ ("split"),
   swipe: 50, // where the second slice begins [%]

@@ -1,5 +1,6 @@
-// Findings in slices: double walls, distances to a reference, control points; and exported files.
+// Findings in slices: double walls, distances, control points, classes; and exported files.
 
+import { classesPanel } from "./classes.js";
 import { controlPanel } from "./control.js";
 import { doublesPanel } from "./doubles.js";
 import { exportPanel } from "./export.js";
@@ -17,6 +18,10 @@ import { html, render } from "../shared/dom.js";
  * @property {(place: number[] | null) => void} point marks a place on the map from above
  * @property {() => Promise<void>} reload
  * @property {() => PickView | null} measured the picked point
+ * @property {(action?: "draw" | "back" | "clear") => Outline} outline changes the polygon
+ * @typedef {object} Outline the polygon whose points get another class
+ * @property {Array<[number, number]>} corners u, v [m]
+ * @property {boolean} drawing whether clicks are its corners
  * @typedef {object} Panel
  * @property {() => void} [show] the slice has changed
  * @property {(facts: SliceFacts) => void} [facts] what is known of the map has changed
@@ -27,6 +32,7 @@ const PANELS = [
   ["Double walls", doublesPanel],
   ["Compare with a reference", referencePanel],
   ["Control and check points", controlPanel],
+  ["Correct classes", classesPanel],
   ["Export", exportPanel],
 ];
 

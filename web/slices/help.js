@@ -14,7 +14,7 @@ const KEYS = [
   ["0", "Whole slice"],
   ["Arrows", "Pan the slice, when it has the focus"],
   ["Enter", "Pick the point in the middle"],
-  ["Esc", "End measuring"],
+  ["Esc", "End measuring, and drawing a polygon"],
 ];
 
 export function help(/** @type {HTMLElement} */ dialog) {

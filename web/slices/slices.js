@@ -45,6 +45,7 @@ function change(next, { keep = false } = {}) {
   const state = { ...before, ...next };
   page.state = state;
   const place = (/** @type {SliceState} */ one) => format({ ...one, color: "height", t: 0 });
+  if (place(before) !== place(state)) outline("clear");
   if (!keep && place(before) !== place(state)) clearMeasure();
   const { u, v, m } = state;
   if (u === null || v === null) first.frame = second.frame = null;
@@ -146,6 +147,7 @@ function describe() {
 // -- reading points
 
 async function place(/** @type {Place} */ { u, v, reach }) {
+  if (page.outline.drawing) return corner([u, v]);
   const { state, facts, measuring, measured } = page;
   const answer = await pickOnSlice(id, {
     plane: planeOf(state),
@@ -173,9 +175,37 @@ function mark() {
   const text = from && to ? lengthText(from, to) : "";
   const points = measuring || measured.length ? measured : picked ? [picked] : [];
   const along = shown ? stretchMarks(stretch, shown) : [];
-  const marks = [...along, { points: points.map((one) => one.uv), text }];
+  const marks = [...along, { points: points.map((one) => one.uv), text }, ...outlineMarks()];
   first.marks = marks;
   second.marks = marks;
+}
+
+/** The polygon whose points get another class, closed. */
+function outlineMarks() {
+  const { corners } = page.outline;
+  return corners.length ? [{ points: [...corners, corners[0]], dots: corners }] : [];
+}
+
+function corner(/** @type {[number, number]} */ uv) {
+  page.outline = { ...page.outline, corners: [...page.outline.corners, uv] };
+  mark();
+  found.show();
+}
+
+/** Changes the polygon whose points get another class, and returns it. */
+function outline(/** @type {"draw" | "back" | "clear" | undefined} */ action = undefined) {
+  const { corners, drawing } = page.outline;
+  if (action === undefined || (action === "clear" && !corners.length && !drawing))
+    return page.outline;
+  page.outline = {
+    draw: { corners, drawing: !drawing },
+    back: { corners: corners.slice(0, -1), drawing },
+    clear: { corners: [], drawing: false },
+  }[action];
+  read(page.outline.drawing ? "Click the corners of the polygon" : "");
+  mark();
+  found.show();
+  return page.outline;
 }
 
 function clearMeasure() {
@@ -227,7 +257,10 @@ const KEYS = {
   m: () => measure(),
   r: () => otherSurface(),
   0: () => showAll(),
-  Escape: () => measure(false),
+  Escape: () => {
+    if (page.outline.drawing) outline("draw");
+    measure(false);
+  },
   "?": () => showHelp(),
 };
 
@@ -288,6 +321,7 @@ const found = findings(byId("findings"), {
   point: (p) => (above.place = p),
   reload,
   measured: () => page.picked,
+  outline,
 });
 
 async function reload() {

@@ -140,6 +140,21 @@ export function normalOf(/** @type {SliceState} */ state) {
   return state.n.map((x) => x / length);
 }
 
+/** Origin and axes of the coordinates u and v of the slice, the same as on the server. */
+export function axesOf(/** @type {SliceState} */ state) {
+  const n = normalOf(state);
+  const origin_m = triple(originOf(state));
+  if (state.kind === "horizontal") return { origin_m, u: triple([1, 0, 0]), v: triple([0, 1, 0]) };
+  if (state.kind === "vertical")
+    return { origin_m, u: triple([-n[1], n[0], 0]), v: triple([0, 0, 1]) };
+  const cross = (/** @type {number[]} */ a, /** @type {number[]} */ b) =>
+    [0, 1, 2].map((k) => a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3]);
+  const across = cross(Math.abs(n[2]) < 0.999 ? [0, 0, 1] : [0, 1, 0], n);
+  const length = Math.hypot(...across);
+  const u = across.map((x) => x / length);
+  return { origin_m, u: triple(u), v: triple(cross(n, u)) };
+}
+
 /** A point of the plane of the slice. */
 const originOf = (/** @type {SliceState} */ state) =>
   ({

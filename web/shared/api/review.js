@@ -4,7 +4,8 @@ import { ApiError, NO_RESPONSE, request, urlOf } from "../http.js";
 
 /**
  * @import {
- *   Approve, NewAcknowledgment, NewDecision, PointPairs, PredictedPose, Step
+ *   Approve, CorrectionSpec, NewAcknowledgment, NewCorrection, NewDecision, PointPairs,
+ *   PredictedPose, Step
  * } from "../http_types"
  */
 
@@ -92,6 +93,35 @@ export const approveMap = (project_id, approval) =>
   request("POST /api/projects/{project_id}/review/approve", {
     path: { project_id },
     body: approval,
+  });
+
+export const readCorrections = (/** @type {string} */ project_id) =>
+  request("GET /api/projects/{project_id}/review/classes", { path: { project_id } });
+/**
+ * @param {string} project_id
+ * @param {CorrectionSpec} spec
+ */
+export const countCorrection = (project_id, spec) =>
+  request("POST /api/projects/{project_id}/review/classes/count", {
+    path: { project_id },
+    body: spec,
+  });
+/**
+ * @param {string} project_id
+ * @param {NewCorrection} correction
+ */
+export const correctClasses = (project_id, correction) =>
+  request("POST /api/projects/{project_id}/review/classes", {
+    path: { project_id },
+    body: correction,
+  });
+/**
+ * @param {string} project_id
+ * @param {string} correction
+ */
+export const withdrawCorrection = (project_id, correction) =>
+  request("DELETE /api/projects/{project_id}/review/classes/{correction}", {
+    path: { project_id, correction },
   });
 
 /**

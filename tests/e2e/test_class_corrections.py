@@ -1,0 +1,53 @@
+"""Correct classes in a real browser: a polygon in a slice, the clip box on the map."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.conftest import looks
+from tests.e2e.test_pages import fits
+from tests.project_builder import ROOM_M
+from tests.served import office, served
+
+pytestmark = pytest.mark.e2e
+
+server = served(office(points=60_000))
+
+
+@looks("desktop light")
+def test_points_in_a_polygon_and_in_the_clip_box_get_another_class(server, page, screenshot):
+    page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5&t=0.4&u=8&v=5&m=0.03")
+    expect(page.locator(".facing strong")).to_be_visible()
+    page.get_by_text("Correct classes").click()
+    page.get_by_role("button", name="Draw a polygon").click()
+    canvas = page.locator("slice-view canvas").first
+    box = canvas.bounding_box()
+    for x, y in ((-9.0, -4.0), (-9.0, 6.0), (-7.0, 6.0), (-7.0, -4.0)):  # around the wall x = 0
+        place = {"x": box["width"] / 2 + x / 0.03, "y": box["height"] / 2 - y / 0.03}
+        canvas.click(position=place)
+    panel = page.locator("class-corrections")
+    panel.get_by_role("button", name="Count the points").click()
+    expect(panel.get_by_role("status")).to_have_text(re.compile(r"\d+ points, now: unclassified"))
+    panel.get_by_label("Why").fill("a door that stood open")
+    fits(page)
+    page.set_viewport_size({"width": 1440, "height": 1600})  # the polygon and what it changes
+    expect(page.locator("body.drawing")).to_have_count(0)
+    panel.scroll_into_view_if_needed()
+    screenshot(page, "slices-classes")
+    page.set_viewport_size({"width": 1440, "height": 900})
+    panel.get_by_role("button", name="Apply").click()
+    expect(panel).to_contain_text("not in the map yet")
+    expect(panel).to_contain_text("a door that stood open")
+
+    box = f"box={ROOM_M[0] / 2},{ROOM_M[1] / 2},1.5,4,30,6,0"
+    page.goto(f"{server.url}/projects/office/map/?{box}")
+    panel = page.locator("class-corrections")
+    panel.get_by_label("New class").select_option("moving")
+    panel.get_by_role("button", name="Count the points").click()
+    expect(panel.get_by_role("status")).to_have_text(re.compile(r"points, now: unclassified"))
+    screenshot(page, "map-classes")
+    panel.get_by_role("button", name="Apply").click()
+    expect(panel.get_by_text("2 not in the map yet")).to_be_visible()
+    panel.get_by_role("button", name="Undo").last.click()
+    expect(panel.get_by_text("1 not in the map yet")).to_be_visible()

@@ -1,0 +1,54 @@
+// Correct classes: what is inside the clip box gets another class.
+
+import { idHere } from "../shared/address.js";
+import "../shared/class_corrections.js";
+import { html } from "../shared/dom.js";
+import { page } from "./page.js";
+
+/**
+ * @import {Volume} from "../shared/class_corrections.js"
+ * @import {MapIndex} from "../shared/http_types"
+ * @import {Clip} from "./clip.js"
+ */
+
+/**
+ * The clip box between the heights that are shown, as the server expects it; null = there is none.
+ * @param {Clip} clip
+ * @returns {Volume | null}
+ */
+export function volumeOf({ box, heights: [lowest, highest], section }) {
+  if (!box || section) return null;
+  const [x, y, z] = box.center;
+  const low = Math.max(z - box.size[2] / 2, lowest ?? -Infinity);
+  const high = Math.min(z + box.size[2] / 2, highest ?? Infinity);
+  if (!(high > low)) return null;
+  const [c, s] = [Math.cos(box.yaw), Math.sin(box.yaw)];
+  return {
+    shape: "box",
+    center_m: [x, y, (low + high) / 2],
+    size_m: [box.size[0], box.size[1], high - low],
+    u: [c, s, 0],
+    v: [-s, c, 0],
+  };
+}
+
+const hintOf = (/** @type {Clip} */ { box, section }) =>
+  section
+    ? "Remove the section: the points in the clip box are corrected."
+    : box
+      ? "The clip box is empty between the heights that are shown."
+      : "Drag a clip box around the points first.";
+
+/** The section of the panel. */
+export const corrections = (/** @type {MapIndex} */ { key }) =>
+  html`<section aria-labelledby="classes-title">
+    <h2 id="classes-title">Correct classes</h2>
+    <class-corrections
+      .given=${{
+        project: idHere(),
+        map: key,
+        volume: volumeOf(page.state.clip),
+        hint: hintOf(page.state.clip),
+      }}
+    ></class-corrections>
+  </section>`;

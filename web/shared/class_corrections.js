@@ -1,0 +1,257 @@
+// <class-corrections>: give the points in a volume another class: count, apply, undo.
+
+import {
+  correctClasses,
+  countCorrection,
+  readCorrections,
+  remakeMap,
+  withdrawCorrection,
+} from "./api.js";
+import { attempt, html, messagePlace, nothing, render, targetOf, within } from "./dom.js";
+import { count, when } from "./format.js";
+
+/**
+ * @import {CorrectionCount, CorrectionSpec, CorrectionView, CorrectionsView} from "./http_types"
+ * @typedef {CorrectionSpec["volume"]} Volume
+ * @typedef {object} Given what a page says of its map and of the chosen volume
+ * @property {string} project
+ * @property {string} map key of the map that is shown
+ * @property {Volume | null} volume
+ * @property {string} hint how to choose a volume
+ */
+
+const DELIVERED = ""; // all points that the map delivers
+const EVERY = "*"; // and those that it leaves out
+
+export class ClassCorrections extends HTMLElement {
+  #given = /** @type {Given | null} */ (null);
+  #written = ""; // what was given last
+  #view = /** @type {CorrectionsView | null} */ (null);
+  #counted = /** @type {CorrectionCount | null} */ (null);
+  #choice = { to: "building", only: DELIVERED, why: "" };
+  #busy = "";
+  #remade = false;
+
+  /** What is corrected; another map or volume forgets what was counted. */
+  set given(/** @type {Given} */ given) {
+    const written = JSON.stringify(given);
+    if (written === this.#written) return;
+    const isNew = given.map !== this.#given?.map;
+    Object.assign(this, { role: "group" });
+    this.#given = given;
+    this.#written = written;
+    this.#counted = null;
+    this.#draw();
+    if (isNew) this.#work("", async () => this.#show(await readCorrections(given.project)));
+  }
+
+  #show(/** @type {CorrectionsView} */ view) {
+    this.#view = view;
+    this.#counted = null;
+  }
+
+  /**
+   * @param {string} busy shown meanwhile
+   * @param {() => Promise<unknown>} work
+   */
+  async #work(busy, work) {
+    this.#busy = busy;
+    this.#draw();
+    await attempt(within(this, ".error"), work);
+    this.#busy = "";
+    this.#draw();
+  }
+
+  /** @returns {CorrectionSpec} */
+  #spec(/** @type {Given & {volume: Volume}} */ { volume, map }) {
+    const { to, only } = this.#choice;
+    const every = this.#view?.classes ?? [];
+    const chosen = only === EVERY ? every.filter((one) => one !== to) : only ? [only] : [];
+    return { volume, to, only: chosen, map };
+  }
+
+  #count() {
+    const given = this.#given;
+    if (!given?.volume) return;
+    const spec = this.#spec({ ...given, volume: given.volume });
+    const asked = this.#written + JSON.stringify(spec);
+    this.#work("Counting…", async () => {
+      const counted = await countCorrection(given.project, spec);
+      const now = this.#given?.volume && this.#spec({ ...this.#given, volume: this.#given.volume });
+      if (this.#written + JSON.stringify(now) === asked) this.#counted = counted;
+    });
+  }
+
+  #apply() {
+    const [given, counted] = [this.#given, this.#counted];
+    if (!given?.volume || !counted) return;
+    const spec = this.#spec({ ...given, volume: given.volume });
+    const { why } = this.#choice;
+    this.#work("Noting it…", async () => {
+      this.#show(await correctClasses(given.project, { ...spec, why, seen_seq: counted.seq }));
+      this.#remade = false;
+      this.#choice = { ...this.#choice, why: "" };
+      this.dispatchEvent(new Event("applied"));
+    });
+  }
+
+  #undo(/** @type {string} */ id) {
+    const given = this.#given;
+    if (!given) return;
+    this.#work("Undoing…", async () => {
+      this.#show(await withdrawCorrection(given.project, id));
+      this.#remade = false;
+    });
+  }
+
+  #remake() {
+    const given = this.#given;
+    if (!given) return;
+    this.#work("Starting…", async () => {
+      await remakeMap(given.project);
+      this.#remade = true;
+    });
+  }
+
+  #choose(/** @type {Partial<{to: string, only: string}>} */ next) {
+    this.#choice = { ...this.#choice, ...next };
+    this.#counted = null;
+    this.#draw();
+  }
+
+  // -- what is drawn
+
+  #draw() {
+    const [given, view] = [this.#given, this.#view];
+    render(
+      html`${given && view ? this.#form(given, view) : nothing} ${messagePlace()}
+        <p class="quiet" role="status">${this.#busy || this.#countText()}</p>
+        ${view ? this.#list(view) : nothing}`,
+      this,
+    );
+  }
+
+  #form(/** @type {Given} */ { volume, hint }, /** @type {CorrectionsView} */ view) {
+    if (!view.may_correct) return html`<p class="quiet">Reviewers correct classes.</p>`;
+    const { to, only, why } = this.#choice;
+    const idle = this.#busy === "";
+    const able = this.#counted !== null && this.#counted.refused === "";
+    const of = /** @type {Array<[string, string]>} */ ([
+      [DELIVERED, "all points of the map"],
+      [EVERY, "all points, also those left out"],
+      ...view.classes.map((title) => [title, `only ${title}`]),
+    ]);
+    return html`<div class="correction-fields">
+        ${select(
+          "New class",
+          view.classes.map((title) => [title, title]),
+          to,
+          (value) => this.#choose({ to: value }),
+        )}
+        ${select("Of", of, only, (value) => this.#choose({ only: value }))}
+        <label
+          ><span>Why</span
+          ><input
+            maxlength="500"
+            .value=${why}
+            @input=${(/** @type {Event} */ event) => (this.#choice.why = targetOf(event).value)}
+        /></label>
+      </div>
+      ${volume ? nothing : html`<p class="quiet">${hint}</p>`}
+      <div class="buttons">
+        <button type="button" ?disabled=${!volume || !idle} @click=${() => this.#count()}>
+          Count the points
+        </button>
+        <button type="button" ?disabled=${!able || !idle} @click=${() => this.#apply()}>
+          Apply
+        </button>
+      </div>`;
+  }
+
+  /** What was counted, in words. */
+  #countText() {
+    const counted = this.#counted;
+    if (!counted) return "";
+    if (counted.refused) return `Nothing to change: ${counted.refused}.`;
+    const now = Object.entries(counted.now).sort(([, a], [, b]) => b - a);
+    const parts = now.map(([title, n]) => (now.length > 1 ? `${title} ${count(n)}` : title));
+    return `${count(counted.points)} points, now: ${parts.join(", ")}`;
+  }
+
+  #list(/** @type {CorrectionsView} */ view) {
+    const { corrections, withdrawn, may_correct, may_process } = view;
+    const waiting = corrections.filter((one) => !one.in_map).length;
+    const changed = waiting + withdrawn.length;
+    const texts = [
+      waiting ? `${waiting} not in the map yet` : "",
+      withdrawn.length ? `${withdrawn.length} still in the map, but undone or no longer first` : "",
+    ].filter(Boolean);
+    const row = (/** @type {CorrectionView} */ one) =>
+      html`<li>
+        <span
+          ><b>${count(one.points)} points → ${one.to}</b>${
+            one.only.length === 1 ? html` (only ${one.only[0]})` : nothing
+          }${one.in_map ? nothing : html` <em>not in the map yet</em>`}<small
+            >${one.who}, ${when(one.time)}${one.why ? `: ${one.why}` : ""}</small
+          ></span
+        >${
+          may_correct
+            ? html`<button
+                type="button"
+                aria-label="Undo the correction to ${one.to} by ${one.who}, ${when(one.time)}"
+                ?disabled=${this.#busy !== ""}
+                @click=${() => this.#undo(one.id)}
+              >
+                Undo
+              </button>`
+            : nothing
+        }
+      </li>`;
+    return html`${
+      corrections.length
+        ? html`<ol class="corrections">
+            ${corrections.map(row)}
+          </ol>`
+        : nothing
+    }
+    ${
+      this.#remade
+        ? html`<p>The map is made again: <a href="../">its progress</a>.</p>`
+        : changed
+          ? html`<p>${texts.join("; ")}.</p>
+              ${
+                may_process
+                  ? html`<div class="buttons">
+                      <button
+                        type="button"
+                        ?disabled=${this.#busy !== ""}
+                        @click=${() => this.#remake()}
+                      >
+                        Make the map again
+                      </button>
+                    </div>`
+                  : nothing
+              }`
+          : nothing
+    }`;
+  }
+}
+
+/**
+ * @param {string} label
+ * @param {Array<string[]>} options value and text
+ * @param {string} chosen
+ * @param {(value: string) => void} choose
+ */
+const select = (label, options, chosen, choose) =>
+  html`<label
+    ><span>${label}</span
+    ><select @change=${(/** @type {Event} */ event) => choose(targetOf(event).value)}>
+      ${options.map(
+        ([value, text]) =>
+          html`<option value=${value} ?selected=${value === chosen}>${text}</option>`,
+      )}
+    </select></label
+  >`;
+
+customElements.define("class-corrections", ClassCorrections);
