@@ -264,8 +264,7 @@ def _conflicts(root: Path, summary: dict[str, Any]) -> int:
 
 
 def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
-    if decisions_in_map(root) != asked.decided.key:
-        raise NotApprovable("the last decisions are not in the map: rebuild the map first")
+    _refuse_without_decisions(root, asked.decided)
     if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
         raise NotApprovable(
             f"{asked.conflicts} accepted loop closures do not fit the graph: reject them, or "
@@ -286,6 +285,15 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
             CheckedArtifact.open(root / "artifacts" / key).check_all()
     except Altered as error:
         raise NotApprovable(f"{error}: rebuild the map first") from error
+
+
+def _refuse_without_decisions(root: Path, decided: Decided) -> None:
+    try:
+        is_current = decisions_in_map(root) == decided.key
+    except StoreError as error:
+        raise NotApprovable(f"{error}: rebuild the map first") from error
+    if not is_current:
+        raise NotApprovable("the last decisions are not in the map: rebuild the map first")
 
 
 def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path) -> Approval:

@@ -39,7 +39,7 @@ def make_artifact(root, key):
     folder.mkdir()
     (folder / "points.txt").write_text(f"points of {key}\n")
     files = {"points.txt": FileDigest.of(folder / "points.txt").to_json()}
-    empty = {"recipe": {}, "done": {}, "figures": {}, "versions": {}}
+    empty = {"recipe": {"inputs": {}}, "done": {}, "figures": {}, "versions": {}}
     write_json(folder / "manifest.json", empty | {"files": files})
 
 
@@ -140,7 +140,10 @@ def forge_journal(root):
             lambda root: (root / "artifacts/ab/points.txt").write_text("points of AB\n"),
             "artifacts/ab/points.txt: expected .* rebuild the map first",
         ),
-        (lambda root: (root / "artifacts/ab/manifest.json").unlink(), "manifest.json cannot be"),
+        (
+            lambda root: (root / "artifacts/ab/manifest.json").unlink(),
+            "manifest.json: cannot be read",
+        ),
     ],
 )
 def test_what_is_not_as_it_was_made_is_not_signed(root, key, spoil, words):
