@@ -53,7 +53,7 @@ def classify_points(
 
 
 def _list(project: Path) -> None:
-    from recon4.review.class_corrections import corrections_in_map, described, waiting
+    from recon4.review.class_corrections import corrections_in_map, described, not_in_map
     from recon4.review.journal import read_decided
     from recon4.review.state import read_summary
     from recon4.store.project import read_artifacts
@@ -62,7 +62,7 @@ def _list(project: Path) -> None:
     decided, in_map = read_decided(project), corrections_in_map(read_summary(project))
     for one in decided.corrections:
         write(described(one) + ("" if one.id in in_map else "  not in the map yet"))
-    for name in waiting(decided, in_map).withdrawn:
+    for name in not_in_map(decided, in_map).withdrawn:
         write(f"{name}  is still in the map: it is withdrawn, or others come before it")
     if not decided.corrections:
         write("no correction of classes")
@@ -87,7 +87,7 @@ def _counted(
         ConfigError: If one of them changes no point.
     """
     from recon4.model.class_corrections import titles_of
-    from recon4.review.class_corrections import corrections_in_map, try_correction, waiting
+    from recon4.review.class_corrections import corrections_in_map, not_in_map, try_correction
     from recon4.review.decisions import fold
     from recon4.review.journal import read_rows
     from recon4.review.state import read_summary
@@ -95,7 +95,7 @@ def _counted(
 
     artifacts, rows = read_artifacts(project), read_rows(project)
     decided = fold(row.decision() for row in rows)
-    before = list(waiting(decided, corrections_in_map(read_summary(project))).corrections)
+    before = list(not_in_map(decided, corrections_in_map(read_summary(project))).corrections)
     made: list[ClassCorrection] = []
     for one in listed:
         trial = try_correction(artifacts, one.what, [*before, *made])

@@ -23,7 +23,7 @@ class _InMap(msgspec.Struct, frozen=True):
 
 
 @dataclass(frozen=True, slots=True)
-class Waiting:
+class CorrectionsNotInMap:
     """How the corrections in force differ from those in the map."""
 
     corrections: tuple[ClassCorrection, ...]
@@ -61,7 +61,7 @@ def corrections_in_map(summary: Mapping[str, object] | None) -> tuple[str, ...]:
     return tuple(one.id for one in found)
 
 
-def waiting(decided: Decided, in_map: Sequence[str]) -> Waiting:
+def not_in_map(decided: Decided, in_map: Sequence[str]) -> CorrectionsNotInMap:
     """Compare the corrections in force with those in the map, `corrections_in_map`."""
     in_force = [one.id for one in decided.corrections]
     same = next(
@@ -69,7 +69,7 @@ def waiting(decided: Decided, in_map: Sequence[str]) -> Waiting:
         min(len(in_force), len(in_map)),
     )
     left = (one.correction for one in decided.corrections[same:])
-    return Waiting(tuple(left), tuple(in_map[same:]))
+    return CorrectionsNotInMap(tuple(left), tuple(in_map[same:]))
 
 
 def try_correction(

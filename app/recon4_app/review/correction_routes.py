@@ -11,7 +11,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.model.class_corrections import GIVEN_CLASSES, titles_of
 from recon4.model.classes import CLASSES
-from recon4.review.class_corrections import CorrectionTrial, corrections_in_map, waiting
+from recon4.review.class_corrections import CorrectionTrial, corrections_in_map, not_in_map
 from recon4.review.decisions import Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
 from recon4.review.state import read_summary
@@ -114,7 +114,7 @@ async def _tried(
         raise Conflict("the map was made again meanwhile: reload the page to correct its classes")
     summary = await run_in_threadpool(read_summary, server.projects.folder(project_id))
     decided = fold(row.decision() for row in rows)
-    before = waiting(decided, corrections_in_map(summary)).corrections
+    before = not_in_map(decided, corrections_in_map(summary)).corrections
     terms = server.slices.terms(project_id, caller.name)
     data = await caller.wait(
         server.slices.run_interactive(terms, correction_work.tried, artifacts, what, before)
@@ -148,7 +148,7 @@ def _view(root: Path, who: Person) -> CorrectionsView:
             )
             for one in decided.corrections
         ],
-        withdrawn=list(waiting(decided, in_map).withdrawn),
+        withdrawn=list(not_in_map(decided, in_map).withdrawn),
         may_correct=who.may(Permission.REVIEW),
         may_process=who.may(Permission.PROCESS),
         classes=[CLASSES[one].title for one in GIVEN_CLASSES],
