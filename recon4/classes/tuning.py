@@ -87,8 +87,7 @@ class CarrierVolumeTuning(Struct, frozen=True, kw_only=True):
 VOLUME = CarrierVolumeTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CorrectionTuning:
+class CorrectionTuning(Struct, frozen=True, kw_only=True):
     """Corrections of classes by people."""
 
     slot_ns: int = 100_000_000

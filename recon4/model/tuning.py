@@ -74,8 +74,7 @@ class GeoidTuning(Struct, frozen=True, kw_only=True):
 GEOID = GeoidTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class VolumeTuning:
+class VolumeTuning(Struct, frozen=True, kw_only=True):
     """Volumes that people draw in a map."""
 
     farthest_m: float = 1e8

@@ -155,8 +155,7 @@ class CertificateTuning(Struct, frozen=True, kw_only=True):
 CERTIFICATES = CertificateTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CorrectionFileTuning:
+class CorrectionFileTuning(Struct, frozen=True, kw_only=True):
     """Lists of corrections of classes."""
 
     max_bytes: int = 4 << 20

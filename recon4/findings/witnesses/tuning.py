@@ -172,8 +172,7 @@ class LaserMissingTuning(Struct, frozen=True, kw_only=True):
 LASER_MISSING = LaserMissingTuning()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ClassCorrectionTuning:
+class ClassCorrectionTuning(Struct, frozen=True, kw_only=True):
     """Corrections of classes by people."""
 
     told_m: float = 0.05
