@@ -32,6 +32,7 @@ import { orderOf, usual } from "./export_options.js";
 
 const ESTIMATE_AFTER_MS = 500;
 const CORNERS = ["from x", "y", "z", "to x", "y", "z"];
+const THIN_OUT = "Thin out: one point each … mm";
 
 export class ExportPanel extends HTMLElement {
   #chosen = usual();
@@ -128,7 +129,7 @@ export class ExportPanel extends HTMLElement {
       </label>
       ${takes("classes") ? this.#points(choices, takes("all_points")) : nothing}
       ${takes("storey") && choices.storeys.length ? this.#storey(choices, kind) : nothing}
-      ${takes("thin_m") ? this.#number("thin", "Thin out: one point each … mm", "all points") : nothing}
+      ${takes("thin_m") ? this.#number("thin", THIN_OUT, "all points") : nothing}
       ${takes("pixel_m") ? this.#number("pixel", "Pixel, mm", "") : nothing}
       ${takes("cell_m") ? this.#number("cell", "Cell, m", "") : nothing}
       ${this.#more(choices, takes)}
