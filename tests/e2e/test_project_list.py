@@ -3,11 +3,14 @@
 import json
 import os
 
+import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import one_look
 from tests.project_builder import build_project
 from tests.served import served
+
+pytestmark = pytest.mark.e2e
 
 
 def many(root):

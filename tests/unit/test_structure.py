@@ -108,3 +108,11 @@ def test_tuning_records_are_structs_unless_they_complete_settings():
     ]
 
     assert slow == []
+
+
+def test_every_test_in_a_browser_is_marked():
+    """One that is not runs among the others, where no later test can call `asyncio.run`."""
+    files = sorted((ROOT / "tests" / "e2e").rglob("test_*.py"))
+    unmarked = [one.name for one in files if "pytest.mark.e2e" not in one.read_text("utf-8")]
+
+    assert len(files) > 20 and unmarked == []
