@@ -37,8 +37,11 @@ NO_PATHS = {
     ("POST", "/api/rigs/check", "imu"),
     ("POST", "/api/rigs/check", "gnss"),
     ("POST", "/api/projects/{project_id}/calibration/rig", "rig"),
+    ("POST", "/api/projects/{project_id}/exports", "file"),
+    ("POST", "/api/projects/{project_id}/exports/estimate", "file"),
 }
-"""Fields of such a name that hold something else: parts of a rig, the name of one."""
+"""Fields of such a name that hold something else: parts of a rig, the name of one, a kind of file
+of a closed list."""
 RIG = '[rig]\nname = "secret rig"\n\n[[sensor]]\nname = "secret"\nmodel = "VLP-16"\n'
 
 
