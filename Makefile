@@ -6,6 +6,7 @@
 #   make quick               what a change needs before it is committed: two minutes
 #   make site                build the documentation site, which the server serves under /docs
 #   make studies             the tests that are too long for every run: a few minutes
+#   make looks               the tests in the browser, each on a desktop and on a phone
 #   make bench               benchmarks, by hand: they need a quiet machine
 #   make docs                write what is generated: settings, findings, HTTP types, NOTICE
 #   make signatures          write recon4/kernels/signatures.txt: which kernels an installation compiles
@@ -37,7 +38,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs signatures examples constraints lock audit sbom wheel clean
+.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e looks studies bench site docs signatures examples constraints lock audit sbom wheel clean
 .DELETE_ON_ERROR:
 # Their parts run side by side all the same. Other goals wait: no two makes install at a time.
 ifneq ($(filter test quick,$(MAKECMDGOALS)),)
@@ -71,6 +72,9 @@ types: $(VENV)/installed-dev
 
 unit: $(VENV)/installed-dev site kernels bytecode
 	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
+
+looks: $(VENV)/installed-dev site kernels bytecode
+	RECON4_LOOKS=both $(BIN)/python -m pytest -m e2e
 
 e2e: $(VENV)/installed-dev site kernels bytecode
 	$(BIN)/python -m pytest -m e2e --durations=10

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -23,6 +24,8 @@ from tests.service.running import ROOT
 expect.set_options(timeout=45_000)  # two busy cores draw WebGL in software
 
 SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
+BOTH_LOOKS = os.environ.get("RECON4_LOOKS") == "both"
+"""``make looks``: every test on both screens."""
 SCREENS = {"desktop": (1440, 900), "phone": (390, 844)}
 EXPECTED_NOISE = (
     "status of 4",
@@ -62,7 +65,10 @@ looks = pytest.mark.looks
 """Only on these screens, where a test sees the same on the others; ``@looks("desktop light")``."""
 TWO_LOOKS = ("desktop light", "phone dark")
 """Each screen and each color scheme once: layout depends on the screen, colors on the scheme, and
-nothing on both. Only screenshots are made of all four."""
+nothing on both. Only screenshots are made of all four. A test that says nothing takes turns with
+its neighbors: it runs on one of them, by its name."""
+both_looks = looks(*TWO_LOOKS)
+"""What a page has to hold on both screens."""
 one_look = looks(*(TWO_LOOKS if SCREENSHOTS else TWO_LOOKS[:1]))
 """For a long workflow in which only the layout depends on the screen: the test itself looks at it
 on both, with `on_both_screens`."""
@@ -95,9 +101,11 @@ def _asked_for(item: pytest.Item) -> bool:
     mark, call = item.get_closest_marker("looks"), getattr(item, "callspec", None)
     if call is None or "look" not in call.params:
         return True
-    if mark is None:
-        return SCREENSHOTS or call.params["look"] in TWO_LOOKS
-    return call.params["look"] in mark.args
+    if mark is not None:
+        return call.params["look"] in mark.args
+    turn = zlib.crc32(item.nodeid.partition("[")[0].encode()) % len(TWO_LOOKS)
+    asked = TWO_LOOKS if BOTH_LOOKS else TWO_LOOKS[turn : turn + 1]
+    return SCREENSHOTS or call.params["look"] in asked
 
 
 @contextmanager

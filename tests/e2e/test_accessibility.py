@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from recon4_app.pages import WEB
-from tests.e2e.conftest import leave_out_viewer
+from tests.e2e.conftest import both_looks, leave_out_viewer
 from tests.project_builder import build_project
 from tests.review_fixtures import copy_made
 from tests.service.running import SLOW, server_thread
@@ -42,6 +42,7 @@ def server(tmp_path_factory):
         yield running
 
 
+@both_looks
 @pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_has_no_barrier_that_axe_finds(server, page, path):

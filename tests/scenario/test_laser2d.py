@@ -37,6 +37,7 @@ def test_aces_is_as_good_as_published_graph_slam(tmp_path, data):
     assert sum(stage.cpu_seconds for stage in summary.stages) < 0.2 * summary.duration_s
 
 
+@pytest.mark.study
 def test_aces_needs_no_odometry(tmp_path, data):
     """Its first third, in which it comes back to places."""
     whole = read_laser2d([data("laser2d/aces.clf.bz2")], ImportReport())
@@ -51,7 +52,7 @@ def test_aces_needs_no_odometry(tmp_path, data):
     assert np.rad2deg(errors.rotation_mean_rad) < PUBLISHED_DEG
 
 
-@pytest.mark.parametrize("cut", [0.3, 0.9])
+@pytest.mark.parametrize("cut", [0.3, pytest.param(0.9, marks=pytest.mark.study)])
 def test_intel_that_is_cut_off_is_mapped_as_far_as_it_goes(tmp_path, data, cut):
     packed = data("laser2d/intel.clf.bz2").read_bytes()
     (tmp_path / "cut.clf.bz2").write_bytes(packed[: int(cut * len(packed))])

@@ -84,6 +84,7 @@ def test_a_jump_of_eight_meters_and_half_a_turn_is_found(key_scans):
     assert not alone.converged
 
 
+@pytest.mark.study
 def test_scans_of_different_places_do_not_converge(key_scans):
     scans, _ = key_scans
 
@@ -99,6 +100,7 @@ def test_a_corridor_keeps_its_length(corridor_frames):
     assert 12.3 < length_m(steps) < 13.1
 
 
+@pytest.mark.study
 def test_a_car_that_starts_to_drive_is_followed(data):
     folder = data("sequences/hdl64-muehlburg")
 
@@ -122,6 +124,7 @@ def test_a_scanner_at_rest_does_not_drift(data, tmp_path):
     assert np.rad2deg(off.angle()).max() < 0.05
 
 
+@pytest.mark.study
 def test_the_finished_trajectory_of_a_scanner_at_rest_does_not_drift(data, tmp_path):
     pcap, few = data(AT_REST), ["--set", "map.voxel_m=0.1"]
 

@@ -9,7 +9,7 @@ import pytest
 from recon4.cli.main import main
 from tests.service.running import ROOT, server_thread
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.study
 
 TUTORIAL = (ROOT / "docs" / "tutorial" / "first-map.md").read_text("utf-8")
 CHAPTERS = re.split(r"^## ", TUTORIAL, flags=re.MULTILINE)[1:]

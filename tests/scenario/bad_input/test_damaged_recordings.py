@@ -24,7 +24,7 @@ from tests.scenario.bad_input.inputs import (
 # -- cut off
 
 
-@pytest.mark.parametrize("share", [0.5, 0.97])
+@pytest.mark.parametrize("share", [0.5, pytest.param(0.97, marks=pytest.mark.study)])
 def test_a_pcap_cut_off_becomes_a_map_of_what_is_left(pcap, process, tmp_path, share):
     cut = tmp_path / "cut.pcap"
     cut.write_bytes(pcap.read_bytes()[: int(share * pcap.stat().st_size) + 7])
@@ -35,7 +35,9 @@ def test_a_pcap_cut_off_becomes_a_map_of_what_is_left(pcap, process, tmp_path, s
     assert_warned(summary, "cut.pcap", "salvaged")
 
 
-@pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
+@pytest.mark.parametrize(
+    "kind", [*(pytest.param(one, marks=pytest.mark.study) for one in ("bag1", "db3")), "mcap"]
+)
 def test_a_bag_cut_off_becomes_a_map_of_what_is_left(process, tmp_path, kind):
     source = storage_file(write_room_bag(tmp_path, kind, seconds=2.5 if kind == "mcap" else 1.0))
     cut = tmp_path / f"cut{source.suffix}"
