@@ -161,7 +161,7 @@ def _add(
     job = Job(
         id=secrets.token_hex(8),
         project=project_id,
-        inputs=Inputs(export=ExportOrder(file=new.file, options=new.options)),
+        inputs=Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options)),
         created=now(),
         person=person(request).name,
     )

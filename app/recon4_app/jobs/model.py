@@ -57,7 +57,7 @@ class ExportOrder:
 class Inputs:
     """Inputs of a job, with paths of this computer."""
 
-    recordings: tuple[str, ...] = ()
+    recordings: tuple[str, ...]
     """Files or folders."""
     preset: str = "indoor"
     rig: str = ""
