@@ -8,6 +8,7 @@ import sys
 import time
 
 import numpy as np
+import pytest
 
 from recon4.cli.main import main
 from recon4.workflows.map_results import RESULTS as ALL_RESULTS
@@ -46,6 +47,7 @@ def test_the_walk_is_tracked_and_has_accepted_loops(short_project):
     assert summary["lost"] == 0
 
 
+@pytest.mark.study
 def test_one_thread_gives_the_bytes_of_two(short_recording, short_project, tmp_path):
     one_thread = ["--set", "graph.workers=1"]
 

@@ -202,7 +202,7 @@ def answered(server, kill):
     return None
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_an_export_killed_at_random_moments_is_made_whole_by_the_next_request(tmp_path):
     """Server and helper process in turn; what is kept of exports is always whole."""
     rng = random.Random(22)

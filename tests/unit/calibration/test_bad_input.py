@@ -25,6 +25,7 @@ def run(recorded, settings=AUTO):
     return run_calibration(recorded.frames, recorded.odometry, settings=settings, progress=Silent())
 
 
+@pytest.mark.study
 def test_a_sensor_that_the_recording_lacks_is_not_observable_and_stays(dance, tmp_path):
     wrong = mounted(dance.rig, 1, **WRONG)
     absent = replace(wrong.sensors[1], name="absent", T_body_sensor=SE3.identity())

@@ -55,6 +55,7 @@ def test_who_is_lost_is_found_again_at_an_earlier_place(walk):
     assert max(found) < 0.15
 
 
+@pytest.mark.study
 def test_noise_before_the_lidars_accuses_no_imu(walk, monkeypatch):
     """The IMU is checked by the last twelve multiframes, half of which are noise."""
     monkeypatch.setattr(
