@@ -1,7 +1,6 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.registration.plane_map import PlaneMap
@@ -167,7 +166,7 @@ def test_the_variance_of_a_plane_grows_with_the_distance_from_its_center():
     # Few points, noisy, of a sensor that says it is exact: the plane's own error counts.
     rng = np.random.default_rng(4)
     p = np.column_stack([rng.uniform(0.0, 0.2, (12, 2)), rng.normal(0.1, 0.006, 12)])
-    sure = replace(SETTINGS, point_sd_m=1e-4)
+    sure = structs.replace(SETTINGS, point_sd_m=1e-4)
     planes = PlaneMap(sure)
     planes.add(p)
     across, along, _ = np.linalg.eigvalsh(np.cov(p.T, bias=True))
