@@ -1,6 +1,8 @@
 """The points of the page *Map* over HTTP, on a real server with real child processes."""
 
+import hashlib
 import json
+import re
 from itertools import pairwise
 
 import httpx
@@ -11,6 +13,8 @@ from recon4.archive.verify import verify_project
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
 from recon4.store.project import read_artifacts
+from recon4_app.map_view.model import MapIndex
+from recon4_app.map_view.tuning import MAP_CHUNKS
 from tests.project_builder import ROOM_M, build_project
 from tests.served import served
 
@@ -100,7 +104,9 @@ def test_the_sample_is_the_first_points_of_every_tile(server):
 
     data = server.get(address, params={"stored": "xyz", "version": index["version"]}).content
     part = server.get(
-        address, params={"stored": "xyz", "version": 1}, headers={"Range": "bytes=0-99"}
+        address,
+        params={"stored": "xyz", "version": MAP_CHUNKS.version},
+        headers={"Range": "bytes=0-99"},
     )
 
     at = 0
@@ -119,7 +125,7 @@ def test_a_chunk_is_kept_for_ever_and_not_sent_again(server):
 
     again = server.get(
         f"{BASE}/{key}/points",
-        params={"stored": "xyz", "version": 1, "tile": 0, "start": 0, "stop": 10},
+        params={"stored": "xyz", "version": MAP_CHUNKS.version, "tile": 0, "start": 0, "stop": 10},
         headers={"If-None-Match": tag},
     )
 
@@ -148,7 +154,7 @@ def test_hostile_parameters_are_refused(server, query, status):
 
 @pytest.mark.parametrize("key", ["..%2f..", "0" * 64, "x", "map"])
 def test_a_map_that_is_none_of_the_project_is_not_found(server, key):
-    address = f"{BASE}/{key}/points?stored=xyz&version=1&tile=0&start=0&stop=1"
+    address = f"{BASE}/{key}/points?stored=xyz&version={MAP_CHUNKS.version}&tile=0&start=0&stop=1"
 
     assert server.get(address).status_code == 404
     assert server.get("/api/projects/young/map").status_code == 404
@@ -295,3 +301,14 @@ def test_the_walk_has_times_positions_and_nodes(server):
     assert walk["t_s"][-1] == pytest.approx(59.9)
     assert walk["positions_m"][0] == pytest.approx([14.0, 5.0, 1.2])
     assert len(walk["nodes_m"]) == 60
+
+
+def test_a_changed_layout_of_the_index_has_another_version():
+    """Else an index that an earlier version kept would be read as one of this."""
+    layout = json.dumps(MapIndex.model_json_schema(), sort_keys=True)
+    text = re.sub(r'"(description|title)": "[^"]*",? ?', "", layout)
+
+    assert (MAP_CHUNKS.version, hashlib.sha256(text.encode()).hexdigest()[:12]) == (
+        2,
+        "b6213e593171",
+    )
