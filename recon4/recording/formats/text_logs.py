@@ -17,7 +17,7 @@ from recon4.untrusted.limits import LIMITS
 
 MAX_LOG_BYTES = 4 << 30
 """A log of eight hours at 40 Hz with 1081 beams has 8 GB; decompressed logs are smaller."""
-MAX_LOG_LINES = 30_000_000
+MAX_LOG_LINES = 15_000_000
 """Such a log has 12 million; more are empty lines that keep a reader busy."""
 _PIECE = 1 << 20
 _COMPRESSED_PIECE = 1 << 16
