@@ -123,5 +123,6 @@ SUFFIXES = {
     "pcap": ".pcap",
     "pcapng": ".pcapng",
 }
-LINEAR = {bag1_tiny_messages, mcap_tiny_messages}
-"""These are honest work that grows with the file: bounded in memory, not refused."""
+LINEAR = {bag1_tiny_messages, mcap_tiny_messages, bag1_many_chunks}
+"""These are work that grows with the file: bounded in memory; the chunks are refused only when as
+much was decompressed as a recording may hold, for which a slow processor needs ten seconds."""
