@@ -12,7 +12,9 @@ from tests.security.reader_process import GIB, ReaderProcess
 from tests.security.recording_bombs import BOMBS, LINEAR, SUFFIXES
 
 CASES = [
-    pytest.param(kind, build, id=build.__name__)
+    pytest.param(
+        kind, build, id=build.__name__, marks=[pytest.mark.study] if build in LINEAR else []
+    )
     for kind, builds in BOMBS.items()
     for build in builds
 ]

@@ -19,7 +19,7 @@ from tests.service.killing import (
     row_of_the_matrix,
 )
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.study
 
 
 @pytest.fixture

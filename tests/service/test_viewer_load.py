@@ -24,6 +24,7 @@ def million(tmp_path_factory):
     return root
 
 
+@pytest.mark.study
 def test_twenty_people_at_once_each_have_a_map_of_a_million_points(million):
     def ask_for_all(client):
         client.send(camera((8.0, 3.0, 1.5)))
