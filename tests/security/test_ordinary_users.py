@@ -35,7 +35,13 @@ def made(tmp_path_factory):
     return root
 
 
-@pytest.fixture(params=USERS)
+@pytest.fixture(
+    params=[
+        pytest.param("with a home", marks=pytest.mark.study),
+        "without a home",
+        "without a name",
+    ]
+)
 def user(request, made):
     """Runs commands as a user who owns a folder with a project; that of pytest is closed to it."""
     number, environment = USERS[request.param]

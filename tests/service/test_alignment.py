@@ -65,6 +65,7 @@ def test_three_pairs_and_icp_lay_it_on_the_map_and_can_be_undone(server, referen
     assert compared(server, reference)["fit"]["fits"] is False
 
 
+@pytest.mark.study
 def test_pairs_that_are_not_refined_say_so(server, reference):
     p_map = np.add(CORNERS_M, [3.0, 0.0, 0.0])
     pairs = {"p_map": p_map.tolist(), "p_reference": (TURNED @ CORNERS_M).tolist()}
@@ -74,6 +75,7 @@ def test_pairs_that_are_not_refined_say_so(server, reference):
     assert "not refined: ICP" in found["alignment"] and found["fit"].startswith("✕")
 
 
+@pytest.mark.study
 def test_a_reference_moved_by_hand_is_refined_from_there(server, reference):
     T = TURNED.inverse()
     pose = [*np.add(T.t, [0.1, -0.1, 0.05]).tolist(), *T.quat_xyzw().tolist()]

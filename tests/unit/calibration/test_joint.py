@@ -173,6 +173,7 @@ def test_exchanged_mounts_are_called_so(dance, tmp_path):
     )
 
 
+@pytest.mark.study
 def test_an_imu_that_is_far_off_asks_for_no_other_mounts(dance, tmp_path, monkeypatch):
     def never(*_args, **_named):
         raise AssertionError("mounts are searched")
@@ -210,6 +211,7 @@ def test_who_stands_still_learns_nothing_wrong(tmp_path):
     assert status["clock", ""] == "not observable"
 
 
+@pytest.mark.study
 def test_turns_about_the_vertical_leave_axes_unobservable(tmp_path):
     flat = scanned_room.walk(planar, 70, noise_m=0.01, columns=COLUMNS)
     found = run(store(tmp_path, flat, flat.rig, flat.imu), AUTO)
