@@ -5,7 +5,6 @@ import re
 import signal
 
 import numpy as np
-import psutil
 import pytest
 from msgspec import structs
 from playwright.sync_api import expect
@@ -16,7 +15,7 @@ from recon4_app.viewer.client.show import start_m
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.build import Content, bounds
 from tests.e2e.conftest import SCREENSHOTS, looks
-from tests.processes import command_of
+from tests.processes import viewer_process
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
 
@@ -149,11 +148,7 @@ def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, vie
     viewer.keyboard.press("7")
     before = viewer.evaluate(AT_REST, first)
 
-    process = next(
-        one
-        for one in psutil.Process().children(recursive=True)
-        if "recon4_app.viewer.process" in command_of(one)
-    )
+    process = viewer_process(finished.root)
     legend = viewer.get_by_text("Points by raw intensity")
     legend.evaluate(
         "(old) => old.setAttribute('data-old', '')"

@@ -53,6 +53,7 @@ class ViewerPool:
         self._starting: dict[Path, asyncio.Lock] = {}
         self._problems: dict[Path, str] = {}
         """Why the last start of a viewer failed; none once it runs."""
+        self._closed = False
 
     async def socket(self, project: Path) -> Path:
         """Unix socket of the project's viewer, started if there is none or it died.
@@ -61,6 +62,8 @@ class ViewerPool:
             ViewerFailed: If it does not start.
         """
         async with self._starting.setdefault(project, asyncio.Lock()):
+            if self._closed:
+                raise ViewerFailed("the server is ending")
             running = self._running.get(project)
             if running is not None and running[0].returncode is not None:
                 await self._end(*running)  # it died or was idle: remove its socket and record
@@ -80,10 +83,12 @@ class ViewerPool:
                 await self._end(*self._running.pop(project))
 
     async def close(self) -> None:
-        """End all viewers."""
-        for running in self._running.values():
-            await self._end(*running)
-        self._running.clear()
+        """End all viewers, those too that are only starting; none starts after it."""
+        self._closed = True
+        for project, starting in list(self._starting.items()):
+            async with starting:
+                if project in self._running:
+                    await self._end(*self._running.pop(project))
 
     async def _start(self, project: Path) -> Running:
         self._logs.mkdir(parents=True, exist_ok=True)
@@ -99,10 +104,15 @@ class ViewerPool:
                 env=worker_environment() | caches,
             )
         self._children.add(process.pid)
-        if await first_line(process, within_s=VIEWER_POOL.starts_within_s) == READY:
+        ready = False
+        try:
+            ready = await first_line(process, within_s=VIEWER_POOL.starts_within_s) == READY
+        finally:  # who asked for it may be gone, and the request canceled
+            if not ready:
+                await self._end(process, socket)
+        if ready:
             self._problems.pop(project, None)
             return process, socket
-        await self._end(process, socket)
         problem = (
             f"the viewer of {project.name} does not start; its log is in "
             f"{self._logs / project.name}.txt"
