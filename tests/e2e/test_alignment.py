@@ -32,6 +32,7 @@ server = served(projects)
 
 
 @one_look
+@pytest.mark.study
 def test_a_turned_reference_is_found_and_aligned_by_three_pairs(server, page, screenshot):
     page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5")
     expect(page.locator(".facing strong")).to_be_visible()

@@ -153,6 +153,7 @@ def fits(page, inside="main"):
     assert wrong == []
 
 
+@pytest.mark.study
 def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screenshot, tmp_path):
     begin(page, link.url)
     with sending(server, walk):

@@ -34,6 +34,7 @@ def begin(page, server, rig):
 
 
 @looks(*(("phone dark", "phone light") if SCREENSHOTS else ("phone dark",)))
+@pytest.mark.study
 def test_a_backpack_with_a_profiler_is_seen_on_the_phone(server, page, screenshot, tmp_path):
     rig = load_rig("wuerzburg")
     walk = tmp_path / "walk"

@@ -157,6 +157,7 @@ def test_control_points_that_others_keep_changing_are_read_again(server, page):
 
 
 @looks("phone dark")
+@pytest.mark.study
 def test_the_reference_to_remove_is_beside_the_error_that_there_are_too_many(server, page):
     plan = server.root / "plan.xyz"
     plan.write_text("\n".join(f"0.03 {y / 20} {z / 10}" for y in range(200) for z in range(30)))

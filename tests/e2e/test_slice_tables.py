@@ -72,6 +72,7 @@ def test_named_columns_are_shown_before_they_are_used(server, page):
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_a_reference_as_large_as_one_in_millimeters_is_asked_for_its_unit(server, page):
     body = "\n".join(
         f"{x} {y * 500} {z * 300}" for x in (0, 9000) for y in range(20) for z in (0, 9)

@@ -51,6 +51,7 @@ def look():
     return "desktop", "light"
 
 
+@pytest.mark.study
 def test_a_recording_becomes_an_approved_map(server, walk, page, screenshot, browser):
     page.goto(server.url)
     upload(page, walk)

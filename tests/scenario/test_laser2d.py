@@ -63,6 +63,7 @@ def test_intel_that_is_cut_off_is_mapped_as_far_as_it_goes(tmp_path, data, cut):
     assert 0.7 * cut * 13631 < len(found) < 13631
 
 
+@pytest.mark.study
 def test_intel_closes_its_loops(tmp_path, data):
     """The first of three rounds; all of them: ``python -m tests.benchmarks.laser2d``."""
     log = tmp_path / "intel.clf"

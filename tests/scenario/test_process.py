@@ -94,6 +94,7 @@ def test_running_again_reuses_every_stage_and_gives_the_same_bytes(project, proc
         assert after["hashes"]["results"][name] == before["hashes"]["results"][name]
 
 
+@pytest.mark.study
 def test_a_changed_map_setting_reruns_the_map_only(project, process):
     assert process(project, "--set", "map.voxel_m=0.1") == 0
 

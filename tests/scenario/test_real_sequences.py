@@ -58,6 +58,7 @@ def length_m(steps):
     return float(np.linalg.norm(np.diff(t_m, axis=0), axis=1).sum())
 
 
+@pytest.mark.study
 def test_sparse_key_scans_are_registered_within_centimeters(key_scans):
     scans, truth = key_scans
     errors = []

@@ -17,6 +17,7 @@ import pytest
 from recon4.recording.formats.scratch import sweep_scratch
 from recon4.sandbox import available_barriers
 from tests.service.running import ROOT
+from tests.variants import all_but_first_are_studies
 
 pytestmark = pytest.mark.skipif(
     not {"files", "calls"} <= {barrier.name for barrier in available_barriers() if barrier.holds},
@@ -88,7 +89,7 @@ def place(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("command", sorted(COMMANDS))
+@pytest.mark.parametrize("command", all_but_first_are_studies(COMMANDS, first=3))
 def test_a_command_that_a_file_took_over_reaches_nothing(command: str, place: Path) -> None:
     function, arguments = COMMANDS[command]
     environment = {

@@ -92,6 +92,7 @@ def test_2000_mute_connections_hold_up_nobody(server, source_of):
     )
 
 
+@pytest.mark.study
 def test_many_mute_connections_to_a_process_with_few_files_grow_no_log(tmp_path):
     """256 file descriptors: 300 connections once locked all clients out for 63 s, log +204 MB."""
     log = tmp_path / "stderr.txt"

@@ -162,7 +162,11 @@ def test_a_tile_the_cut_does_not_touch_does_not_stop_it(tmp_path):
 
 @pytest.mark.parametrize(
     ("attack", "endings"),
-    [(move_points, ENDINGS), *((attack, ("csv", "pdf")) for attack in ATTACKS[1:])],
+    [
+        (move_points, ("csv", "pdf")),
+        pytest.param(move_points, ENDINGS, marks=pytest.mark.study),
+        *(pytest.param(one, ("csv", "pdf"), marks=pytest.mark.study) for one in ATTACKS[1:]),
+    ],
 )
 def test_the_server_writes_no_approval_on_an_altered_map(office, attack, endings):
     """Every ending under every attack is cut by command above; here each is a child process."""

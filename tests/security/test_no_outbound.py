@@ -57,6 +57,7 @@ def traced(isolated, trace, *command):
 
 
 @pytest.mark.slow
+@pytest.mark.study
 def test_processing_slicing_and_serving_connect_to_nothing_outside(
     isolated, short_recording, tmp_path
 ):

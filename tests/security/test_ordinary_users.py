@@ -38,7 +38,7 @@ def made(tmp_path_factory):
 @pytest.fixture(
     params=[
         pytest.param("with a home", marks=pytest.mark.study),
-        "without a home",
+        pytest.param("without a home", marks=pytest.mark.study),
         "without a name",
     ]
 )

@@ -127,6 +127,7 @@ def test_the_next_server_ends_a_leftover_it_knows_and_nothing_else(root):
         stranger.kill()
 
 
+@pytest.mark.study
 def test_a_viewer_that_was_killed_leaves_no_socket_and_no_record(root):
     with server_process(root) as (server, process):
         for _ in range(2):

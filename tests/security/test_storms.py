@@ -230,6 +230,7 @@ def test_a_stormed_viewer_ends_at_sigterm_only_and_removes_its_files(tmp_path, m
     assert ended.named == ["SIGTERM"]
 
 
+@pytest.mark.study
 def test_a_stormed_worker_leaves_its_job_to_the_next_one(tmp_path):
     recording = recording_with_gate(tmp_path / "walk")
     rng = random.Random(12)
@@ -254,6 +255,7 @@ def test_a_stormed_worker_leaves_its_job_to_the_next_one(tmp_path):
     assert "it continues after the last finished stage" in view["job"]["note"]
 
 
+@pytest.mark.study
 def test_a_recording_whose_terminal_is_closed_is_a_whole_project(tmp_path, rig):
     """As where an SSH connection breaks: SIGHUP, and nobody to write to."""
     t_ns, payloads = spin(2300)

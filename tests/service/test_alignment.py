@@ -41,6 +41,7 @@ def compared(server, reference):
     return server.post(BASE + "/compare", json={"reference": reference}).json()
 
 
+@pytest.mark.study
 def test_a_turned_reference_does_not_fit_and_icp_names_a_way_that_there_is(server, reference):
     found = compared(server, reference)
     answer = aligned(server, reference, how="icp")

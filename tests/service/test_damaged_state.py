@@ -82,7 +82,12 @@ def secure_server_of_these_people(root):
 
 
 @pytest.mark.parametrize(
-    ("damage", "options"), [("half", []), ("text", ["--lan"]), ("middle", ["--lan"])]
+    ("damage", "options"),
+    [
+        pytest.param("half", [], marks=pytest.mark.study),
+        ("text", ["--lan"]),
+        pytest.param("middle", ["--lan"], marks=pytest.mark.study),
+    ],
 )
 def test_without_a_copy_the_server_does_not_start_and_says_why(tmp_path, damage, options, capsys):
     state = tmp_path / ".recon4"

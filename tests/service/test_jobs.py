@@ -173,6 +173,7 @@ def test_jobs_wait_for_their_turn_and_a_project_has_one_at_a_time(server, tmp_pa
     server.wait_state(first, "cancelled")
 
 
+@pytest.mark.study
 def test_a_worker_outlives_a_killed_server_and_is_adopted_by_the_next(tmp_path, recording):
     with server_process(tmp_path) as (server, process):
         job = server.start("office", recording)

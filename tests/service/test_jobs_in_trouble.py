@@ -103,6 +103,7 @@ def test_a_job_the_disk_has_no_room_for_is_refused_with_figures(tmp_path, record
     assert "no space: this job needs about" in answer.json()["detail"]
 
 
+@pytest.mark.study
 def test_room_is_asked_for_again_when_the_turn_comes(tmp_path):
     """The real worker: what was free when the job was taken may be gone."""
     (tmp_path / "walk.pcap").write_bytes(b"no capture")

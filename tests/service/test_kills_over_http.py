@@ -157,6 +157,7 @@ def check_projects(server, root, known):
             ask(server, "POST", f"/api/trash/{one}/restore")  # its response was lost
 
 
+@pytest.mark.study
 def test_a_server_killed_at_random_moments_keeps_what_it_acknowledged(tmp_path):
     rng, known = random.Random(21), Acknowledged()
     build_project(tmp_path / "office", points=1000)

@@ -120,6 +120,7 @@ def start(server):
     assert answer.status_code == 201, answer.text
 
 
+@pytest.mark.study
 def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, walk, project):
     root = project.parent
     address = an_address()

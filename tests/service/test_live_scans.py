@@ -53,6 +53,7 @@ def texts(message):
     return [finding["text"] for finding in message.get("findings", [])]
 
 
+@pytest.mark.study
 def test_a_2d_laser_is_mapped_on_the_phone_and_processed_as_its_log(server, log, tmp_path):
     start(server, str(tmp_path / "projects" / "rigs" / "robot.toml"))
     phone = Phone()
@@ -110,6 +111,7 @@ def test_bad_scans_are_said_on_the_phone_and_recorded(server, log, tmp_path):
     assert phone.newest["pose"]["lost"] is False
 
 
+@pytest.mark.study
 def test_a_laser_that_falls_silent_is_said(server, log, tmp_path):
     start(server, str(tmp_path / "projects" / "rigs" / "robot.toml"))
     began = []

@@ -18,6 +18,7 @@ from tests.made_once import made_once
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.service.running import server_thread
 from tests.service.viser_client import camera, viewing
+from tests.variants import all_but_first_are_studies
 
 POINTS = 5_000
 NAMES = [
@@ -54,7 +55,7 @@ def is_alone(folder, above):
     )
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", all_but_first_are_studies(NAMES))
 def test_a_server_works_on_a_folder_of_any_name(tmp_path, project, name):
     root = tmp_path / "served" / name
     root.mkdir(parents=True)
@@ -80,7 +81,7 @@ def test_a_server_works_on_a_folder_of_any_name(tmp_path, project, name):
     assert is_alone(root, tmp_path / "served")
 
 
-@pytest.mark.parametrize("name", [*NAMES, NO_UTF8])
+@pytest.mark.parametrize("name", all_but_first_are_studies([NO_UTF8, *NAMES]))
 def test_commands_work_on_a_project_of_any_name(tmp_path, project, name):
     folder = tmp_path / "projects" / name
     shutil.copytree(project, folder)

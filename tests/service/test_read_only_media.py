@@ -13,6 +13,7 @@ import pytest
 from tests.deadlines import HANG_S
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.service.viser_client import camera, viewing
+from tests.variants import all_but_first_are_studies
 
 POINTS = 5_000
 NOBODY = 65534
@@ -81,7 +82,7 @@ def command(*words):
     )
 
 
-@pytest.mark.parametrize("name", ["office", "in-use"])
+@pytest.mark.parametrize("name", all_but_first_are_studies(["in-use", "office"]))
 def test_commands_read_a_project_on_read_only_media(media, tmp_path, name):
     out = tmp_path / "out"
     out.mkdir()

@@ -3,12 +3,15 @@
 import json
 import shutil
 
+import pytest
+
 from tests.service.running import server_thread
 
 CAPTURE = "packets/ouster/OS-1-128_v2.3.0_1024x10_lb_n3.pcap"
 METADATA = "packets/ouster/OS-1-128_v2.3.0_1024x10.json"
 
 
+@pytest.mark.study
 def test_look_and_worker_read_the_metadata_beside_a_single_file(tmp_path, data):
     folder = tmp_path / "walks"
     folder.mkdir()

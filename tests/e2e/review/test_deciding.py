@@ -176,6 +176,7 @@ def test_the_page_shows_the_effect_of_a_decision(opened, look, screenshot):
 
 
 @looks("desktop dark")
+@pytest.mark.study
 def test_the_page_shows_who_judged_a_pair_in_order(opened, screenshot):
     page = opened
     page.keyboard.press("j")

@@ -52,6 +52,7 @@ def test_a_bag_cut_off_becomes_a_map_of_what_is_left(process, tmp_path, kind):
 # -- packets
 
 
+@pytest.mark.study
 def test_garbage_duplicates_and_disorder_do_not_change_the_map(process, tmp_path, whole):
     rng = np.random.default_rng(1)
     t_ns, payloads = room_packets(seconds=0.8)

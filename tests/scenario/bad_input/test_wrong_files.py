@@ -90,6 +90,7 @@ def test_a_rig_that_cannot_be_read_is_one_line(pcap, refuse, tmp_path, content, 
     assert expected in refuse(pcap, "--rig", path)
 
 
+@pytest.mark.study
 def test_angular_rates_in_degrees_are_converted_and_said(pcap, process, tmp_path):
     summary = process(pcap, "--imu", write_imu(tmp_path / "imu.csv", gyro=(0.0, 3.0, 45.0)))
 

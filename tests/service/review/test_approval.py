@@ -175,6 +175,7 @@ def slice_of(server, root, **changes):
     ).text
 
 
+@pytest.mark.study
 def test_a_later_map_does_not_change_an_approved_version(server, root, capsys):
     sha = approve(server).json()["approval"]["hash"]
     approved = f"map:{keys_of(root)['map']}"
@@ -200,6 +201,7 @@ def test_a_later_map_does_not_change_an_approved_version(server, root, capsys):
     assert "version 1, approved by local" in capsys.readouterr().out
 
 
+@pytest.mark.study
 def test_undoing_everything_finds_the_approved_results_again(server, root):
     sha = approve(server).json()["approval"]["hash"]
     decide(server, "reject", RIGHT)

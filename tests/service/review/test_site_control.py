@@ -6,6 +6,7 @@ import json
 
 import httpx
 import numpy as np
+import pytest
 
 from recon4.geometry.se3 import so3_exp
 from recon4.mapping.tiles import TileSet
@@ -66,6 +67,7 @@ def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     assert read_decided(root).key == before
 
 
+@pytest.mark.study
 def test_a_point_that_is_a_meter_off_is_named_and_nothing_is_decided(server, root):
     p_map = seen_places(root)
     p_site = surveyed(p_map)

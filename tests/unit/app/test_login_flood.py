@@ -86,6 +86,7 @@ def ended(processes, text=""):
     return [code for _, code in found]
 
 
+@pytest.mark.study
 def test_processes_that_change_people_at_once_leave_one_admin_and_one_account(tmp_path):
     first = ended([users(tmp_path, "add", "anna", "--role", "admin")], PASSWORD + " slowly")
     twice = [users(tmp_path, "add", "Emma", "--role", "admin") for _ in range(2)]

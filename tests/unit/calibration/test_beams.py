@@ -91,6 +91,7 @@ def test_the_calibrated_rig_corrects_the_points_of_the_recording(calibrated, dan
         assert after_m < 0.5 * before_m
 
 
+@pytest.mark.study
 def test_good_beams_are_left_alone(right):
     one = replace(BEAMS, calibration=replace(BEAMS.calibration, sensors="s1"))
     found = run_calibration(right.frames, right.odometry, settings=one, progress=Silent())

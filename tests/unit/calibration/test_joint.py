@@ -73,6 +73,7 @@ def test_a_rig_file_that_is_right_is_confirmed(confirmed):
     assert sum(row.status == "consistent" for row in found.figures.parameters) >= 11
 
 
+@pytest.mark.study
 def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong, audited):
     found = audited
 
@@ -185,6 +186,7 @@ def test_an_imu_that_is_far_off_asks_for_no_other_mounts(dance, tmp_path, monkey
     assert turned == pytest.approx(90.0, abs=0.2)
 
 
+@pytest.mark.study
 def test_without_an_imu_the_lidars_are_compared(dance, tmp_path):
     found = run(store(tmp_path, dance, mounted(dance.rig, 1, **WRONG), None))
 
@@ -228,6 +230,7 @@ def on_a_circle():
     return scanned_room.walk(circle, 90, noise_m=0.01, columns=COLUMNS)
 
 
+@pytest.mark.study
 def test_on_a_circle_a_right_rig_file_raises_no_alarm(on_a_circle, tmp_path, monkeypatch):
     """Noise added up to 0.28 s in the direction that is not shown, and other mounts were tried."""
 
@@ -279,6 +282,7 @@ def test_a_sensor_that_is_not_in_the_rig_is_refused(right, change):
         run(right, replace(SETTINGS, calibration=replace(CALIBRATION, **change)))
 
 
+@pytest.mark.study
 def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong, audited):
     short = replace(CALIBRATION, mode="auto", windows=2)
     found = run(wrong, replace(SETTINGS, calibration=short))

@@ -71,6 +71,7 @@ def test_noise_before_the_lidars_accuses_no_imu(walk, monkeypatch):
     assert all(pose.imu and not pose.remark for pose in message)
 
 
+@pytest.mark.study
 def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
     follower = Follower(walk, imu_axes=[1.0, -1.0, -1.0])
 
@@ -108,6 +109,7 @@ def test_accelerations_of_zero_are_said_and_mapping_goes_on_with_the_gyroscope(w
     assert max(error for _, error in message) < 0.15
 
 
+@pytest.mark.study
 def test_accelerations_that_fail_on_the_way_do_not_end_the_map(followed):
     follower = followed(20)
     follower.axes[1] = 0.0

@@ -84,6 +84,7 @@ def walked(name, folder):
 
 
 @pytest.mark.parametrize(("name", "turn_s"), [("tilting", 2.0), ("spinning", 6.0)])
+@pytest.mark.study
 def test_another_rig_is_mapped_by_its_rig_file(tmp_path, settings, name, turn_s):
     sources = walked(name, tmp_path / "walk")
     for folder in ("frames", "odometry", "graph"):

@@ -62,6 +62,7 @@ def test_motion_is_known_where_the_2d_laser_observes_it():
     assert known.tolist() == [True, True, False, False, False, False, True, True, False, False]
 
 
+@pytest.mark.study
 def test_the_other_side_of_a_wall_is_another_wall(settings, tmp_path):
     models = BackpackModels(
         profiler=ProfilerModel(lines_hz=60.0, shots=240),

@@ -68,6 +68,7 @@ def turn_error_rad(made: TrackedWalk, office_recording) -> float:
 
 
 @pytest.mark.slow
+@pytest.mark.study
 def test_a_wrong_scale_is_corrected_from_the_start(frames, office_recording):
     walk = Read(with_scale(frames, SCALE))
 
@@ -167,6 +168,7 @@ def test_hypotheses_are_listed_lazily_and_a_loser_stays_in_the_table():
 @pytest.mark.parametrize(
     ("earlier", "walks"), [(None, 5), (EarlierWalks(1), 5), (EarlierWalks(5), 1)]
 )
+@pytest.mark.study
 def test_however_much_is_wrong_a_recording_is_tracked_six_times_at_most(
     monkeypatch, frames, earlier, walks
 ):

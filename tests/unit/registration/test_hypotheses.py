@@ -89,6 +89,7 @@ def test_what_contradicts_the_fixes_without_them_is_not_said_to_hold() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.study
 def test_wrong_fixes_hide_nothing_that_stands() -> None:
     walk = Walk(standing=ROWS, seconds=6.0)
 

@@ -163,6 +163,7 @@ def written_ns(proven):
     return {path: path.stat().st_mtime_ns for path in files}
 
 
+@pytest.mark.study
 def test_the_rig_is_audited_where_the_trajectory_is_wrong(tunnel, proven):
     (right,) = run_walk("office/1", ("none",), proven, seconds=5.0, quick=True)
 

@@ -8,6 +8,7 @@ from recon4.simulation.gait import plan_walk
 from recon4.simulation.lidar import Surroundings
 from recon4.simulation.person import GAIT
 from recon4.simulation.worlds import PROCEDURAL, WORLDS, build_world
+from tests.variants import all_but_first_are_studies
 
 ROUND_S = {
     "office": 250, "staircase": 200, "street": 220, "field": 450, "corridor": 170, "tunnel": 110,
@@ -57,7 +58,7 @@ def test_a_world_is_always_the_same_and_sound(name, worlds):
     assert np.all((mesh.reflectivity > 0.0) & (mesh.reflectivity <= 2.5))
 
 
-@pytest.mark.parametrize("seed", [2, 3])
+@pytest.mark.parametrize("seed", all_but_first_are_studies([2, 3]))
 @pytest.mark.parametrize("name", [*WORLDS, *VARIANTS])
 def test_the_person_walks_into_nothing(name, seed, worlds):
     world = worlds[name]

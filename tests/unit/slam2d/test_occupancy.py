@@ -156,6 +156,7 @@ def large(tmp_path_factory):
     return folder, write_map(folder, far_apart(), Grid2dTuning())
 
 
+@pytest.mark.study
 def test_a_map_of_202_million_cells_is_written_in_full(large):
     folder, written = large
 
