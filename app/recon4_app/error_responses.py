@@ -61,6 +61,15 @@ class ProblemDetail(BaseModel):
     """The page of this server where what `detail` advises is done, if it is another one."""
 
 
+PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/ProblemDetail"}}}
+"""The body of an error, in the description of the API; a model for each route takes longer."""
+
+
+def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """The errors that routes document, for their ``responses``."""
+    return {status: {"content": PROBLEM} for status in statuses}
+
+
 def install(app: FastAPI) -> None:
     """Answer every error with a `ProblemDetail`, or with a page where a browser requests one."""
     _on_full_disk(app)

@@ -12,6 +12,7 @@ from fastapi import FastAPI
 
 from recon4_app.access.middleware.session import FORM_HEADER, cookie_names
 from recon4_app.access.routes_check import declared
+from recon4_app.error_responses import PROBLEM, ProblemDetail
 
 INTRODUCTION = """The HTTP interface of the pages. The body of an error is `{"error", "detail"}`;
 `detail` is a text for users. `x-needs` of an operation names the permission it requires (empty =
@@ -28,7 +29,6 @@ FIELD = re.compile(
     re.MULTILINE,
 )
 """Read as text: the parser of Python may not be called while others call it (3.11)."""
-OUR_PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/ProblemDetail"}}}
 
 
 def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
@@ -47,6 +47,7 @@ def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
         "session": {"type": "apiKey", "in": "cookie", "name": cookie_names(prefix).session},
         "token": TOKEN_SCHEME,
     }
+    parts["schemas"] |= _schemas_of_problems()
     for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others
         parts["schemas"].pop(name, None)
     _describe_fields(parts["schemas"])
@@ -59,8 +60,14 @@ def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
         for method, operation in methods.items():
             operation["x-needs"] = needed[path, method]
             if "422" in operation["responses"]:
-                operation["responses"]["422"]["content"] = OUR_PROBLEM
+                operation["responses"]["422"]["content"] = PROBLEM
     return described
+
+
+def _schemas_of_problems() -> dict[str, Any]:
+    """`ProblemDetail` and the models in it, which no route names."""
+    schema = ProblemDetail.model_json_schema(ref_template="#/components/schemas/{model}")
+    return schema.pop("$defs") | {"ProblemDetail": schema}
 
 
 def _describe_fields(schemas: dict[str, Any]) -> None:

@@ -126,3 +126,5 @@ SUFFIXES = {
 LINEAR = {bag1_tiny_messages, mcap_tiny_messages, bag1_many_chunks}
 """These are work that grows with the file: bounded in memory; the chunks are refused only when as
 much was decompressed as a recording may hold, for which a slow processor needs ten seconds."""
+LONG = LINEAR | {bag1_directory, mcap_summary_repeats, mcap_zstd_honest, tf_flood}
+"""These take seconds to build and to read."""

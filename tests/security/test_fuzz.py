@@ -19,7 +19,7 @@ from tests.security.fuzz.mutators import mutant
 from tests.security.fuzz.runner import Readers, fuzz
 from tests.security.measured import DEADLINE_S, LIMIT_BYTES, MeasuredChild, measured_child
 
-MUTANTS = 60
+MUTANTS = 20
 SEED = 20
 FINDS = {
     "broken-hang": "HANG",
@@ -43,7 +43,7 @@ def test_no_mutant_gets_further_than_words(kind: str, readers: Readers) -> None:
     tally = fuzz(kind, readers, count=MUTANTS, seed=SEED)
     assert not tally.findings
     assert tally.mutants == MUTANTS
-    assert tally.outcomes["rejected"] + tally.outcomes["salvaged"] >= MUTANTS // 50
+    assert tally.outcomes["rejected"] + tally.outcomes["salvaged"] >= 1
 
 
 @pytest.mark.parametrize("kind", sorted(FINDS))

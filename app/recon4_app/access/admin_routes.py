@@ -13,17 +13,13 @@ from recon4_app.access.login.accounts import Account
 from recon4_app.access.login.routes import SessionView, Text, Wire, views
 from recon4_app.access.people import Permission, Role, needs, recent_login
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 
 router = APIRouter(
     prefix="/api",
     tags=["administration"],
     dependencies=[Depends(needs(Permission.ADMINISTER))],
-    responses={
-        403: {"model": ProblemDetail},
-        404: {"model": ProblemDetail},
-        409: {"model": ProblemDetail},
-    },
+    responses=problems(403, 404, 409),
 )
 RECENT_LOGIN = Depends(recent_login)
 

@@ -13,14 +13,14 @@ from recon4_app.access.audit import audit
 from recon4_app.access.login.routes import Wire
 from recon4_app.access.people import Permission, Who, needs, recent_login
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.names import Name
 
 router = APIRouter(
     prefix="/api/keys",
     tags=["administration"],
     dependencies=[Depends(needs(Permission.ADMINISTER))],
-    responses={403: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(403, 422),
 )
 RECENT_LOGIN = Depends(recent_login)
 Fingerprint = Annotated[str, Path(pattern="^[0-9a-f]{16}$")]

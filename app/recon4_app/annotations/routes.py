@@ -21,7 +21,7 @@ from recon4_app.annotations.model import (
 )
 from recon4_app.annotations.store import NOTES, VIEWS
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
@@ -30,7 +30,7 @@ EntryId = Annotated[str, Path(max_length=64)]
 router = APIRouter(
     prefix="/api/projects/{project_id}",
     tags=["notes"],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 
 
@@ -54,7 +54,7 @@ def add_note(
 @router.patch(
     "/notes/{note_id}",
     dependencies=PROCESS,
-    responses={409: {"model": ProblemDetail}},
+    responses=problems(409),
     summary="Change a note",
 )
 def change_note(

@@ -21,7 +21,7 @@ from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs, person
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import STORAGE, Conflict, NoRoom, NotFound, Refused
 from recon4_app.exports import export_work
 from recon4_app.exports.model import ExportChoices, ExportView, NewExport
@@ -36,12 +36,10 @@ router = APIRouter(
     prefix="/api/projects/{project_id}/exports",
     tags=["exports"],
     dependencies=[Depends(needs(Permission.LOOK))],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 ORDER = [Depends(at_most(60, within_s=3600.0, what="exports"))]
-REFUSALS: dict[int | str, dict[str, object]] = {
-    status: {"model": ProblemDetail} for status in (403, 429, 507)
-}
+REFUSALS = problems(403, 429, 507)
 
 
 @router.get("", summary="Exports of a project")

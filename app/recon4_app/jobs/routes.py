@@ -22,7 +22,7 @@ from recon4.settings import override, preset
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import (
     PROJECTS,
     STORAGE,
@@ -48,13 +48,11 @@ router = APIRouter(
     prefix="/api",
     tags=["jobs"],
     dependencies=[Depends(needs(Permission.LOOK))],
-    responses={404: {"model": ProblemDetail}, 409: {"model": ProblemDetail}},
+    responses=problems(404, 409),
 )
 PROCESS = [Depends(needs(Permission.PROCESS))]
 START = [*PROCESS, Depends(at_most(10, within_s=3600.0, what="jobs"))]
-REFUSALS: dict[int | str, dict[str, object]] = {
-    status: {"model": ProblemDetail} for status in (403, 429, 507)
-}
+REFUSALS = problems(403, 429, 507)
 
 _NOT_YET = ".not-yet"
 """Stands for the folder of a project whose name is not chosen yet."""
@@ -261,7 +259,7 @@ def _event_place(request: Request, server: Server) -> Iterator[None]:
 @router.get(
     "/events",
     response_class=EventSourceResponse,
-    responses={429: {"model": ProblemDetail}},
+    responses=problems(429),
     dependencies=[Depends(_event_place)],
     summary="Stream of job changes",
 )

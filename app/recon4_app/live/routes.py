@@ -18,7 +18,7 @@ from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, parts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict, TooMany
 from recon4_app.jobs.routes import JobView, NewJob, add_job
 from recon4_app.live.current_capture import CurrentCapture
@@ -36,7 +36,7 @@ CAPTURE = [Depends(needs(Permission.CAPTURE))]
 router = APIRouter(
     prefix="/api/live",
     tags=["live capture"],
-    responses={404: {"model": ProblemDetail}, 409: {"model": ProblemDetail}},
+    responses=problems(404, 409),
 )
 page = APIRouter()
 

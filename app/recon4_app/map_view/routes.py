@@ -17,7 +17,7 @@ from recon4.review.evidence import Evidence
 from recon4.untrusted.bounded import read_json_object
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server, parts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Conflict
 from recon4_app.map_view import map_work
 from recon4_app.map_view.model import (
@@ -42,7 +42,7 @@ router = APIRouter(
     prefix="/api/projects/{project_id}/map",
     tags=["map"],
     dependencies=LOOK,
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 page = APIRouter()
 
@@ -92,7 +92,7 @@ async def read_walk(project_id: str, server: Server, caller: CalledBy) -> MapWal
 @router.post(
     "/pick",
     summary="The point of the map that a ray hits",
-    responses={409: {"model": ProblemDetail}},
+    responses=problems(409),
 )
 async def pick(project_id: str, ask: RayRequest, *, server: Server, caller: CalledBy) -> RayHit:
     """Of all points of the map that the clip planes leave, not only of those on screen."""
@@ -167,7 +167,7 @@ async def read_points(
 @router.post(
     "/volume",
     summary="A volume over a plane",
-    responses={409: {"model": ProblemDetail}},
+    responses=problems(409),
 )
 async def read_volume(
     project_id: str, ask: VolumeRequest, *, server: Server, caller: CalledBy

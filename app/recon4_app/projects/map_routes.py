@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.projects.map_file import MapEnding, MapFileQuery, MapFileRequest
 
@@ -18,7 +18,7 @@ router = APIRouter(
     prefix="/api/projects/{project_id}",
     tags=["projects"],
     dependencies=[Depends(needs(Permission.LOOK))],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 
 

@@ -13,7 +13,7 @@ from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
 from recon4_app.access.people import Permission, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.review.tuning import SIGNING
 
@@ -21,7 +21,7 @@ router = APIRouter(
     prefix="/api/projects/{project_id}",
     tags=["projects"],
     dependencies=[Depends(needs(Permission.LOOK))],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 _NAME = "report.pdf"
 

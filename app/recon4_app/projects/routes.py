@@ -16,7 +16,7 @@ from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict
 from recon4_app.names import Name
 from recon4_app.network.request_caller import CalledBy
@@ -29,7 +29,7 @@ router = APIRouter(
     prefix="/api",
     tags=["projects"],
     dependencies=[Depends(needs(Permission.LOOK))],
-    responses={404: {"model": ProblemDetail}},
+    responses=problems(404),
 )
 
 PROCESS = [Depends(needs(Permission.PROCESS))]
@@ -192,7 +192,7 @@ async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileRe
 @router.get(
     "/recordings",
     dependencies=[Depends(needs(Permission.PROCESS))],
-    responses={403: {"model": ProblemDetail}},
+    responses=problems(403),
     summary="Folders of this computer",
 )
 def browse(server: Server, folder: str = "") -> list[FolderEntry]:
@@ -203,11 +203,7 @@ def browse(server: Server, folder: str = "") -> list[FolderEntry]:
 @router.get(
     "/look",
     dependencies=PROCESS,
-    responses={
-        403: {"model": ProblemDetail},
-        422: {"model": ProblemDetail},
-        503: {"model": ProblemDetail},
-    },
+    responses=problems(403, 422, 503),
     summary="Inspect a recording",
 )
 async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:

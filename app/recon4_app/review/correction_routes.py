@@ -18,7 +18,7 @@ from recon4.review.state import read_summary
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Person, Who
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.review import correction_work
@@ -35,7 +35,7 @@ from recon4_app.review.routes import router as review_router
 router = APIRouter(
     prefix=f"{review_router.prefix}/classes",
     tags=["review"],
-    responses=review_router.responses | {422: {"model": ProblemDetail}},
+    responses=review_router.responses | problems(422),
 )
 
 

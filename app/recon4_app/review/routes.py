@@ -39,7 +39,7 @@ from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Person, Who, needs, recent_login
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict, project_page
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
@@ -71,11 +71,7 @@ PREFIX = "/api/projects/{project_id}/review"
 router = APIRouter(
     prefix=PREFIX,
     tags=["review"],
-    responses={
-        403: {"model": ProblemDetail},
-        404: {"model": ProblemDetail},
-        409: {"model": ProblemDetail},
-    },
+    responses=problems(403, 404, 409),
 )
 page = APIRouter()
 

@@ -15,7 +15,7 @@ from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
@@ -46,7 +46,7 @@ router = APIRouter(
     prefix="/api",
     tags=["rigs"],
     dependencies=LOOK,
-    responses={status: {"model": ProblemDetail} for status in (404, 409, 422)},
+    responses=problems(404, 409, 422),
 )
 page = APIRouter()
 

@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from recon4_app.access.people import Permission, needs
 from recon4_app.compute_pool.model import FileAccess, Terms
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.slices import align_work
 from recon4_app.slices.model import AlignPoints, AlignRequest, ListedReference
@@ -20,7 +20,7 @@ router = APIRouter(
     prefix="/api/projects/{project_id}/slices/references/{reference_id}",
     tags=["slices"],
     dependencies=[Depends(needs(Permission.PROCESS))],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 
 

@@ -20,7 +20,7 @@ from recon4.slices.residuals import ControlReport
 from recon4_app.access.people import Permission, needs
 from recon4_app.compute_pool.model import Terms
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
@@ -56,7 +56,7 @@ router = APIRouter(
     prefix="/api/projects/{project_id}/slices",
     tags=["slices"],
     dependencies=LOOK,
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 page = APIRouter()
 

@@ -14,7 +14,7 @@ from recon4.review.journal import append
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.slices import site_work
 from recon4_app.slices.model import Strict
@@ -25,7 +25,7 @@ REVIEW = [Depends(needs(Permission.REVIEW))]
 router = APIRouter(
     prefix="/api/projects/{project_id}/slices/control/site",
     tags=["slices"],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 
 

@@ -10,7 +10,7 @@ from recon4.archive.space import Freeable
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.pages import page_response
 from recon4_app.projects.trash import Deleted
 from recon4_app.storage.model import ProjectSpace, ProjectStorage, StorageView
@@ -31,7 +31,7 @@ router = APIRouter(
     prefix="/api",
     tags=["storage"],
     dependencies=PROCESS,
-    responses={404: {"model": ProblemDetail}, 409: {"model": ProblemDetail}},
+    responses=problems(404, 409),
 )
 page = APIRouter()
 

@@ -21,7 +21,7 @@ from recon4.untrusted.names import check_name
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import AppError, BadRequest, Conflict
 from recon4_app.names import Name
 from recon4_app.network.behind import public_path
@@ -52,13 +52,13 @@ router = APIRouter(
     prefix="/api/uploads",
     tags=["uploads"],
     dependencies=[Depends(needs(Permission.PROCESS))],
-    responses={404: {"model": ProblemDetail}, 507: {"model": ProblemDetail}},
+    responses=problems(404, 507),
 )
 files = APIRouter(
     prefix=PREFIX,
     tags=["uploads"],
     dependencies=[Depends(needs(Permission.PROCESS))],
-    responses={404: {"model": ProblemDetail}, 412: {"model": ProblemDetail}},
+    responses=problems(404, 412),
     route_class=TusRoute,
 )
 

@@ -16,7 +16,7 @@ from recon4_app.access.audit import audit
 from recon4_app.access.login.routes import Text, Wire
 from recon4_app.access.people import Permission, Who, needs, recent_login
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.jobs.supervisor import now
 from recon4_app.settings import Network
 from recon4_app.webhooks.addresses import NotReachable, address_of, target_of
@@ -29,7 +29,7 @@ router = APIRouter(
     prefix="/api/webhooks",
     tags=["administration"],
     dependencies=[Depends(needs(Permission.ADMINISTER))],
-    responses={status: {"model": ProblemDetail} for status in (403, 404, 409, 422)},
+    responses=problems(403, 404, 409, 422),
 )
 RECENT_LOGIN = Depends(recent_login)
 WebhookId = Annotated[str, Path(pattern="^[0-9a-f]{16}$")]

@@ -25,18 +25,14 @@ from recon4_app.access.people import (
 )
 from recon4_app.access.tuning import SESSION_TIMES
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import AppError, Conflict, TooMany
 from recon4_app.network.behind import prefix_of
 
 router = APIRouter(
     prefix="/api",
     tags=["access"],
-    responses={
-        401: {"model": ProblemDetail},
-        403: {"model": ProblemDetail},
-        429: {"model": ProblemDetail},
-    },
+    responses=problems(401, 403, 429),
 )
 ALLOW_ANONYMOUS = Depends(allow_anonymous)
 SIGNED_IN = Depends(needs(Permission.LOOK))

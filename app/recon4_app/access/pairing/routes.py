@@ -25,7 +25,7 @@ from recon4_app.access.people import (
 )
 from recon4_app.access.tuning import PAIRING
 from recon4_app.deps import Server
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import AppError, Conflict, Refused
 from recon4_app.names import Name
 from recon4_app.network.behind import public_path
@@ -35,11 +35,7 @@ from recon4_app.network.listen import presented_fingerprint
 router = APIRouter(
     prefix="/api/pairing",
     tags=["phones"],
-    responses={
-        403: {"model": ProblemDetail},
-        409: {"model": ProblemDetail},
-        429: {"model": ProblemDetail},
-    },
+    responses=problems(403, 409, 429),
 )
 ALLOW_ANONYMOUS = [Depends(allow_anonymous)]
 MANAGE_PHONES = [Depends(needs(Permission.LOOK)), Depends(interactive_login)]
