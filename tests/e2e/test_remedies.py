@@ -114,6 +114,7 @@ def test_a_refused_export_says_why_on_the_page_and_the_next_one_is_made(server, 
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_a_deleted_project_whose_name_is_taken_leads_to_the_one_that_has_it(server, page):
     assert httpx.delete(f"{server.url}/api/projects/office").status_code == 200
     build_project(server.root / "office", points=60_000)
@@ -131,6 +132,7 @@ def test_a_deleted_project_whose_name_is_taken_leads_to_the_one_that_has_it(serv
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_control_points_that_others_keep_changing_are_read_again(server, page):
     opened_slices(page, server)
     page.get_by_text("Control and check points").click()

@@ -204,6 +204,7 @@ def processor_s(pid):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+@pytest.mark.study
 def test_malformed_requests_grow_the_log_by_a_bounded_number_of_lines(tmp_path):
     root = tmp_path / "root"
     root.mkdir()

@@ -12,9 +12,7 @@ from tests.security.reader_process import GIB, ReaderProcess
 from tests.security.recording_bombs import BOMBS, LINEAR, LONG, SUFFIXES
 
 CASES = [
-    pytest.param(
-        kind, build, id=build.__name__, marks=[pytest.mark.study] if build in LONG else []
-    )
+    pytest.param(kind, build, id=build.__name__, marks=[pytest.mark.study] if build in LONG else [])
     for kind, builds in BOMBS.items()
     for build in builds
 ]

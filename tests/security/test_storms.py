@@ -137,6 +137,7 @@ def test_a_stormed_server_ends_with_code_0_and_closes_its_files(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["process", "calibrate"])
+@pytest.mark.study
 def test_a_stormed_run_ends_in_order_and_leaves_nothing_half(tmp_path, short_recording, name):
     out = ["--out", tmp_path / "map"]
     if name == "calibrate":
@@ -181,6 +182,7 @@ def rig(tmp_path):
     return path
 
 
+@pytest.mark.study
 def test_a_stormed_recording_is_a_whole_project(tmp_path, rig):
     walk = tmp_path / "walk"
 

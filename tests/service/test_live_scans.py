@@ -76,6 +76,7 @@ def test_a_2d_laser_is_mapped_on_the_phone_and_processed_as_its_log(server, log,
     np.testing.assert_allclose(poses[0].t, poses[1].t, atol=1e-4)
 
 
+@pytest.mark.study
 def test_bad_scans_are_said_on_the_phone_and_recorded(server, log, tmp_path):
     """Every fifth scan comes twice, every seventh is no JSON, later the clock is set."""
     start(server, str(tmp_path / "projects" / "rigs" / "robot.toml"))

@@ -172,6 +172,7 @@ sys.exit(main(sys.argv[2:]))
 """
 
 
+@pytest.mark.study
 def test_a_full_disk_is_one_line_and_the_next_run_resumes(pcap, process, tmp_path):
     """No file may grow beyond a limit: for a program the same as a full disk.
 

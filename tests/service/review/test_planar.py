@@ -55,6 +55,7 @@ def test_the_scans_of_both_nodes_are_shown_and_registered(planar, loop):
     assert off.angle() < np.deg2rad(0.3)
 
 
+@pytest.mark.study
 def test_a_rejected_loop_is_left_out_of_the_new_map_which_is_approved(planar, loop):
     _, pair = loop
     before = keys_of(planar.root)

@@ -69,6 +69,7 @@ def agreed():
     )
 
 
+@pytest.mark.study
 def test_heights_above_sea_level_are_raised_by_the_geoid_that_the_settings_have(walk):
     rows = np.arange(0, len(walk.trajectory), 20)
     nodes = walk.trajectory.T_a_b[rows]

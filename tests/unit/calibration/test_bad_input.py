@@ -58,6 +58,7 @@ def test_a_walk_of_five_seconds_shows_nothing_and_changes_nothing(dance, tmp_pat
 
 
 @pytest.mark.parametrize(("with_imu", "windows"), [(True, 3), (False, 0)])
+@pytest.mark.study
 def test_poses_that_nothing_holds_compare_no_sensors(right, tmp_path, with_imu, windows):
     """Without an IMU they follow one of the LiDARs along what the multiframe does not observe."""
     odometry = tmp_path / "odometry"
@@ -85,6 +86,7 @@ def test_samples_that_are_no_numbers_are_left_out_and_counted(dance, tmp_path):
     assert {row.sensor for row in found.figures.parameters} == {"s1", "imu"}
 
 
+@pytest.mark.study
 def test_a_gyroscope_alone_shows_no_position_of_the_imu(dance, tmp_path):
     imu = replace(dance.imu, accel_m_s2=np.full_like(dance.imu.accel_m_s2, np.nan))
 

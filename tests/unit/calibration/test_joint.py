@@ -195,6 +195,7 @@ def test_without_an_imu_the_lidars_are_compared(dance, tmp_path):
     assert turned == pytest.approx(1.5, abs=0.1)
 
 
+@pytest.mark.study
 def test_one_lidar_without_an_imu_leaves_nothing_to_compare(dance, tmp_path):
     first, second = dance.rig.sensors
     rig = replace(dance.rig, sensors=(first, replace(second, enabled=False)))

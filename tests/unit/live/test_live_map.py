@@ -82,6 +82,7 @@ def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
     assert max(error for _, error in message) < 0.15
 
 
+@pytest.mark.study
 def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(walk):
     follower = Follower(walk, gyro_axes=[1.0, 1.0, -1.0])
 

@@ -91,6 +91,7 @@ def test_wrong_clocks_are_said(frames, settings, tmp_path, clocks, words):
 
 
 @pytest.mark.parametrize("changed", ["without times", "as hector"])
+@pytest.mark.study
 def test_scans_that_are_not_undistorted_do_not_blame_the_clocks(
     frames, settings, tmp_path, changed
 ):

@@ -67,6 +67,7 @@ def walks(choice: Choice) -> list[Because]:
 
 
 @pytest.mark.slow
+@pytest.mark.study
 def test_fixes_show_who_pulled_the_odometry_along() -> None:
     walk = Walk(GROUP, ROWS, seconds=4.5)
 

@@ -93,6 +93,7 @@ def test_an_imu_that_is_trusted_is_used_all_the_same(frames):
     assert chosen(walk, trusted=True) == (walk.imu, AS_RECORDED)
 
 
+@pytest.mark.study
 def test_of_an_imu_with_wrong_forces_the_gyroscope_is_used(frames):
     walk = Walk(frames, altered(frames, force=-1.0))
 

@@ -283,6 +283,7 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.study
 def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
     walk, kept = Walk(GROUP, ROWS, seconds=4.5), OdometrySettings(leave_out_moving=False)
 

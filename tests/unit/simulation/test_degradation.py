@@ -221,6 +221,7 @@ def recordings(tmp_path_factory):
     return root
 
 
+@pytest.mark.study
 def test_recordings_of_one_walk_differ_in_their_degradations_only(recordings):
     clean, clock = hashes(recordings / "clean"), hashes(recordings / "clock")
 
