@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import re
 import textwrap
 from difflib import get_close_matches
 
 from recon4.errors import ConfigError
 from recon4.findings.measured import sources
-from recon4.findings.wording import KindText, Sentence, catalog
+from recon4.findings.wording import KindText, catalog
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import texts
 from recon4.model.finding_kinds import FindingKind
 
 _WIDTH = 88
@@ -37,7 +38,8 @@ a run whose trajectory is wrong, or whose fault it names; wrong runs without it 
 [Precision](../studies/precision.md) says how the runs were made. Of a published table only the
 first reason of each run is known, by the code of its time.
 
-This page is made from the catalog of the texts and the counts in `measured.toml`: `make docs`.
+This page is made from the English texts in `recon4/locales/en` and the counts in `measured.toml`:
+`make docs`. [Languages](../how-to/languages.md) says how another language is added.
 """
 _READERS = """\
 ## Warnings of readers
@@ -49,13 +51,13 @@ together, as IMPORT-REMARK.
 """
 
 
-def listed() -> str:
+def listed(language: str = ENGLISH) -> str:
     """All codes with their titles, a line each."""
-    width = max(map(len, FindingKind))
-    return "\n".join(f"{kind:<{width}}  {catalog().kinds[kind].title}" for kind in FindingKind)
+    width, kinds = max(map(len, FindingKind)), catalog(language).kinds
+    return "\n".join(f"{kind:<{width}}  {kinds[kind].title}" for kind in FindingKind)
 
 
-def explained(code: str) -> str:
+def explained(code: str, language: str = ENGLISH) -> str:
     """A kind of finding on a terminal.
 
     Raises:
@@ -67,10 +69,11 @@ def explained(code: str) -> str:
         near = get_close_matches(code.upper(), list(FindingKind), n=3)
         hint = f"; similar: {', '.join(near)}" if near else ""
         raise ConfigError(f"expected the code of a finding, got {code!r}{hint}") from None
-    entry = catalog().kinds[kind]
+    entry, heads = catalog(language).kinds[kind], texts(language, "findings")
     parts = [("", entry.title), ("", entry.meaning)]
-    parts += [("Detected: ", entry.detection.replace("*", "")), ("What to do: ", entry.remedy)]
-    paragraphs = [textwrap.fill(f"{head}{text}", _WIDTH) for head, text in parts if text]
+    parts.append((heads("explain-detected"), entry.detection.replace("*", "")))
+    parts.append((heads("explain-remedy"), entry.remedy))
+    paragraphs = [textwrap.fill(f"{head} {text}".strip(), _WIDTH) for head, text in parts if text]
     return "\n\n".join([f"{kind}", *paragraphs])
 
 
@@ -85,8 +88,7 @@ def markdown() -> str:
 
 
 def _section(kind: FindingKind, entry: KindText) -> str:
-    sentences = [one.text if isinstance(one, Sentence) else one for one in entry.text]
-    shown = " ".join(_readable(text) for text in sentences)
+    shown = " ".join(one.readable for one in entry.text)
     rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", "", f"- says: {shown}"]
     if entry.detection:
         rows.append(f"- detected: {entry.detection}")
@@ -94,18 +96,13 @@ def _section(kind: FindingKind, entry: KindText) -> str:
         measured = (_capital(source.words(kind)) for source in sources())
         rows.append(f"- measured: {'. '.join(measured)}")
     if entry.remedy:
-        rows.append(f"- what to do: {_readable(entry.remedy)}")
+        rows.append(f"- what to do: {entry.remedy}")
     return "\n".join([*rows, ""])
 
 
 def _capital(text: str) -> str:
     """The text as the begin of a sentence."""
     return text[:1].upper() + text[1:]
-
-
-def _readable(text: str) -> str:
-    """A sentence of the catalog with the names of its values in place of their formats."""
-    return re.sub(r"\{(\w+)(?::[^}]*)?\}", r"‹\1›", text)
 
 
 if __name__ == "__main__":

@@ -1,137 +1,164 @@
-"""Findings in words: the catalog with the values of a finding filled in.
+"""Findings in words: the texts of a language with the values of a finding filled in.
 
-``en.toml`` has what witnesses find, ``readers_en.toml`` what readers of recordings warn of.
+``recon4/locales/LANGUAGE/findings.ftl`` has what witnesses find, ``readers.ftl`` what readers of
+recordings warn of: a message for each kind, with its title. Its parts are
 
-A text is a list of sentences. A sentence is left out if a value that it quotes is not known, or if
-the value named by its ``if`` is not true. Formats after the colon, besides those of Python:
+============= ====================================================================================
+``text1`` …    sentences, in order. One is left out if a value that it quotes is not known; one
+               whose name ends with ``-if-VALUE`` also if that value is not there or not true
+``remedy``     what to do about it
+``meaning``    what it says of the map, for ``docs/reference/findings.md`` and ``recon4 explain``
+``detection``  how it is detected, and from which size on
+``word-WORD``  what ``WORD($value, of: "KIND")`` says for a value; without ``of`` the message
+               ``word-WORD`` says it, and what has no words is shown as it is
+============= ====================================================================================
 
-========== ==========================================================================
-``length``  meters as centimeters below one meter, else as meters
-``percent`` a ratio as percent with one digit; ``percent0`` without
-``deg``     radians as degrees with two digits; ``deg1`` with one, ``deg3`` with three
-``count``   a whole number with its thousands apart
-``label``   name of a count of the import: what it counts (`recon4.model.count_words`)
-``counts``  several such counts, ``name=number name=number``
-``noun``    name of a count: what is counted; ``fates`` of several: what became of how many
-``word``    the text of a word, from ``words`` of the kind, else from those of the catalog
-========== ==========================================================================
+Texts call the functions of `recon4.locales.numbers`, and ``COUNTED``, ``COUNTS``, ``FATES`` and
+``NOUN`` for the counts of an import (`recon4.model.import_counts`).
 """
 
 from __future__ import annotations
 
 import math
-import string
-import tomllib
+import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
-from importlib import resources
-from typing import Any, TypeVar
+from typing import Any
 
 import msgspec
-from msgspec.structs import replace
 
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Functions, Texts, quoted_by, readable
 from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import count_fate, count_label, count_noun, count_text
 
-_T = TypeVar("_T")
-_DEGREE_DIGITS = {"deg": 2, "deg1": 1, "deg3": 3}
+_SENTENCE = re.compile(r"text\d+(?:-if-(\w+))?")
 
 
-class Sentence(msgspec.Struct, frozen=True):
-    """A sentence that stands only under a condition."""
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """A sentence of a kind of finding."""
 
-    text: str
-    given: str = msgspec.field(name="if", default="")
+    part: str
+    """Its name in the message."""
+    given: str
     """Name of a value that must be there and not be false, zero or empty; empty = always."""
+    quotes: frozenset[str]
+    """Names of the values in it."""
+    readable: str
+    """It, with the names of its values in place of them."""
 
 
-class KindText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the catalog says of one kind of finding."""
+@dataclass(frozen=True, slots=True)
+class KindText:
+    """What the texts of a language say of one kind of finding."""
 
     title: str
     """Two to five words, for lists and filters."""
-    text: tuple[str | Sentence, ...]
-    remedy: str = ""
-    """What to do about it; empty = nothing."""
-    meaning: str = ""
-    """What it says of the map, for ``docs/reference/findings.md`` and ``recon4 explain``."""
-    detection: str = ""
-    """How it is detected, and from which size on; empty = its text says so."""
-    words: dict[str, str] = {}
+    text: tuple[Sentence, ...]
+    remedy: str
+    """What to do about it, with names in place of values; empty = nothing."""
+    remedy_quotes: frozenset[str]
+    meaning: str
+    detection: str
+    """Empty = its text says so."""
 
 
-class Catalog(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A catalog in one language."""
+@dataclass(frozen=True, slots=True)
+class Catalog:
+    """The texts of all kinds of findings in one language."""
 
-    headlines: dict[str, str]
-    """Usability -> headline of a verdict."""
-    words: dict[str, str]
-    kinds: dict[FindingKind, KindText]
-    readers: frozenset[FindingKind] = frozenset()
+    texts: Texts
+    kinds: Mapping[FindingKind, KindText]
+    readers: frozenset[FindingKind]
     """Kinds that readers of recordings warn of, not witnesses."""
 
-
-class _Texts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    kinds: dict[FindingKind, KindText]
+    def word(self, value: str, kind: str = "") -> str:
+        """The words of a value of a kind of finding, else those of all; else the value."""
+        return _word(self.texts, value, kind)
 
 
 @cache
-def catalog() -> Catalog:
-    """The English catalog."""
-    of_readers = _read("readers_en.toml", _Texts).kinds
-    found = _read("en.toml", Catalog)
-    return replace(found, kinds=found.kinds | of_readers, readers=frozenset(of_readers))
+def catalog(language: str = ENGLISH) -> Catalog:
+    """All kinds of findings in a language."""
+    texts = Texts(language, "findings", "readers", "counts", functions=_functions)
+    of_readers = set(Texts(ENGLISH, "readers").names())
+    kinds = {kind: _kind_text(texts, kind) for kind in FindingKind}
+    return Catalog(texts, kinds, frozenset(kind for kind in FindingKind if kind in of_readers))
 
 
-def _read(name: str, kind: type[_T]) -> _T:
-    text = resources.files("recon4.findings").joinpath(name).read_text("utf-8")
-    return msgspec.convert(tomllib.loads(text), kind)
-
-
-def text_of(finding: Finding) -> str:
+def text_of(finding: Finding, language: str = ENGLISH) -> str:
     """A finding as sentences, without its remedy."""
-    entry = catalog().kinds[finding.kind]
-    fill = _Filling(entry.words)
+    known = catalog(language)
+    entry = known.kinds[finding.kind]
     values = _values(finding)
-    parts = (fill.sentence(one, values) for one in entry.text)
-    return " ".join(part for part in parts if part) or f"{entry.title}."
+    parts = [
+        known.texts.part(finding.kind, one.part, values)
+        for one in entry.text
+        if one.quotes <= values.keys() and (not one.given or values.get(one.given))
+    ]
+    return " ".join(parts) or f"{entry.title}."
 
 
-def remedy_of(finding: Finding) -> str:
+def remedy_of(finding: Finding, language: str = ENGLISH) -> str:
     """What to do about a finding; empty = nothing."""
-    entry = catalog().kinds[finding.kind]
-    return _Filling(entry.words).sentence(entry.remedy, _values(finding))
+    known = catalog(language)
+    entry = known.kinds[finding.kind]
+    values = _values(finding)
+    if not entry.remedy or not entry.remedy_quotes <= values.keys():
+        return ""
+    return known.texts.part(finding.kind, "remedy", values)
 
 
-def whole_text(finding: Finding) -> str:
+def whole_text(finding: Finding, language: str = ENGLISH) -> str:
     """A finding with its remedy, as a reason of a verdict."""
-    return " ".join(part for part in (text_of(finding), remedy_of(finding)) if part)
+    parts = (text_of(finding, language), remedy_of(finding, language))
+    return " ".join(part for part in parts if part)
 
 
-def title_of(kind: FindingKind) -> str:
+def title_of(kind: FindingKind, language: str = ENGLISH) -> str:
     """Title of a kind of finding."""
-    return catalog().kinds[kind].title
+    return catalog(language).kinds[kind].title
 
 
-def word_of(kind: FindingKind, word: str) -> str:
-    """A word of a kind of finding in the language of the catalog; one it does not have as it is."""
-    return _Filling(catalog().kinds[kind].words).format_field(word, "word")
+def word_of(kind: FindingKind, word: str, language: str = ENGLISH) -> str:
+    """A word of a kind of finding; one that has no words as it is."""
+    return catalog(language).word(word, kind)
 
 
-def headline(usability: str) -> str:
+def headline(usability: str, language: str = ENGLISH) -> str:
     """The verdict in one line."""
-    return catalog().headlines[usability]
+    return catalog(language).texts(f"headline-{_name(usability)}")
 
 
-def said(finding: Finding) -> dict[str, object]:
+def said(finding: Finding, language: str = ENGLISH) -> dict[str, object]:
     """A finding for files and pages: the record with its title, text and remedy."""
     record: dict[str, object] = msgspec.to_builtins(finding)
     return record | {
-        "title": title_of(finding.kind),
-        "text": text_of(finding),
-        "remedy": remedy_of(finding),
+        "title": title_of(finding.kind, language),
+        "text": text_of(finding, language),
+        "remedy": remedy_of(finding, language),
     }
+
+
+def _kind_text(texts: Texts, kind: FindingKind) -> KindText:
+    parts = texts.parts(kind)
+    shown = {name: readable(pattern) for name, pattern in parts.items()}
+    sentences = [
+        Sentence(name, found[1] or "", quoted_by(pattern), shown[name])
+        for name, pattern in parts.items()
+        if (found := _SENTENCE.fullmatch(name))
+    ]
+    return KindText(
+        title=shown[""],
+        text=tuple(sentences),
+        remedy=shown.get("remedy", ""),
+        remedy_quotes=quoted_by(parts["remedy"]) if "remedy" in parts else frozenset(),
+        meaning=shown.get("meaning", ""),
+        detection=shown.get("detection", ""),
+    )
 
 
 def _values(finding: Finding) -> dict[str, Value]:
@@ -149,53 +176,42 @@ def _is_known(value: Value) -> bool:
     return not (isinstance(value, float) and math.isnan(value))
 
 
-class _Filling(string.Formatter):
-    """Fills values into a sentence of the catalog."""
+def _functions(texts: Texts) -> Functions:
+    """What texts of findings call besides the functions for numbers."""
+    language = texts.language
 
-    def __init__(self, words: Mapping[str, str]) -> None:
-        self._words = words
+    def fates(value: str) -> str:
+        counts = _counts(value).items()
+        return "; ".join(f"{number}: {count_fate(name, language)}" for name, number in counts)
 
-    def sentence(self, one: str | Sentence, values: Mapping[str, Value]) -> str:
-        """The sentence, or nothing where a value is missing."""
-        if isinstance(one, Sentence):
-            if one.given and not values.get(one.given):
-                return ""
-            one = one.text
-        named = {name for _, name, _, _ in self.parse(one) if name}
-        return self.vformat(one, (), values) if named <= values.keys() else ""
+    def counted(value: str) -> str:
+        counts = _counts(value)
+        return "; ".join(count_text(name, counts, language=language) for name in counts)
 
-    def format_field(self, value: Any, format_spec: str) -> str:
-        """One value in its format."""
-        match format_spec:
-            case "length":
-                return _length(value)
-            case "percent" | "percent0":
-                return f"{100.0 * value:.{0 if format_spec.endswith('0') else 1}f} %"
-            case "deg" | "deg1" | "deg3":
-                return f"{math.degrees(value):.{_DEGREE_DIGITS[format_spec]}f}°"
-            case "count":
-                return f"{value:,}".replace(",", "\u202f")
-            case "label":
-                return count_label(value)
-            case "counts":
-                counts = _counts(value)
-                return "; ".join(count_text(name, counts) for name in counts)
-            case "fates":
-                counts = _counts(value)
-                return "; ".join(f"{number}: {count_fate(name)}" for name, number in counts.items())
-            case "noun":
-                return count_noun(value)
-            case "word":
-                return self._words.get(value) or catalog().words.get(value, value)
-        return super().format_field(value, format_spec)
+    def word(value: Any, *, of: str = "") -> str:
+        return _word(texts, str(value), of)
+
+    return {
+        "WORD": word,
+        "COUNTED": lambda name: count_label(name, language),
+        "COUNTS": counted,
+        "FATES": fates,
+        "NOUN": lambda name: count_noun(name, language),
+    }
+
+
+def _word(texts: Texts, value: str, kind: str) -> str:
+    word = f"word-{_name(value)}"
+    if kind and word in texts.parts(kind):
+        return texts.part(kind, word, {})
+    return texts(word) if word in texts else value
+
+
+def _name(value: str) -> str:
+    """A value as a part of the name of a message."""
+    return value.replace(" ", "-")
 
 
 def _counts(value: str) -> dict[str, int]:
     pairs = (one.partition("=") for one in value.split())
     return {name: int(number) for name, _, number in pairs}
-
-
-def _length(value_m: float) -> str:
-    if not math.isfinite(value_m):
-        return "–"
-    return f"{100.0 * value_m:.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m"

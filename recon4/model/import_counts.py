@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from recon4.model.count_words import COUNT_WORDINGS, CountKind, CountWording
+from recon4.locales.languages import ENGLISH
+from recon4.model.count_meanings import COUNT_MEANINGS, CountKind, CountMeaning
 from recon4.model.tuning import LOSSES
+
+if TYPE_CHECKING:
+    from recon4.locales.texts import Texts
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,76 +33,93 @@ class Loss:
     @property
     def text(self) -> str:
         """How many of how many, what became of them, and the detail."""
-        return _counted(self.name, self.number, total=self.total, detail=self.detail)
+        return _counted(self)
 
     @property
     def is_warned(self) -> bool:
         """Whether it is a warning of its own: large, and nobody else says it."""
-        return not wording(self.name)[0].stated and not self.ratio < LOSSES.warned_ratio
+        return not meaning(self.name).stated and not self.ratio < LOSSES.warned_ratio
 
 
-def wording(name: str) -> tuple[CountWording, str]:
-    """The words of a count, and the sensor it is of; empty = of all.
+def meaning(name: str) -> CountMeaning:
+    """What a count means.
 
     Raises:
-        KeyError: If it has none.
+        KeyError: If it is not listed.
     """
-    if name in COUNT_WORDINGS:
-        return COUNT_WORDINGS[name], ""
-    for start, found in COUNT_WORDINGS.items():
+    return COUNT_MEANINGS[_listed(name)[0]]
+
+
+def _listed(name: str) -> tuple[str, str]:
+    """A count as it is listed, and the sensor it is of; empty = of all."""
+    if name in COUNT_MEANINGS:
+        return name, ""
+    for start in COUNT_MEANINGS:
         if start.endswith("_") and name.startswith(start):
-            return found, name[len(start) :]
+            return start, name[len(start) :]
     raise KeyError(name)
 
 
-def count_label(name: str) -> str:
-    """What a count counts, such as ``points: a time …, dropped``; its name if it has no words."""
+def count_label(name: str, language: str = ENGLISH) -> str:
+    """What a count counts, such as ``points: a time …, dropped``; its name if it is not listed."""
     try:
-        words, sensor = wording(name)
+        listed, sensor = _listed(name)
     except KeyError:
         return name.replace("_", " ")
-    if words.kind is CountKind.READ:
-        return words.text
-    return f"{_noun(words)}: {words.text}{f' ({sensor})' if sensor else ''}"
+    if COUNT_MEANINGS[listed].kind is CountKind.READ:
+        return _text(listed, language)
+    of_sensor = f" ({sensor})" if sensor else ""
+    return f"{_noun(listed, language)}: {_text(listed, language)}{of_sensor}"
 
 
-def count_noun(name: str) -> str:
-    """What is counted, such as ``scans of the 2-D laser``; its name if it has no words."""
-    words = COUNT_WORDINGS.get(name)
-    return name.replace("_", " ") if words is None else words.noun or words.text
+def count_noun(name: str, language: str = ENGLISH) -> str:
+    """What is counted, such as ``scans of the 2-D laser``; its name if it is not listed."""
+    return _own_noun(name, language) if name in COUNT_MEANINGS else name.replace("_", " ")
 
 
-def count_fate(name: str) -> str:
-    """What became of what is counted; the name of the count if it has no words."""
-    words = _words(name)
-    return name.replace("_", " ") if words is None else words.text
+def count_fate(name: str, language: str = ENGLISH) -> str:
+    """What became of what is counted; the name of the count if it is not listed."""
+    try:
+        return _text(_listed(name)[0], language)
+    except KeyError:
+        return name.replace("_", " ")
 
 
-def count_text(name: str, counts: Mapping[str, int], *, detail: str = "") -> str:
+def count_text(
+    name: str, counts: Mapping[str, int], *, detail: str = "", language: str = ENGLISH
+) -> str:
     """A count as text, such as ``3 of 30000 points: a time …, dropped``.
 
     Args:
         name: Of the count.
         counts: All counts.
         detail: What the reader knows besides, such as a port.
+        language: Of the text.
     """
-    return _counted(name, counts.get(name, 0), total=_total(name, counts), detail=detail)
+    loss = Loss(name, counts.get(name, 0), _total(name, counts), detail)
+    return _counted(loss, language)
 
 
-def _counted(name: str, number: int, *, total: int, detail: str) -> str:
-    of_all = f" of {total}" if total else ""
-    return f"{number}{of_all} {count_label(name)}{f' ({detail})' if detail else ''}"
+def _counted(loss: Loss, language: str = ENGLISH) -> str:
+    texts = _texts(language)
+    number = str(loss.number)
+    if loss.total:
+        number = texts("counts-of", number=loss.number, total=loss.total)
+    detail = f" ({loss.detail})" if loss.detail else ""
+    return f"{number} {count_label(loss.name, language)}{detail}"
 
 
-def ratio_text(name: str, ratio: float) -> str:
+def ratio_text(name: str, ratio: float, language: str = ENGLISH) -> str:
     """A part of all as text, such as ``12 % of the data packets: received twice, …``.
 
     Args:
         name: Of a count with words.
         ratio: Of all, 0 to 1.
+        language: Of the text.
     """
-    words, _ = wording(name)
-    return f"{100.0 * ratio:.0f} % of the {_noun(words)}: {words.text}"
+    listed, _ = _listed(name)
+    what = {"noun": _noun(listed, language), "text": _text(listed, language)}
+    return _texts(language)("counts-ratio", ratio=ratio, **what)
 
 
 def losses(counts: Mapping[str, int], details: Mapping[str, str] | None = None) -> list[Loss]:
@@ -129,7 +151,7 @@ def repairs(counts: Mapping[str, int]) -> list[str]:
 
 def _of_kind(counts: Mapping[str, int], kind: CountKind) -> Iterator[str]:
     for name, number in counts.items():
-        found = _words(name)
+        found = _meaning(name)
         if number and found is not None and found.kind is kind:
             yield name
 
@@ -140,21 +162,35 @@ def _loss(name: str, counts: Mapping[str, int], details: Mapping[str, str]) -> L
 
 def _total(name: str, counts: Mapping[str, int]) -> int:
     """How many there were in all; 0 = unknown."""
-    words = _words(name)
-    if words is None or not words.of:
+    found = _meaning(name)
+    if found is None or not found.of:
         return 0
-    left_out = counts[name] if words.apart else 0
-    return max(counts.get(words.of, 0) + left_out, counts[name])
+    left_out = counts[name] if found.apart else 0
+    return max(counts.get(found.of, 0) + left_out, counts[name])
 
 
-def _words(name: str) -> CountWording | None:
+def _meaning(name: str) -> CountMeaning | None:
     try:
-        return wording(name)[0]
+        return meaning(name)
     except KeyError:
         return None
 
 
-def _noun(words: CountWording) -> str:
-    if not words.of:
-        return words.noun
-    return COUNT_WORDINGS[words.of].noun or COUNT_WORDINGS[words.of].text
+def _noun(listed: str, language: str) -> str:
+    return _own_noun(COUNT_MEANINGS[listed].of or listed, language)
+
+
+def _own_noun(listed: str, language: str) -> str:
+    texts, message = _texts(language), f"count-{listed}"
+    part = "noun" if "noun" in texts.parts(message) else ""
+    return texts.part(message, part, {})
+
+
+def _text(listed: str, language: str) -> str:
+    return _texts(language)(f"count-{listed}")
+
+
+def _texts(language: str) -> Texts:
+    from recon4.locales.texts import texts  # readers count without a word: no parser for them
+
+    return texts(language, "counts")

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from recon4.model.finding import Value
-from recon4.model.import_counts import Loss, losses, wording
+from recon4.model.import_counts import Loss, losses, meaning
 from recon4.model.tuning import LOSSES
 
 _SAMPLES = {"imu_kept", "gnss_kept", "gnss_samples", "sample_datagrams", "positions"}
@@ -58,7 +58,7 @@ def unused_parts(counts: Mapping[str, int]) -> list[UnusedPart]:
     """
     groups: dict[str, list[Loss]] = {}
     for loss in losses(counts):
-        if of := wording(loss.name)[0].of:
+        if of := meaning(loss.name).of:
             groups.setdefault(of, []).append(loss)
     parts = [_part(name, tuple(reasons), counts) for name, reasons in groups.items()]
     large = [part for part in parts if part.number >= LOSSES.warned_ratio * part.total]
@@ -67,5 +67,5 @@ def unused_parts(counts: Mapping[str, int]) -> list[UnusedPart]:
 
 def _part(name: str, reasons: tuple[Loss, ...], counts: Mapping[str, int]) -> UnusedPart:
     number = sum(loss.number for loss in reasons)
-    apart = sum(loss.number for loss in reasons if wording(loss.name)[0].apart)
+    apart = sum(loss.number for loss in reasons if meaning(loss.name).apart)
     return UnusedPart(name, number, max(counts.get(name, 0) + apart, number), reasons)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.model.count_words import FREE_CLOCK
+from recon4.model.count_meanings import FREE_CLOCK
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.clock_names import known_offset_s, offset_values
 from recon4.recording.report import ImportReport

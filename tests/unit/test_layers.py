@@ -17,6 +17,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parents[2]
 BASE = {
     "recon4.errors",
+    "recon4.locales",
     "recon4.units",
     "recon4.untrusted",
     "recon4.progress",
@@ -28,6 +29,7 @@ STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/units.py": set(),
+    "recon4/locales": {"recon4.errors", "recon4.locales"},
     "recon4/untrusted": {"recon4.errors", "recon4.untrusted"},
     "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
     "recon4/system/compile_kernels.py": {"recon4.kernels.signatures", "recon4.progress"}

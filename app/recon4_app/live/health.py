@@ -8,7 +8,7 @@ from recon4.live.findings import rates
 from recon4.live.mapper.tuning import NOTES
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Notes
-from recon4.model.count_words import FREE_CLOCK
+from recon4.model.count_meanings import FREE_CLOCK
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig, Sensor

@@ -6,7 +6,7 @@ from recon4.live.findings import findings, rates
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import DiskState, FileState, RecentFrames
 from recon4.model.finding_kinds import FindingKind
-from recon4.model.import_counts import count_text, wording
+from recon4.model.import_counts import count_fate, count_text
 from recon4.model.rig import load_rig, parse_rig
 from recon4.recording.report import warning
 from tests import live_messages
@@ -230,7 +230,7 @@ def test_live_and_finished_runs_say_a_loss_in_the_same_words(name):
 
     ((_, text),) = found_in(notes=notes(counts=counts, recent=counts))
 
-    assert wording(name)[0].text in text
+    assert count_fate(name) in text
     assert count_text(name, counts).split(": ", 1)[1] == text.split(": ", 1)[1]
 
 

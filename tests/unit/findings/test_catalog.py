@@ -8,9 +8,10 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.findings.explain import explained, listed, markdown
-from recon4.findings.wording import Sentence, catalog, said, text_of, whole_text
+from recon4.findings.wording import catalog, headline, said, text_of, whole_text
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.usability import Usability
 
 ROOT = Path(__file__).parents[3]
 SOURCES = [
@@ -87,12 +88,7 @@ def test_a_remedy_follows_the_text_and_stands_by_itself_in_the_summary():
 def test_conditions_name_values_that_some_witness_states():
     stated = set(re.findall(r'"(\w+)"|\b(\w+)=', code()))
     stated = {name for pair in stated for name in pair}
-    names = {
-        one.given
-        for entry in catalog().kinds.values()
-        for one in entry.text
-        if isinstance(one, Sentence) and one.given
-    }
+    names = {one.given for entry in catalog().kinds.values() for one in entry.text if one.given}
 
     assert names - stated == set()
 
@@ -100,6 +96,8 @@ def test_conditions_name_values_that_some_witness_states():
 def test_every_code_is_explained_and_a_wrong_one_gets_the_nearest():
     assert "fixes follow the velocity" in " ".join(explained("gnss-clock").split())
     assert len(listed().splitlines()) == len(FindingKind)
+    assert explained("MIRROR", "de").startswith("MIRROR\n\nSpiegel\n\n")
+    assert "Erkannt: " in explained("MIRROR", "de")
     with pytest.raises(ConfigError, match="GNSS-CLOCK"):
         explained("GNSS-CLOK")
 
@@ -113,4 +111,4 @@ def test_the_page_of_the_findings_is_the_catalog():
 def test_the_pages_have_the_headlines_of_the_catalog():
     page = (ROOT / "web" / "shared" / "format.js").read_text("utf-8")
 
-    assert {text for text in catalog().headlines.values() if f'"{text}"' not in page} == set()
+    assert {one for one in Usability if f'"{headline(one)}"' not in page} == set()

@@ -1,12 +1,11 @@
 """Warnings of readers are records: no sentence in a reader, and each says what its words quote."""
 
 import ast
-import string
 from pathlib import Path
 
 import pytest
 
-from recon4.findings.wording import Sentence, catalog
+from recon4.findings.wording import catalog
 from recon4.model.finding_kinds import MOUNT_DOUBTS, FindingKind
 
 ROOT = Path(__file__).parents[3]
@@ -43,16 +42,11 @@ def kinds_of(first):
 NAMED = [(place, kind, values) for place, a, values in calls() for kind in kinds_of(a)]
 
 
-def names_in(text):
-    return {name for _, name, _, _ in string.Formatter().parse(text) if name}
-
-
 def quoted(kind):
     """Values that any sentence of a kind quotes or depends on, and those of each sentence."""
     entry = catalog().kinds[kind]
-    sentences = [Sentence(one) if isinstance(one, str) else one for one in entry.text]
-    each = [names_in(one.text) | ({one.given} - {""}) for one in sentences]
-    return set().union(*each, names_in(entry.remedy)), each
+    each = [one.quotes | ({one.given} - {""}) for one in entry.text]
+    return set().union(*each, entry.remedy_quotes), each
 
 
 def test_no_reader_warns_with_a_sentence():

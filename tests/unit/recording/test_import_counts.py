@@ -7,8 +7,9 @@ import pytest
 
 import recon4
 from recon4.findings.wording import whole_text
-from recon4.model.count_words import COUNT_WORDINGS, CountKind
-from recon4.model.import_counts import count_text, losses, wording
+from recon4.locales.texts import texts
+from recon4.model.count_meanings import COUNT_MEANINGS, CountKind
+from recon4.model.import_counts import count_text, losses, meaning
 from recon4.recording.report import ImportReport
 from tests.warned import K, findings_of, kinds
 
@@ -54,17 +55,19 @@ def test_every_count_of_the_code_has_words():
     assert len(found) > 60
     for file, name in sorted(found):
         try:
-            wording(name)
+            meaning(name)
         except KeyError:
-            pytest.fail(f"{file} counts {name!r}: list it in recon4/model/import_counts.py")
+            pytest.fail(f"{file} counts {name!r}: list it in recon4/model/count_meanings.py")
 
 
-def test_every_wording_refers_to_what_was_read():
-    for name, words in COUNT_WORDINGS.items():
-        if words.of:
-            assert COUNT_WORDINGS[words.of].kind is CountKind.READ, name
-        elif words.kind is not CountKind.READ:
-            assert words.noun, name
+def test_every_count_refers_to_what_was_read_and_has_words():
+    words = texts("en", "counts")
+    for name, found in COUNT_MEANINGS.items():
+        parts = words.parts(f"count-{name}")
+        if found.of:
+            assert COUNT_MEANINGS[found.of].kind is CountKind.READ, name
+        elif found.kind is not CountKind.READ:
+            assert "noun" in parts, name
 
 
 def test_a_loss_says_how_many_of_how_many():

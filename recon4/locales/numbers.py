@@ -1,0 +1,62 @@
+"""Numbers in texts: rounded as everywhere in recon4, written as in the language."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+from babel import Locale
+from babel.numbers import get_decimal_symbol
+from fluent.runtime.types import FluentType, fluent_number
+
+_THIN_SPACE = "\u202f"
+"""Between the thousands; it does not break."""
+_ALL_DIGITS = 15
+"""Of a number that a text quotes as it is."""
+
+
+class ShownText(FluentType, str):
+    """A text as it is, however long."""
+
+    def format(self, locale: Locale) -> str:
+        """Itself, so that no limit for the length of strings holds."""
+        return self
+
+
+def shown(value: bool | int | float | str) -> FluentType:
+    """A value as a text quotes it."""
+    if isinstance(value, bool | str):
+        return ShownText(value)
+    return fluent_number(value, useGrouping=False, maximumFractionDigits=_ALL_DIGITS)
+
+
+def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
+    """The functions that texts call for numbers, by their name in texts."""
+    decimal = get_decimal_symbol(Locale.parse(language))
+
+    def written(text: str) -> str:
+        return text.replace(".", decimal)
+
+    def fixed(value: float, *, digits: int, sign: int = 0) -> str:
+        return format(float(value), f"{'+' if sign else ''}.{int(digits)}f")
+
+    def length(value_m: float) -> str:
+        if not math.isfinite(value_m):
+            return "–"
+        return written(f"{100.0 * value_m:.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m")
+
+    return {
+        "LENGTH": length,
+        "DECIMAL": lambda value, **how: written(fixed(value, **how)),
+        "EXACT": fixed,
+        "PERCENT": lambda ratio, digits: written(f"{fixed(100.0 * ratio, digits=digits)} %"),
+        "DEGREES": lambda rad, digits: written(f"{fixed(math.degrees(rad), digits=digits)}°"),
+        "SIGNIFICANT": lambda value, digits: written(format(float(value), f".{int(digits)}g")),
+        "COUNT": lambda number: f"{int(number):,}".replace(",", _THIN_SPACE),
+        "BYTE": lambda value: format(int(value), "#04x"),
+    }
+
+
+def localized(text: str, language: str) -> str:
+    """A number as Python writes it, as ``-12.5``, with the decimal sign of a language."""
+    return text.replace(".", get_decimal_symbol(Locale.parse(language)))
