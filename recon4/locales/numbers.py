@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Mapping
 
 from babel import Locale
@@ -11,14 +12,12 @@ from fluent.runtime.types import FluentType, fluent_number
 
 _THIN_SPACE = "\u202f"
 """Between the thousands; it does not break."""
-_ALL_DIGITS = 15
-"""Of a number that a text quotes as it is."""
 
 
 class ShownText(FluentType, str):
     """A text as it is, however long."""
 
-    def format(self, locale: Locale) -> str:
+    def format(self, locale: Locale) -> str:  # type: ignore[override]
         """Itself, so that no limit for the length of strings holds."""
         return self
 
@@ -27,7 +26,7 @@ def shown(value: bool | int | float | str) -> FluentType:
     """A value as a text quotes it."""
     if isinstance(value, bool | str):
         return ShownText(value)
-    return fluent_number(value, useGrouping=False, maximumFractionDigits=_ALL_DIGITS)
+    return fluent_number(value, useGrouping=False, maximumFractionDigits=sys.float_info.dig)
 
 
 def number_functions(language: str) -> Mapping[str, Callable[..., str]]:

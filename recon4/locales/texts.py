@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from fluent.runtime import FluentBundle
 from fluent.syntax import FluentParser, ast
@@ -41,7 +42,9 @@ class Texts:
         """
         self.language = language
         own = functions(self) if functions is not None else {}
-        called = {key: _shown(one) for key, one in {**number_functions(language), **own}.items()}
+        called: dict[str, Callable[..., Any]] = {
+            key: _shown(one) for key, one in {**number_functions(language), **own}.items()
+        }
         self._bundle = FluentBundle([language], functions=called, use_isolating=False)
         self._messages: dict[str, ast.Message] = {}
         for file in files:
@@ -91,6 +94,8 @@ class Texts:
     def _formatted(self, name: str, part: str, values: Mapping[str, Shown]) -> str:
         message = self._bundle.get_message(name)
         pattern = message.attributes[part] if part else message.value
+        if pattern is None:
+            raise KeyError(name)
         given = {key: shown(value) for key, value in values.items()}
         text, errors = self._bundle.format_pattern(pattern, given)
         if errors:

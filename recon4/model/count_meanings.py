@@ -1,7 +1,7 @@
 """What each count of an import means: whether data was lost, and of how much.
 
-Readers count what they find (`ImportReport.count`). Each name of a count is listed here, and has its
-words in ``recon4/locales``; a test finds names without either.
+Readers count what they find (`ImportReport.count`). Each name of a count is listed here,
+and has its words in ``recon4/locales``; a test finds names without either.
 """
 
 from __future__ import annotations

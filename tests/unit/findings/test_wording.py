@@ -1,4 +1,4 @@
-"""Findings in another language: the same record, other words, and numbers as that language writes."""
+"""Findings in another language: the same record in other words and numbers."""
 
 import pytest
 
