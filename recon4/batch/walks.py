@@ -13,7 +13,7 @@ from recon4.recording.nearby_samples import nearby_samples
 
 _NO_WALKS = (
     RecordingKind.IMU_CSV,
-    RecordingKind.GNSS_CSV,
+    RecordingKind.GNSS_FILE,
     RecordingKind.POSES,
     RecordingKind.LIDAR_FILE,
     RecordingKind.FRAMES,
@@ -103,7 +103,7 @@ def _beside(walk: Path, options: tuple[str, ...]) -> Iterator[str]:
     """Options for the files that lie in the folder of a walk."""
     if not walk.is_dir():
         return
-    for option, kind in (("--imu", RecordingKind.IMU_CSV), ("--gnss", RecordingKind.GNSS_CSV)):
+    for option, kind in (("--imu", RecordingKind.IMU_CSV), ("--gnss", RecordingKind.GNSS_FILE)):
         if file := nearby_samples([walk], kind):
             yield from (option, str(file))
     if (rig := walk / RIG_FILE).is_file() and "--rig" not in options:

@@ -27,7 +27,7 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     rig: Annotated[str, typer.Option(help="Rig preset or .toml to begin with.")],
     out: Annotated[Path, typer.Option(help="Calibrated rig to write, .toml.")],
     imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
-    gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
+    gnss: Annotated[Path | None, typer.Option(help="GNSS: CSV, .pos, SBET, UBX, NMEA.")] = None,
     method: Annotated[
         str,
         typer.Option(help="joint, maps, gravity, entropy, pairs, trajectories; page calibration."),

@@ -139,7 +139,7 @@ def process(  # noqa: PLR0913 - an argument for each option
     out: Annotated[Path, typer.Option(help="Project folder; the results end up in it.")],
     rig: Annotated[str, typer.Option(help="Rig preset or .toml; default: worked out.")] = "",
     imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
-    gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
+    gnss: Annotated[Path | None, typer.Option(help="GNSS: CSV, .pos, SBET, UBX, NMEA.")] = None,
     fields: FieldsOption = "",
     preset: PresetOption = "indoor",
     calibrate: CalibrateOption = "",

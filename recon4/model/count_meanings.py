@@ -178,6 +178,7 @@ _SAMPLES = {
     "gnss_without_stamp": _repaired("gnss_kept"),
     "gnss_wrong_time": _lost("gnss_kept", apart=True),
     "gnss_lines_damaged": _lost("gnss_kept", apart=True),
+    "gnss_messages_damaged": _lost("gnss_kept", apart=True),
     "gnss_duplicate": _lost("gnss_kept", apart=True),
     "gnss_copies": _usual(),
     "gnss_unsorted": _repaired("gnss_kept"),

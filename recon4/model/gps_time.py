@@ -46,6 +46,17 @@ def adjusted_gps_s(t_ns: Times) -> Array:
     return (t_ns - GPS_EPOCH_NS + leaps_ns - 10**9 * SECOND_NS) / 1e9
 
 
+def utc_of_gps_ns(t_gps_ns: Times) -> Times:
+    """UTC since 1970 without leap seconds [ns] of GPS time, (N,).
+
+    Args:
+        t_gps_ns: GPS time since 1970: `GPS_EPOCH_NS` and what passed since then [ns], (N,).
+    """
+    ahead = np.arange(1, len(_LEAP_NS) + 1) * 10**9
+    leaps_ns = np.searchsorted(_LEAP_NS + ahead, t_gps_ns, side="right") * 10**9
+    return t_gps_ns - leaps_ns
+
+
 def point_time_s(t_ns: Times, *, absolute: bool) -> Array:
     """`adjusted_gps_s`, or seconds of the recording's own clock."""
     return adjusted_gps_s(t_ns) if absolute else t_ns / 1e9

@@ -26,6 +26,7 @@ from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
 from recon4.recording.formats.typestore import TRANSFORMS
+from recon4.recording.gnss.files import read_gnss
 from recon4.recording.info_head import RecordingHead, judge_samples, kind_of_walk, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
@@ -52,7 +53,7 @@ from recon4.recording.point_fields import INTENSITY_FIELDS, RING_FIELDS, TIME_FI
 from recon4.recording.recipes.bag_points import declared_recipes
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import RigToComplete
-from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.recording.tuning import IngestTuning
 from recon4.recording.tuning_heads import PROBE
 from recon4.recording.tuning_lasers import LASERS
@@ -281,8 +282,9 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
     report = ImportReport()
     if kind is RecordingKind.IMU_CSV:
         t_ns, what = read_imu_csv(path, report).t_ns, "IMU samples"
-    elif kind is RecordingKind.GNSS_CSV:
-        t_ns, what = read_gnss_csv(path, report).t_ns, "GNSS samples"
+    elif kind is RecordingKind.GNSS_FILE:
+        file = read_gnss(path, report)
+        t_ns, what = file.samples.t_ns, file.text
     elif pose_format(path) == "tum":
         walk = read_tum(path, report)
         t_ns, what = walk.t_ns, "poses (TUM)"
@@ -297,7 +299,7 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
         info,
         t_first_ns=first,
         t_last_ns=last,
-        samples=(text,),
+        samples=(text, *report.derived),
         lost=tuple(report.lost()),
         findings=tuple(report.findings),
     )
@@ -362,7 +364,7 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         beside = samples_beside(path, RecordingKind.IMU_CSV)
         missing.append(f"IMU ({beside or 'an IMU file can be given beside it'})")
     if not head.gnss and "GNSS" not in texts:
-        beside = samples_beside(path, RecordingKind.GNSS_CSV)
+        beside = samples_beside(path, RecordingKind.GNSS_FILE)
         missing.append("GNSS positions" + f" ({beside})" * bool(beside))
     sensors = _with_rotation(info.sensors, rig, head)
     report.count("clock_jumps_back", len(head.jumps))

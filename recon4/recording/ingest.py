@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.events import Remarked
+from recon4.model.gps_time import day_of
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
@@ -26,6 +27,8 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
+from recon4.recording.gnss.files import read_gnss
+from recon4.recording.gnss.records import Dating, GnssFile
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.limits import LIMITS
 from recon4.recording.open import open_recording
@@ -34,7 +37,7 @@ from recon4.recording.packets.lidar_imu import rig_of_imu_file
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.covering import covering
-from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.recording.samples.heights import compare_heights
 from recon4.recording.samples.units import GyroUnit
 from recon4.recording.sources import Sources
@@ -57,6 +60,7 @@ class _Samples:
     """Receives line scans and scans of a 2-D laser."""
     imu: list[ImuSamples] = field(default_factory=list)
     gnss: list[GnssSamples] = field(default_factory=list)
+    gnss_file: GnssFile | None = None
     poses: list[Trajectory] = field(default_factory=list)
     gyro_unit: GyroUnit = "auto"
 
@@ -64,12 +68,12 @@ class _Samples:
     def of_files(
         cls, sources: Sources, out: Path, *, settings: IngestSettings, report: ImportReport
     ) -> _Samples:
-        """Those of the CSV files."""
+        """Those of the files beside the recording."""
         imu, gnss = sources.imu, sources.gnss
         return cls(
             LineStoreWriter(out),
             imu=[read_imu_csv(imu, report)] if imu else [],
-            gnss=[read_gnss_csv(gnss, report)] if gnss else [],
+            gnss_file=read_gnss(gnss, report) if gnss else None,
             gyro_unit=settings.imu_gyro_unit,
         )
 
@@ -212,7 +216,7 @@ def _sort_out(sources: Sources) -> Sources:
         kind = recognize(path)
         if kind is RecordingKind.IMU_CSV and imu is None:
             imu = path
-        if kind is RecordingKind.GNSS_CSV and gnss is None:
+        if kind is RecordingKind.GNSS_FILE and gnss is None:
             gnss = path
     recordings = tuple(path for path in sources.recordings if path not in (imu, gnss))
     return Sources(recordings, sources.rig, imu, gnss)
@@ -281,18 +285,29 @@ def _imu(
 def _gnss(
     given: _Samples, found: _Samples, rig: Rig, *, written: _IngestSpan, report: ImportReport
 ) -> GnssSamples | None:
-    from_file, recorded = join(given.gnss), join(found.gnss)
+    from_file, recorded = _dated(given.gnss_file, written, report), join(found.gnss)
     samples = from_file or recorded
     if samples is None:
         return None
     if from_file and recorded:
         compare_heights(from_file, recorded, report)
-        report.derive("GNSS samples are those of the CSV file, not the recording's")
+        report.derive("GNSS samples are those of the file given, not the recording's")
     offset_s = rig.gnss_time_offset_s
     if not from_file and not is_same_clock(GNSS_CLOCK, offset_s, report):
         return None
     clean = clean_gnss(samples, offset_s=offset_s, report=report)
-    return covering(clean, written.span, bool(given.gnss), report=report)
+    return covering(clean, written.span, given.gnss_file is not None, report=report)
+
+
+def _dated(file: GnssFile | None, written: _IngestSpan, report: ImportReport) -> GnssSamples | None:
+    """The positions of a file, on the day or in the week of the points if it tells none."""
+    if file is None:
+        return None
+    samples = file.dated(written.t_first_ns)
+    if file.dating is not Dating.UTC and len(samples):
+        day = f"{day_of(int(samples.t_ns[0])).isoformat()}, as the points say"
+        report.derive(f"{file.text}: the first is of {day}")
+    return samples
 
 
 def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -> None:

@@ -21,6 +21,7 @@ from recon4.recording.formats.cloud_files import (
 from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
+from recon4.recording.gnss.files import is_gnss_file
 from recon4.recording.laser_tables import LASER_COLUMNS
 from recon4.recording.limits import LIMITS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
@@ -41,7 +42,7 @@ class RecordingKind(StrEnum):
     BAG2 = "rosbag2"
     FRAMES = f"frames ({CLOUD_FORMATS})"
     IMU_CSV = "IMU samples (CSV)"
-    GNSS_CSV = "GNSS samples (CSV)"
+    GNSS_FILE = "GNSS positions (CSV, RTKLIB, SBET, UBX, NovAtel, NMEA)"
     POSES = "poses (TUM or KITTI)"
     CARMEN = "CARMEN log of a 2-D laser"
     LINE_TABLES = "line scans (CSV or NPZ)"
@@ -59,7 +60,7 @@ _KIND_OF_COLUMNS = {
     frozenset(LINE_COLUMNS): RecordingKind.LINE_TABLES,
     frozenset(LASER_COLUMNS): RecordingKind.LASER_TABLE,
     frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
-    frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_CSV,
+    frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_FILE,
 }
 _KIND_OF_SUFFIX = {
     **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
@@ -187,10 +188,9 @@ def _file_kind(path: Path) -> RecordingKind:
     for wanted, kind in _KIND_OF_COLUMNS.items():
         if wanted <= columns:
             return kind
-    if pose_format(path):
-        return RecordingKind.POSES
-    if is_companion(path):
-        return RecordingKind.LIDAR_FILE
+    for reads, kind in _BY_LINES:
+        if reads(path):
+            return kind
     what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
     looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
     raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")
@@ -212,6 +212,12 @@ _BY_CONTENT = (
     (is_cloud_file, RecordingKind.FRAMES),
     (is_carmen, RecordingKind.CARMEN),
 )
+_BY_LINES: tuple[tuple[Callable[[Path], object], RecordingKind], ...] = (
+    (is_gnss_file, RecordingKind.GNSS_FILE),
+    (pose_format, RecordingKind.POSES),
+    (is_companion, RecordingKind.LIDAR_FILE),
+)
+"""Asked last: they read more of a file."""
 
 
 def located(path: Path) -> Path:

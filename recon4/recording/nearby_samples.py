@@ -11,6 +11,9 @@ from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.limits import LIMITS
 from recon4.recording.sources import Sources
 
+SUFFIXES = frozenset({".csv", ".pos", ".sbet", ".ubx", ".nmea", ".gps"})
+"""Of files that are looked at."""
+
 
 def unread_samples(sources: Sources) -> list[str]:
     """A sentence for IMU and for GNSS samples beside the recordings that are not among the sources.
@@ -19,7 +22,7 @@ def unread_samples(sources: Sources) -> list[str]:
     """
     wanted = (
         (RecordingKind.IMU_CSV, "--imu", sources.imu),
-        (RecordingKind.GNSS_CSV, "--gnss", sources.gnss),
+        (RecordingKind.GNSS_FILE, "--gnss", sources.gnss),
     )
     texts = []
     for kind, option, given in wanted:
@@ -34,7 +37,7 @@ def unread_samples(sources: Sources) -> list[str]:
 
 def samples_beside(recording: Path, kind: RecordingKind) -> str:
     """What to do with samples of a kind beside a recording; empty = there are none."""
-    option = {RecordingKind.IMU_CSV: "--imu", RecordingKind.GNSS_CSV: "--gnss"}[kind]
+    option = {RecordingKind.IMU_CSV: "--imu", RecordingKind.GNSS_FILE: "--gnss"}[kind]
     file = nearby_samples([recording], kind)
     if file is None:
         return ""
@@ -42,11 +45,12 @@ def samples_beside(recording: Path, kind: RecordingKind) -> str:
 
 
 def nearby_samples(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:
-    """The first CSV file of a kind in the folders of the recordings; None = there is none."""
+    """The first file of a kind of samples in the folders of the recordings; None = none."""
     folders = {path if path.is_dir() else path.parent for path in recordings}
     for folder in sorted(folders):
         try:
-            for file in islice(sorted(folder.glob("*.csv")), LIMITS.sample_files):
+            files = (one for one in sorted(folder.iterdir()) if one.suffix.lower() in SUFFIXES)
+            for file in islice(files, LIMITS.sample_files):
                 if _is_of(file, kind):
                     return file
         except OSError:

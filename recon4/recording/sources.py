@@ -27,7 +27,7 @@ class Sources:
     imu: Path | None = None
     """CSV file, in place of the recording's IMU samples."""
     gnss: Path | None = None
-    """CSV file, in place of the recording's GNSS samples."""
+    """File of positions, in place of the recording's GNSS samples."""
     near: tuple[Path, ...] = ()
     """Files beside the recordings (`recon4.recording.files_near`), for a process
     that may not list their folders."""
@@ -45,7 +45,7 @@ class Sources:
             recordings: Files or folders: pcap, bags, folders of clouds; several are one walk.
             rig: Rig file, or the name of a shipped rig; None = chosen from the recording.
             imu: CSV file, in place of the recording's IMU samples.
-            gnss: CSV file, in place of the recording's GNSS samples.
+            gnss: File of positions, in place of the recording's GNSS samples.
 
         Raises:
             ConfigError: If the rig cannot be read.

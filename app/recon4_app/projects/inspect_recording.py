@@ -124,6 +124,7 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
     from recon4.errors import Recon4Error
     from recon4.model.rig import load_rig
     from recon4.recording.kinds import RecordingKind, recognize
+    from recon4.recording.nearby_samples import SUFFIXES
 
     found: dict[str, str] = {}
     for file in files:
@@ -131,9 +132,9 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
             if file.suffix == ".toml":
                 load_rig(str(file))
                 found.setdefault("rig", str(file))
-            elif file.suffix == ".csv":
+            elif file.suffix.lower() in SUFFIXES:
                 kind = recognize(file)
-                name = {RecordingKind.IMU_CSV: "IMU", RecordingKind.GNSS_CSV: "GNSS"}.get(kind)
+                name = {RecordingKind.IMU_CSV: "IMU", RecordingKind.GNSS_FILE: "GNSS"}.get(kind)
                 if name:
                     found.setdefault(name, str(file))
         except Recon4Error:

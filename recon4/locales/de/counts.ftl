@@ -143,6 +143,7 @@ count-gnss_no_fix = ohne Lösung
 count-gnss_without_stamp = ohne Zeitstempel, die Zeit der Aufzeichnung wird verwendet
 count-gnss_wrong_time = ein Zeitstempel einer anderen Zeit, ausgelassen
 count-gnss_lines_damaged = beschädigte Zeilen der Datei, ausgelassen
+count-gnss_messages_damaged = beschädigte Nachrichten der Datei, ausgelassen
 count-gnss_duplicate = die Zeit einer anderen, ausgelassen
 count-gnss_copies = Kopien der vorherigen, ausgelassen
     .noun = GNSS-Positionen

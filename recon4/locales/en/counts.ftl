@@ -144,6 +144,7 @@ count-gnss_no_fix = without a fix
 count-gnss_without_stamp = without a stamp, the time of recording is used
 count-gnss_wrong_time = a stamp of another time, dropped
 count-gnss_lines_damaged = damaged lines of the file, dropped
+count-gnss_messages_damaged = damaged messages of the log, dropped
 count-gnss_duplicate = the time of another, dropped
 count-gnss_copies = copies of the one before, dropped
     .noun = GNSS positions

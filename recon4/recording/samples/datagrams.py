@@ -138,7 +138,7 @@ class SampleDecoder:
 
     def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[_Sample]:
         if line[3:6] == b"GST":
-            self._sd = arrival_ns, _gst(line)
+            self._sd = arrival_ns, gst_sd_enu_m(line)
             return
         if line[3:6] not in (b"GGA", b"RMC"):
             return
@@ -156,7 +156,7 @@ class SampleDecoder:
         yield _Sample("gnss", t_ns, values, None)
 
 
-def _gst(line: bytes) -> list[float]:
+def gst_sd_enu_m(line: bytes) -> list[float]:
     """Standard deviations east, north, up [m] of a GST sentence; NaN where it has none."""
     cells = line.split(b"*")[0].split(b",")[6:9]
     try:

@@ -36,6 +36,7 @@ from tests.security.fuzz import seeds_clouds as clouds
 from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
+from tests.security.fuzz.kinds_gnss import GNSS_KINDS
 from tests.security.fuzz.kinds_hesai import HESAI_KINDS
 from tests.security.fuzz.kinds_live import LIVE_KINDS
 from tests.security.fuzz.kinds_livox import LIVOX_KINDS
@@ -353,6 +354,7 @@ KINDS: dict[str, Kind] = {
     kind.name: kind
     for kind in (
         *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
+        *GNSS_KINDS,
         *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS, *WIDE_KINDS),
         *(*RECIPE_KINDS, *MANDEYE_KINDS),
     )

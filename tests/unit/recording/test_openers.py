@@ -48,7 +48,7 @@ def test_contents_that_no_opener_takes_are_refused_with_their_kind(pcap):
 
 def test_every_kind_is_opened_or_refused_with_what_it_is():
     alone = {
-        *(RecordingKind.IMU_CSV, RecordingKind.GNSS_CSV, RecordingKind.POSES),
+        *(RecordingKind.IMU_CSV, RecordingKind.GNSS_FILE, RecordingKind.POSES),
         RecordingKind.LIDAR_FILE,
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from typing import Any
 
 import numpy as np
@@ -69,6 +69,25 @@ def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> NmeaFix | 
         report.count("nmea_damaged")
         return None
     return fix
+
+
+def date_of_zda(sentence: bytes) -> int | None:
+    """Time of a ZDA sentence, which has the date that GGA sentences lack [ns]; None = damaged."""
+    import pynmeagps
+
+    try:
+        message: Any = pynmeagps.NMEAReader.parse(sentence + b"\r\n")
+        day = date(int(message.year), int(message.month), int(message.day))
+        return _ns(datetime.combine(day, message.time, tzinfo=UTC))
+    except (
+        pynmeagps.NMEAMessageError,
+        pynmeagps.NMEAParseError,
+        pynmeagps.NMEATypeError,
+        AttributeError,
+        TypeError,
+        ValueError,
+    ):
+        return None
 
 
 def is_on_earth(lat_deg: float, lon_deg: float) -> bool:
