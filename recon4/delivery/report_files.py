@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.delivery.pdf_signature import Organization, sign_pdf
+from recon4.delivery.people_section import people_section
 from recon4.errors import StoreError
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Signature
@@ -139,6 +140,7 @@ def report_of(
         signature=_signature(approval, state, words(wish.language), wish=wish),
         notes=_notes(root, approval, assessed),
         files=wish.files,
+        people=people_section(root, words(wish.language)),
     )
     return client_report(assessed, extras, language=wish.language)
 

@@ -24,8 +24,8 @@ class ReportExtras:
     """Place of a finding, worst first -> notes of reviewers about it."""
     files: Sequence[Row] = ()
     """Delivered files with their SHA-256."""
-    control: Section | None = None
-    """Control and check points; None = there are none."""
+    people: Section | None = None
+    """Notes and measurements of people; None = there are none."""
 
 
 def client_report(
@@ -49,8 +49,8 @@ def client_report(
     drawings = MapDrawings.of(texts, tiles, walk)
     front = front_page(assessed, tiles, extras.signature, words=texts, drawing=drawings.front())
     made = sections(assessed, drawings, extras.notes, words=texts)
-    if extras.control is not None:
-        made.insert(1, extras.control)
+    if extras.people is not None and not extras.people.empty:
+        made.append(extras.people)
     if extras.files:
         made.append(_files(extras.files, texts))
     title = shown(facts.title)

@@ -15,6 +15,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.report import charts
 from recon4.report.assessment import Assessment
 from recon4.report.client import Drawing, FindingBox, Row, Section, Table
+from recon4.report.client_control import control_section
 from recon4.report.client_drawings import MapDrawings, charts_on_paper
 from recon4.report.client_front import accuracy_rows, grouped, shown
 from recon4.report.client_words import Words
@@ -42,6 +43,7 @@ def sections(
     """
     made = [
         _drawings(drawings, words),
+        control_section(assessed.results.georeference, words),
         _findings(assessed, drawings, notes, words=words),
         _loops(assessed, drawings, words),
         _precision(assessed, words),
@@ -83,7 +85,8 @@ def _coordinates(assessed: Assessment, words: Words) -> Section:
     """Leveling, CRS with datum, geoid and factors, and the residuals of the positions."""
     results = assessed.results
     rows = [Row(words("front.crs"), shown(assessed.facts.crs))] if assessed.facts.crs else []
-    rows += _rows(placed_rows(results.georeference))
+    # The points have a section of their own.
+    rows += _rows(placed_rows({k: v for k, v in results.georeference.items() if k != "control"}))
     drawn = charts_on_paper(charts.gnss_charts(results.placement.gnss))
     return Section(title=words("section.coordinates"), rows=tuple(rows), drawings=drawn)
 

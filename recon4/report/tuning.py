@@ -142,6 +142,10 @@ class ClientReportTuning(Struct, frozen=True, kw_only=True):
     """Weakest loop closures that are named."""
     most_settings: int = 40
     most_files: int = 200
+    most_points: int = 200
+    """Control and check points."""
+    most_notes: int = 100
+    """Notes, and measurements."""
     most_characters: int = 600
     """Of a text that people gave."""
 

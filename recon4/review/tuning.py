@@ -168,3 +168,17 @@ class CorrectionFileTuning(Struct, frozen=True, kw_only=True):
 
 
 CORRECTION_FILES = CorrectionFileTuning()
+
+
+class AnnotationFiles(Struct, frozen=True, kw_only=True):
+    """What people pin to a map (`annotations.py`); the server writes it."""
+
+    notes: str = "annotations/notes.json"
+    views: str = "annotations/views.json"
+    """Below the project folder."""
+    format: int = 1
+    max_bytes: int = 16 << 20
+    """A larger file was not written by us."""
+
+
+ANNOTATION_FILES = AnnotationFiles()

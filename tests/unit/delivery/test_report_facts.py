@@ -3,9 +3,13 @@
 import json
 import shutil
 from dataclasses import replace
+from io import BytesIO
 
+import numpy as np
 import pytest
+from pypdf import PdfReader
 
+from recon4.delivery.people_section import people_section
 from recon4.delivery.report_files import _notes, checked_approval
 from recon4.findings.summary_notes import findings_in
 from recon4.findings.wording import said
@@ -14,14 +18,19 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.report.assessment import assess
 from recon4.report.client import Signature
 from recon4.report.client_front import front_page
+from recon4.report.client_report import ReportExtras, client_report
 from recon4.report.client_words import words
-from recon4.report.pdf import _printable
+from recon4.report.pdf import _printable, pdf_of
 from recon4.report.project import project_facts
 from recon4.review.acknowledgments import seen_finding
+from recon4.review.annotations import measured_text
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.review.trusted_keys import ensure_own_key
+from recon4.store.checked import Altered
 from recon4.store.seal import changing
+from recon4_app.annotations.model import NewMapView, NewNote
+from recon4_app.annotations.store import add_note, add_view
 from tests.made_once import made_once
 from tests.project_builder import approve_project, build_project, write_summary
 
@@ -82,6 +91,86 @@ def test_the_grid_of_a_site_is_no_projection(room):
 
     assert words()("limits.site_grid") in front.limits
     assert not any("projection" in text for text in front.limits)
+
+
+POINTS = {
+    "P1": ("control", [0.03, -0.04, 0.02], {"redundancy": [0.7, 0.6, 0.5], "w": 1.2, "limit": 3.3,
+           "single_handed": False, "least_found_h_m": 0.031, "least_found_v_m": 0.042}),
+    "P2": ("control", [0.0, 0.0, 0.001], {"redundancy": [0.0, 0.0, 0.0], "w": 0.0, "limit": 3.3,
+           "single_handed": True}),
+    "C1": ("check", [0.006, 0.008, None], None),
+}  # fmt: skip
+"""Name, role, residual [m], test."""
+
+
+def _georeferenced(room, crs):
+    rows = [
+        {"id": name, "role": role, "sd_m": [0.01, 0.01], "rigid_m": off, "adjusted_m": off}
+        | ({"test": test} if test else {})
+        for name, (role, off, test) in POINTS.items()
+    ]
+    control = {"crs": crs, "freedom": 5, "scale": 1.0001, "scale_sd": 2e-5, "points": rows,
+               "blunders": ["P9 is 1 m off"]}  # fmt: skip
+    assessed = assess(project_facts(room))
+    record = assessed.results.georeference | {"control": control}
+    results = replace(assessed.results, georeference=record)
+    return replace(assessed, results=results, facts=replace(assessed.facts, crs=crs))
+
+
+def _titles(*names):
+    return {words()(f"section.{name}") for name in names}
+
+
+def _noted(room):
+    """Notes and a saved view as the server writes them."""
+    note = NewNote(p_map=(1.0, 2.0, 0.5), text="crack in the wall", key="a" * 16)
+    query = "camera=0,0,0,1,2,3,0&m=distance;0,0,0;3,4,1;hall%20width&m=rubbish;1,2&m=angle;1,0,0"
+    add_note(room, note, "Eva")
+    add_view(room, NewMapView(name="hall", query=query), "Adam")
+
+
+def test_a_second_reader_finds_points_notes_and_measurements_in_the_pdf(room):
+    _noted(room)
+    extras = ReportExtras(
+        signature=Signature(approved=False, text="draft"), people=people_section(room, words())
+    )
+    report = client_report(_georeferenced(room, "site grid"), extras)
+    own = [one for one in report.sections if one.title in _titles("control", "people")]
+    pages = PdfReader(BytesIO(pdf_of(replace(report, sections=tuple(own))))).pages
+    text = " ".join(" ".join(page.extract_text() for page in pages).split())
+
+    assert "P1 control 3.0 -4.0 2.0 5.0 5.4 3.1 4.2" in text
+    assert "P2 control 0.0 0.0 0.1 0.0 0.1 – – no other point controls it" in text
+    assert "C1 check 0.6 0.8 – 1.0 – – –" in text
+    assert "control 2 3.5" in text  # RMSE H of 5 cm and 0
+    assert "+100 ± 20 ppm" in text
+    assert "Suspected blunder P9 is 1 m off" in text
+    assert "grid of the site, defined by these control points alone" in text
+    assert "EPSG:" not in text
+    assert "crack in the wall open 1.00, 2.00, 0.50 Eva" in text
+    assert "hall width distance 5.099 m, horizontal 5.000 m, vertical +1.000 m" in text
+    assert text.count("Adam") == 1  # the others are no measurements
+
+
+def test_notes_that_another_program_changed_are_refused(room):
+    _noted(room)
+    notes = room / "annotations" / "notes.json"
+    notes.write_text(notes.read_text("utf-8").replace("Eva", "Eve"), "utf-8")
+    with pytest.raises(Altered, match=r"notes\.json"):
+        people_section(room, words())
+
+
+@pytest.mark.parametrize(
+    ("kind", "points", "said"),
+    [
+        ("angle", [[1, 0, 0], [0, 0, 0], [0, 2, 0]], "90.00°"),
+        ("area", [[0, 0, 0], [2, 0, 0], [2, 3, 0], [0, 3, 0]], "6.000 m², from above 6.000 m²"),
+        ("area", [[0, 0, 0], [2, 0, 0], [2, 0, 3]], "3.000 m², from above 0.000 m²"),
+        ("point", [[1, 2, 3]], "1.000 2.000 3.000"),
+    ],
+)
+def test_a_measurement_says_what_the_page_says(kind, points, said):
+    assert measured_text(kind, np.array(points, float)) == said
 
 
 def _say(room, findings):
