@@ -14,6 +14,10 @@ _THIN_SPACE = "\u202f"
 """Between the thousands; it does not break."""
 
 
+_MOST_DECIMAL = 10.0**12
+"""Fluent writes a number of at most 28 digits, of which 15 may be behind the point."""
+
+
 class ShownText(FluentType, str):
     """A text as it is, however long."""
 
@@ -22,10 +26,20 @@ class ShownText(FluentType, str):
         return self
 
 
+def as_float(value: float | str) -> float:
+    """A number, also one that `shown` has made a text; infinite if it is too large."""
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf
+
+
 def shown(value: bool | int | float | str) -> FluentType:
     """A value as a text quotes it."""
     if isinstance(value, bool | str):
         return ShownText(value)
+    if abs(value) >= _MOST_DECIMAL:  # damaged files have such numbers
+        return ShownText(f"{as_float(value):g}")
     return fluent_number(value, useGrouping=False, maximumFractionDigits=sys.float_info.dig)
 
 
@@ -37,21 +51,29 @@ def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
         return text.replace(".", decimal)
 
     def fixed(value: float, *, digits: int, sign: int = 0) -> str:
-        return format(float(value), f"{'+' if sign else ''}.{int(digits)}f")
+        return format(as_float(value), f"{'+' if sign else ''}.{int(digits)}f")
 
-    def length(value_m: float) -> str:
+    def length(value: float) -> str:
+        value_m = as_float(value)
         if not math.isfinite(value_m):
             return "–"
         return written(f"{100.0 * value_m:.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m")
+
+    def count(number: int) -> str:
+        return f"{as_float(number):,.0f}".replace(",", _THIN_SPACE)
 
     return {
         "LENGTH": length,
         "DECIMAL": lambda value, **how: written(fixed(value, **how)),
         "EXACT": fixed,
-        "PERCENT": lambda ratio, digits: written(f"{fixed(100.0 * ratio, digits=digits)} %"),
-        "DEGREES": lambda rad, digits: written(f"{fixed(math.degrees(rad), digits=digits)}°"),
-        "SIGNIFICANT": lambda value, digits: written(format(float(value), f".{int(digits)}g")),
-        "COUNT": lambda number: f"{int(number):,}".replace(",", _THIN_SPACE),
+        "PERCENT": lambda ratio, digits: written(
+            f"{fixed(100.0 * as_float(ratio), digits=digits)} %"
+        ),
+        "DEGREES": lambda rad, digits: written(
+            f"{fixed(math.degrees(as_float(rad)), digits=digits)}°"
+        ),
+        "SIGNIFICANT": lambda value, digits: written(format(as_float(value), f".{int(digits)}g")),
+        "COUNT": count,
         "BYTE": lambda value: format(int(value), "#04x"),
     }
 

@@ -1,9 +1,13 @@
 """Findings in another language: the same record in other words and numbers."""
 
+import math
+
 import pytest
+from fluent.runtime import FluentBundle, FluentResource
 
 from recon4.findings.wording import catalog, headline, remedy_of, said, text_of, title_of
 from recon4.locales.languages import languages
+from recon4.locales.numbers import number_functions, shown
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import count_text, ratio_text
@@ -85,3 +89,15 @@ def test_every_verdict_has_a_headline(language, usability):
 def test_no_remedy_or_title_is_empty(language):
     assert all(entry.title and entry.meaning for entry in catalog(language).kinds.values())
     assert remedy_of(Finding(kind=FindingKind.MIRROR, level=Level.CHECK), language)
+
+
+@pytest.mark.parametrize("value", [1e300, -1e30, 10**400, math.inf, math.nan])
+def test_a_number_of_a_damaged_file_is_written_however_large(value):
+    functions = number_functions("de")
+    bundle = FluentBundle(["de"], functions=functions)
+    uses = [f"{name}($x)" for name in ("LENGTH", "COUNT")]
+    uses += [f"{name}($x, digits: 2)" for name in ("DECIMAL", "PERCENT", "DEGREES", "SIGNIFICANT")]
+    bundle.add_resource(FluentResource("a = " + " ".join(f"{{ {use} }}" for use in ["$x", *uses])))
+
+    text, errors = bundle.format_pattern(bundle.get_message("a").value, {"x": shown(value)})
+    assert not errors and len(text.split()) >= 7
