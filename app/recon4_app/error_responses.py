@@ -65,7 +65,7 @@ PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/Problem
 """The body of an error, in the description of the API; a model for each route takes longer."""
 
 
-def problems(*statuses: int) -> dict[int | str, dict[str, Any]]:
+def problems(*statuses: int) -> dict[int | str, dict[str, object]]:
     """The errors that routes document, for their ``responses``."""
     return {status: {"content": PROBLEM} for status in statuses}
 

@@ -64,7 +64,7 @@ def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
     return described
 
 
-def _schemas_of_problems() -> dict[str, Any]:
+def _schemas_of_problems() -> dict[str, object]:
     """`ProblemDetail` and the models in it, which no route names."""
     schema = ProblemDetail.model_json_schema(ref_template="#/components/schemas/{model}")
     return schema.pop("$defs") | {"ProblemDetail": schema}

@@ -14,10 +14,6 @@ _THIN_SPACE = "\u202f"
 """Between the thousands; it does not break."""
 
 
-_MOST_DECIMAL = 10.0**12
-"""Fluent writes a number of at most 28 digits, of which 15 may be behind the point."""
-
-
 class ShownText(FluentType, str):
     """A text as it is, however long."""
 
@@ -38,7 +34,9 @@ def shown(value: bool | int | float | str) -> FluentType:
     """A value as a text quotes it."""
     if isinstance(value, bool | str):
         return ShownText(value)
-    if abs(value) >= _MOST_DECIMAL:  # damaged files have such numbers
+    if (
+        abs(value) >= 1e12
+    ):  # of a damaged file: Fluent writes at most 28 digits, 15 behind the point
         return ShownText(f"{as_float(value):g}")
     return fluent_number(value, useGrouping=False, maximumFractionDigits=sys.float_info.dig)
 

@@ -9,7 +9,6 @@ import os
 import re
 import threading
 import time
-from contextlib import contextmanager
 from urllib.parse import urlsplit
 
 import msgspec
@@ -100,7 +99,7 @@ class Enough(Exception):
     """The walk lasted long enough."""
 
 
-@contextmanager
+@contextlib.contextmanager
 def sending(server, walk):
     target, enough = server.app.state.parts.settings.sensor_bind_address, threading.Event()
     began_ns = next(datagrams_of(walk)).t_ns
