@@ -37,7 +37,7 @@ def people_section(root: Path, words: Words) -> Section:
         for one in measured[:most]
     ]
     left = max(0, len(notes) - most) + max(0, len(measured) - most)
-    names = (("note", "status"), ("name", "kind", "value"))
+    names: tuple[tuple[str, ...], ...] = (("note", "status"), ("name", "kind", "value"))
     tables = tuple(
         Table(
             head=tuple(words(f"people.{name}") for name in (*own, "place", "who", "date")),
