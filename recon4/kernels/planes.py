@@ -4,7 +4,9 @@ The ten sums of a cube (count, first and second moments) can be added and subtra
 sufficient accuracy, so a multiframe can be removed from a map, for good or for a while.
 Cubes of a level are twice as large as those of the one before: two of them make one along an axis.
 A cube knows from where it was seen: a thin wall seen from the next room is another surface.
-The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 15), ``fits`` (C, 10), ``state`` (C,).
+The tables are plain arrays. ``keys`` (C,) and ``rows`` (C,) find the row of a cube by its key and
+are at most half full. The rows follow each other in the order in which the cubes were seen:
+``sums`` (R, 15), ``fits`` (R, 10) and ``state`` (R,) have none that is free among those in use.
 """
 
 from __future__ import annotations
@@ -14,9 +16,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.moments import add_point
-from recon4.kernels.plane_tables import CUBE, STATE
+from recon4.kernels.plane_tables import CUBE, EMPTY, STATE
 
-EMPTY = np.int64(-1)
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
 """Rows of the array of criteria that a cube's points have to meet to count as a plane."""
 _MIN_SIDE_M = 0.2
@@ -40,18 +41,19 @@ def _key(level: int, ix: np.int64, iy: np.int64, iz: np.int64) -> np.int64:
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _slot(keys: NDArray[np.int64], key: np.int64) -> np.int64:
-    """Row of a key in the table, or the free row where it belongs."""
+    """Slot of a key, or the free one where it belongs."""
     mask = np.int64(len(keys) - 1)
     h = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
-    row = np.int64(h >> np.uint64(20)) & mask
-    while keys[row] != key and keys[row] != EMPTY:
-        row = (row + 1) & mask
-    return row
+    slot = np.int64(h >> np.uint64(20)) & mask
+    while keys[slot] != key and keys[slot] != EMPTY:
+        slot = (slot + 1) & mask
+    return slot
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def add_points(
     keys: NDArray[np.int64],
+    rows: NDArray[np.int32],
     sums: NDArray[np.float64],
     state: NDArray[np.uint8],
     sizes: NDArray[np.float64],
@@ -82,10 +84,11 @@ def add_points(
             key = _key(level, jx, jy, jz)
             row = last_row[level]
             if key != last_key[level]:
-                row = _slot(keys, key)
-                if keys[row] == EMPTY:
-                    keys[row] = key
+                slot = _slot(keys, key)
+                if keys[slot] == EMPTY:
+                    keys[slot], rows[slot] = key, used
                     used += 1
+                row = np.int64(rows[slot])
                 last_key[level], last_row[level] = key, row
                 if sums[row, CUBE.newest] != batch:
                     sums[row, CUBE.newest] = batch
@@ -104,14 +107,15 @@ def add_points(
 @njit(cache=True, nogil=True, error_model="numpy")
 def empty_beyond(
     keys: NDArray[np.int64],
+    rows: NDArray[np.int32],
     sums: NDArray[np.float64],
     sizes: NDArray[np.float64],
     center: NDArray[np.float64],
     radius: float,
 ) -> None:
     """Empty the cubes whose center is farther from ``center`` than ``radius``."""
-    for row in range(len(keys)):
-        key = keys[row]
+    for slot in range(len(keys)):
+        key = keys[slot]
         if key == EMPTY:
             continue
         size = sizes[key >> 60]
@@ -119,24 +123,21 @@ def empty_beyond(
         dy = (((key >> 20) & _MASK) - _OFFSET + 0.5) * size - center[1]
         dz = ((key & _MASK) - _OFFSET + 0.5) * size - center[2]
         if dx * dx + dy * dy + dz * dz > radius * radius:
-            sums[row] = 0.0
+            sums[rows[slot]] = 0.0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def rehash(
-    keys: NDArray[np.int64], sums: NDArray[np.float64], capacity: int
-) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
-    """Copy the non-empty cubes to tables of another size (a power of two)."""
+    keys: NDArray[np.int64], rows: NDArray[np.int32], moved: NDArray[np.int32], capacity: int
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Slots of another number (a power of two), of the cubes that `compact` left."""
     new_keys = np.full(capacity, EMPTY, np.int64)
-    new_sums = np.zeros((capacity, CUBE.sums), np.float64)
-    used = 0
-    for row in range(len(keys)):
-        if keys[row] != EMPTY and sums[row, 0] > 0.5:
-            to = _slot(new_keys, keys[row])
-            new_keys[to] = keys[row]
-            new_sums[to] = sums[row]
-            used += 1
-    return new_keys, new_sums, used
+    new_rows = np.zeros(capacity, np.int32)
+    for slot in range(len(keys)):
+        if keys[slot] != EMPTY and moved[rows[slot]] != EMPTY:
+            to = _slot(new_keys, keys[slot])
+            new_keys[to], new_rows[to] = keys[slot], moved[rows[slot]]
+    return new_keys, new_rows
 
 
 @njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
@@ -231,6 +232,7 @@ def _fit(
 @njit(cache=True, nogil=True, error_model="numpy")
 def fit_all(
     keys: NDArray[np.int64],
+    rows: NDArray[np.int32],
     sums: NDArray[np.float64],
     fits: NDArray[np.float64],
     state: NDArray[np.uint8],
@@ -239,15 +241,16 @@ def fit_all(
 ) -> None:
     """Fit the planes of all cubes, so that several threads can match without writing."""
     work = np.empty((7, 3))
-    for row in range(len(keys)):
-        if keys[row] != EMPTY and state[row] == STATE.dirty:
-            level = keys[row] >> 60
-            state[row] = _fit(keys[row], sums[row], sizes[level], criteria, fits[row], work)
+    for slot in range(len(keys)):
+        key, row = keys[slot], rows[slot]
+        if key != EMPTY and state[row] == STATE.dirty:
+            state[row] = _fit(key, sums[row], sizes[key >> 60], criteria, fits[row], work)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _finest_planes(
     keys: NDArray[np.int64],
+    rows: NDArray[np.int32],
     sums: NDArray[np.float64],
     fits: NDArray[np.float64],
     state: NDArray[np.uint8],
@@ -262,25 +265,27 @@ def _finest_planes(
     would count references to six arrays, which takes as long as the search.
     """
     work = np.empty((7, 3))
-    rows = np.full(len(q), EMPTY, np.int64)
+    found = np.full(len(q), EMPTY, np.int64)
     for k in range(len(q)):
         ix, iy, iz = _cell(q[k, 0], sizes[0]), _cell(q[k, 1], sizes[0]), _cell(q[k, 2], sizes[0])
         for level in range(finest, len(sizes)):
             key = _key(level, ix >> level, iy >> level, iz >> level)
-            row = _slot(keys, key)
-            if keys[row] == EMPTY:
+            slot = _slot(keys, key)
+            if keys[slot] == EMPTY:
                 continue
+            row = rows[slot]
             if state[row] == STATE.dirty:
                 state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
             if state[row] == STATE.plane:
-                rows[k] = row
+                found[k] = row
                 break
-    return rows
+    return found
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def normals(
     keys: NDArray[np.int64],
+    rows: NDArray[np.int32],
     sums: NDArray[np.float64],
     fits: NDArray[np.float64],
     state: NDArray[np.uint8],
@@ -291,11 +296,11 @@ def normals(
     out: NDArray[np.float64],
 ) -> None:
     """Normals of the finest planes at points (N, 3), written to ``out`` (N, 3)."""
-    rows = _finest_planes(keys, sums, fits, state, sizes, criteria, q, 0)
+    found = _finest_planes(keys, rows, sums, fits, state, sizes, criteria, q, 0)
     for k in range(len(q)):
-        if rows[k] == EMPTY:
+        if found[k] == EMPTY:
             continue
-        f = fits[rows[k]]
+        f = fits[found[k]]
         r = f[3] * (q[k, 0] - f[0]) + f[4] * (q[k, 1] - f[1]) + f[5] * (q[k, 2] - f[2])
         if abs(r) <= gate:
             out[k, 0], out[k, 1], out[k, 2] = f[3], f[4], f[5]
@@ -304,6 +309,7 @@ def normals(
 @njit(cache=True, nogil=True, error_model="numpy")
 def accumulate(
     keys: NDArray[np.int64],
+    rows: NDArray[np.int32],
     sums: NDArray[np.float64],
     fits: NDArray[np.float64],
     state: NDArray[np.uint8],
@@ -337,7 +343,7 @@ def accumulate(
     Returns:
         Number of matches, sum of absolute distances, sum of w r², and the sum of n n^T (3, 3).
     """
-    rows = _finest_planes(keys, sums, fits, state, sizes, criteria, q, finest)
+    found = _finest_planes(keys, rows, sums, fits, state, sizes, criteria, q, finest)
     J = np.empty(6)
     H6b = np.zeros((6, 6))
     H6m = np.zeros((6, 6))
@@ -348,9 +354,9 @@ def accumulate(
     chi2 = 0.0
     for k in range(len(q)):
         residual[k] = np.nan
-        if rows[k] == EMPTY:
+        if found[k] == EMPTY:
             continue
-        f = fits[rows[k]]
+        f = fits[found[k]]
         dx, dy, dz = q[k, 0] - f[0], q[k, 1] - f[1], q[k, 2] - f[2]
         r = f[3] * dx + f[4] * dy + f[5] * dz
         if abs(r) > gate:

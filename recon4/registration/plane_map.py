@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels import planes
-from recon4.kernels.plane_tables import CUBE
+from recon4.kernels.plane_tables import CUBE, EMPTY, compact
 from recon4.registration.tuning import PLANES, PlaneTuning
 from recon4.registration.tuning_matching import PLANE_MAP
 
@@ -83,8 +83,9 @@ class PlaneMap:
             np.float64,
         )  # fmt: skip
         self._sizes: Array = settings.finest_m * np.exp2(np.arange(settings.levels))
-        self._keys = np.full(PLANE_MAP.first_capacity, planes.EMPTY, np.int64)
-        self._sums = np.zeros((PLANE_MAP.first_capacity, CUBE.sums))
+        self._keys = np.full(PLANE_MAP.first_capacity, EMPTY, np.int64)
+        self._rows = np.zeros(PLANE_MAP.first_capacity, np.int32)
+        self._sums: Array = np.zeros((PLANE_MAP.first_capacity // 2, CUBE.sums))
         self._batch = 0
         self._used = 0
         self._make_room_for_fits()
@@ -112,29 +113,29 @@ class PlaneMap:
 
     def clear(self) -> None:
         """Remove all points; the memory stays allocated."""
-        self._keys.fill(planes.EMPTY)
-        self._sums.fill(0.0)
+        self._keys.fill(EMPTY)
+        self._sums[: self._used] = 0.0  # not those that were never used: they take no memory yet
         self._state.fill(0)
         self._used = 0
 
     def forget_beyond(self, radius_m: float, center: Array) -> None:
         """Forget all cubes farther from ``center`` (3,) than ``radius_m``."""
-        planes.empty_beyond(self._keys, self._sums, self._sizes, center, radius_m)
-        self._keys, self._sums, self._used = planes.rehash(self._keys, self._sums, len(self._keys))
-        self._make_room_for_fits()
+        planes.empty_beyond(self._keys, self._rows, self._sums, self._sizes, center, radius_m)
+        self._rehash(len(self._keys))
 
     def fit(self) -> None:
         """Fit all planes now, so that several threads may call `match` at once."""
         planes.fit_all(
-            self._keys, self._sums, self._fits, self._state, self._sizes, self._criteria,
+            self._keys, self._rows, self._sums, self._fits, self._state, self._sizes,
+            self._criteria,
         )  # fmt: skip
 
     def _sum(self, p_map: Array, sign: float, seen_from: Array | None) -> None:
         row, view = 0, np.full(3, np.nan) if seen_from is None else seen_from
         while True:
             row, self._used = planes.add_points(
-                self._keys, self._sums, self._state, self._sizes, p_map, row, self._used, sign,
-                self._batch, view,
+                self._keys, self._rows, self._sums, self._state, self._sizes, p_map, row,
+                self._used, sign, self._batch, view,
             )  # fmt: skip
             if row == len(p_map):
                 return
@@ -142,22 +143,30 @@ class PlaneMap:
 
     def _grow(self) -> None:
         """Drop cubes that became empty; double the tables if that is not enough."""
-        alive = int(np.count_nonzero(self._sums[:, 0] > 0.5))
-        capacity = len(self._keys) * (2 if 4 * alive > len(self._keys) else 1)
-        self._fits = np.empty((0, CUBE.fits))  # made again: not beside both tables of sums
-        self._keys, self._sums, self._used = planes.rehash(self._keys, self._sums, capacity)
+        alive = int(np.count_nonzero(self._sums[: self._used, 0] > 0.5))
+        self._rehash(len(self._keys) * (2 if 4 * alive > len(self._keys) else 1))
+
+    def _rehash(self, capacity: int) -> None:
+        """Drop empty cubes; give the tables room for half as many cubes as ``capacity``."""
+        self._fits = np.empty((0, CUBE.fits))  # made again: not beside two tables of sums
+        moved, self._used = compact(self._sums, self._used)
+        if capacity > len(self._keys):
+            longer = np.zeros((capacity // 2, CUBE.sums))  # takes memory where it is written to
+            longer[: self._used] = self._sums[: self._used]
+            self._sums = longer
+        self._keys, self._rows = planes.rehash(self._keys, self._rows, moved, capacity)
         self._make_room_for_fits()
 
     def _make_room_for_fits(self) -> None:
-        self._fits = np.empty((len(self._keys), CUBE.fits))
-        self._state = np.zeros(len(self._keys), np.uint8)
+        self._fits = np.empty((len(self._sums), CUBE.fits))
+        self._state = np.zeros(len(self._sums), np.uint8)
 
     def normals(self, p_map: Array, gate_m: float) -> Array:
         """Normal of the finest plane at each point, zero where there is none, (N, 3)."""
         out = np.zeros((len(p_map), 3))
         planes.normals(
-            self._keys, self._sums, self._fits, self._state, self._sizes, p_map, gate_m,
-            self._criteria, out,
+            self._keys, self._rows, self._sums, self._fits, self._state, self._sizes, p_map,
+            gate_m, self._criteria, out,
         )  # fmt: skip
         return out
 
@@ -183,7 +192,7 @@ class PlaneMap:
         H, g = np.zeros((12, 12)), np.zeros(12)
         residual_m: NDArray[np.float64] = np.empty(len(p_map))
         matches, total, chi2, normals = planes.accumulate(
-            self._keys, self._sums, self._fits, self._state, self._sizes,
+            self._keys, self._rows, self._sums, self._fits, self._state, self._sizes,
             p_map, fraction, center, finest, gate_m, s.kernel_m, s.point_sd_m**2,
             self._criteria, H, g, residual_m,
         )  # fmt: skip

@@ -162,6 +162,34 @@ def test_a_map_that_moves_along_for_long_does_not_fill_up():
     assert len(planes._keys) <= 1 << 17
 
 
+def test_what_is_left_behind_gives_its_rows_to_what_comes():
+    near = patch((0, 0, 1), 0.05)
+    far = near + np.array([60.0, 0.0, 0.0])
+    new = patch((1, 0, 0), 0.07, seed=4) + np.array([5.0, 0.0, 0.0])
+    moved, fresh = made_of(far, near), made_of(near)
+
+    moved.forget_beyond(20.0, ORIGIN)
+    assert len(moved) == len(fresh)
+    for planes in (moved, fresh):
+        planes.add(new)
+
+    for asked in (near, new):
+        expected = hold(fresh, asked)
+        assert expected.match_ratio > 0.9
+        np.testing.assert_array_equal(hold(moved, asked).residual_m, expected.residual_m)
+    assert hold(moved, far).matches == 0
+
+
+def test_a_cube_takes_its_own_row_and_no_free_ones():
+    rng = np.random.default_rng(5)
+    planes = made_of(rng.uniform(-60, 60, (40_000, 3)))
+    arrays = [value for value in vars(planes).values() if isinstance(value, np.ndarray)]
+
+    # A row of sums, fits and state has 201 bytes; a slot that finds it 12, of which half are free.
+    assert len(planes) > 100_000
+    assert sum(array.nbytes for array in arrays) <= 115 * len(planes._keys)
+
+
 def test_the_variance_of_a_plane_grows_with_the_distance_from_its_center():
     # Few points, noisy, of a sensor that says it is exact: the plane's own error counts.
     rng = np.random.default_rng(4)
