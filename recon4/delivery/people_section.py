@@ -21,11 +21,11 @@ def people_section(root: Path, words: Words) -> Section:
     """
     most = CLIENT_REPORT.most_notes
     notes, measured = pinned_notes(root), saved_measurements(root)
-    of_notes = [
+    of_notes: list[tuple[str, ...]] = [
         (shown(one.text), one.status, _place(one.p_map), shown(one.who), one.time[:10])
         for one in notes[:most]
     ]
-    of_measurements = [
+    of_measurements: list[tuple[str, ...]] = [
         (
             shown(one.name or one.view.name),
             shown(one.kind),
@@ -37,7 +37,7 @@ def people_section(root: Path, words: Words) -> Section:
         for one in measured[:most]
     ]
     left = max(0, len(notes) - most) + max(0, len(measured) - most)
-    names: tuple[tuple[str, ...], ...] = (("note", "status"), ("name", "kind", "value"))
+    names = (("note", "status"), ("name", "kind", "value"))
     tables = tuple(
         Table(
             head=tuple(words(f"people.{name}") for name in (*own, "place", "who", "date")),

@@ -34,9 +34,7 @@ def shown(value: bool | int | float | str) -> FluentType:
     """A value as a text quotes it."""
     if isinstance(value, bool | str):
         return ShownText(value)
-    if (
-        abs(value) >= 1e12
-    ):  # of a damaged file: Fluent has 28 digits, 15 behind the point
+    if abs(value) >= 1e12:  # of a damaged file: Fluent has 28 digits, 15 behind the point
         return ShownText(f"{as_float(value):g}")
     return fluent_number(value, useGrouping=False, maximumFractionDigits=sys.float_info.dig)
 
