@@ -16,8 +16,8 @@ import pytest
 
 from recon4.recording.formats.scratch import sweep_scratch
 from recon4.sandbox import available_barriers
+from tests.first_variants import all_but_first_are_studies
 from tests.service.running import ROOT
-from tests.variants import all_but_first_are_studies
 
 pytestmark = pytest.mark.skipif(
     not {"files", "calls"} <= {barrier.name for barrier in available_barriers() if barrier.holds},

@@ -14,11 +14,11 @@ from recon4.progress import Silent
 from recon4.store.inputs import input_file
 from recon4.store.ledger import Ledger
 from recon4_app.settings import ServerSettings
+from tests.first_variants import all_but_first_are_studies
 from tests.made_once import made_once
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.service.running import server_thread
 from tests.service.viser_client import camera, viewing
-from tests.variants import all_but_first_are_studies
 
 POINTS = 5_000
 NAMES = [

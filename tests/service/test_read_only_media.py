@@ -11,9 +11,9 @@ import httpx
 import pytest
 
 from tests.deadlines import HANG_S
+from tests.first_variants import all_but_first_are_studies
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.service.viser_client import camera, viewing
-from tests.variants import all_but_first_are_studies
 
 POINTS = 5_000
 NOBODY = 65534

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.variants import all_but_first_are_studies
+from tests.first_variants import all_but_first_are_studies
 from tests.variants.run import run_variant
 from tests.variants.walk import record_walk
 

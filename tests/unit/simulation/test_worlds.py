@@ -8,7 +8,7 @@ from recon4.simulation.gait import plan_walk
 from recon4.simulation.lidar import Surroundings
 from recon4.simulation.person import GAIT
 from recon4.simulation.worlds import PROCEDURAL, WORLDS, build_world
-from tests.variants import all_but_first_are_studies
+from tests.first_variants import all_but_first_are_studies
 
 ROUND_S = {
     "office": 250, "staircase": 200, "street": 220, "field": 450, "corridor": 170, "tunnel": 110,
