@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -133,15 +134,25 @@ def find_storeys(tiles: TileSet, levels: Levels | None = None) -> tuple[Building
 def _named(
     floors: list[tuple[float, float]], tiles: TileSet, levels: Levels
 ) -> tuple[BuildingStorey, ...]:
-    start_m = float(tiles.columns.paths.p_map[0, 0, 2])
-    below = [k for k, (z_m, _) in enumerate(floors) if z_m < start_m - STOREYS.body_m[0]]
-    zero = below[-1] if below else 0
+    names = storey_names([z_m for z_m, _ in floors], float(tiles.columns.paths.p_map[0, 0, 2]))
     found = []
     for k, (z_m, area) in enumerate(floors):
         above = floors[k + 1][0] if k + 1 < len(floors) else np.inf
         ceiling = _ceiling(levels, z_m, above)
-        found.append(BuildingStorey(str(k - zero), z_m, ceiling, area))
+        found.append(BuildingStorey(names[k], z_m, ceiling, area))
     return tuple(found)
+
+
+def storey_names(floors_m: Sequence[float], start_m: float) -> list[str]:
+    """Names of storeys: ``0`` is where the walk begins, ``1`` the next one above, ``-1`` below.
+
+    Args:
+        floors_m: Heights of their floors, from the lowest up [m], (N,).
+        start_m: Height of the sensors at the first pose [m].
+    """
+    below = [k for k, z_m in enumerate(floors_m) if z_m < start_m - STOREYS.body_m[0]]
+    zero = below[-1] if below else 0
+    return [str(k - zero) for k in range(len(floors_m))]
 
 
 def _area(floor: Levels) -> float:

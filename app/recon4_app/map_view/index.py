@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.classes import CLASSES, PointClass
+from recon4.products.storeys import storey_names
 from recon4.slices.map_crs import MapFrame
 from recon4_app.map_view.model import ColumnName, MapColumn, MapIndex, MapTile, Storey
 from recon4_app.map_view.points import FIELD_OF, read_shown, sample_sizes, steps_of, values_of
@@ -59,15 +60,21 @@ def class_name(code: int) -> str:
 def storeys(p_map: Array, normal: NDArray[Any] | None, walk_m: Array) -> list[Storey]:
     """The storeys of a walk, from below: where it stayed at one height, with its floor.
 
+    They are named as those of plans and exports.
+
     Args:
         p_map: A sample of the map [m], (N, 3).
         normal: Its normals, towards the sensors, (N, 3); None = the map has none.
-        walk_m: Positions of the sensors [m], (W, 3).
+        walk_m: Positions of the sensors in the order of the walk [m], (W, 3).
     """
+    if not len(walk_m):
+        return []
     heights = np.sort(walk_m[:, 2])
-    top_m = float(heights[-1]) if len(heights) else 0.0
+    top_m = float(heights[-1])
     found = [_storey(p_map[:, 2], normal, one, top_m=top_m) for one in _levels(heights)]
-    return [one for one in found if one is not None]
+    known = sorted((one for one in found if one is not None), key=lambda one: one.floor_m)
+    names = storey_names([one.floor_m for one in known], float(walk_m[0, 2]))
+    return [one.model_copy(update={"name": name}) for one, name in zip(known, names, strict=True)]
 
 
 def _levels(heights: Array) -> list[Array]:
@@ -113,7 +120,7 @@ def _storey(
     down = np.count_nonzero(above & (np.abs(up) > FIRST_VIEW.upright))
     hidden = normal is not None and top_m < level + far
     has = hidden and down > FIRST_VIEW.ceiling_ratio * len(floor)
-    return Storey(floor_m=round(level, 3), walk_m=round(walk, 3), ceiling=bool(has))
+    return Storey(name="", floor_m=round(level, 3), walk_m=round(walk, 3), ceiling=bool(has))
 
 
 def _sample(tiles: TileSet, sizes: NDArray[np.int64], names: list[ColumnName]) -> Columns:

@@ -50,6 +50,8 @@ class MapColumn(BaseModel):
 class Storey(BaseModel):
     """A storey that was walked through."""
 
+    name: str
+    """As in plans and exports: ``0`` is where the walk begins, ``1`` the next one above."""
     floor_m: float
     """Height of its floor [m]."""
     walk_m: float

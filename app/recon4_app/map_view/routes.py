@@ -15,7 +15,7 @@ from recon4.errors import StoreError
 from recon4.live.session import CaptureSession
 from recon4.review.evidence import Evidence
 from recon4.untrusted.bounded import read_json_object
-from recon4_app.access.people import Permission, needs
+from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Conflict
@@ -34,20 +34,20 @@ from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.pages import page_response
 
-LOOK = [Depends(needs(Permission.LOOK))]
+SHARED = [Depends(needs(Permission.SHARED))]
 FOREVER = "private, max-age=31536000, immutable"
 """Chunks are named by the hash of their map: they never change."""
 
 router = APIRouter(
     prefix="/api/projects/{project_id}/map",
     tags=["map"],
-    dependencies=LOOK,
+    dependencies=SHARED,
     responses=problems(404, 422),
 )
 page = APIRouter()
 
 
-@page.get("/projects/{project_id}/map/", include_in_schema=False, dependencies=LOOK)
+@page.get("/projects/{project_id}/map/", include_in_schema=False, dependencies=SHARED)
 def map_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
     return page_response("map/map.html", request)
@@ -73,15 +73,15 @@ async def read_index(project_id: str, server: Server, caller: CalledBy) -> MapIn
 
 
 @router.get("/walk", summary="The walk and the nodes of the graph")
-async def read_walk(project_id: str, server: Server, caller: CalledBy) -> MapWalk:
+async def read_walk(project_id: str, server: Server, caller: CalledBy, *, who: Who) -> MapWalk:
     """Positions with times after the first pose, and marks of the operator of a live capture.
 
-    A long walk is thinned out.
+    A long walk is thinned out. Guests get no marks: they are notes for the team.
     """
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     terms = server.slices.terms(project_id, caller.name)
     marks = CaptureSession(project=server.projects.folder(project_id)).marks
-    if not marks.is_file() or marks.is_symlink():
+    if who.project or not marks.is_file() or marks.is_symlink():
         return await caller.wait(server.slices.run_interactive(terms, map_work.walk, artifacts, ""))
     terms = replace(terms, access=replace(terms.access, read=(*terms.access.read, marks)))
     return await caller.wait(

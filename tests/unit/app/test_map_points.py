@@ -62,6 +62,9 @@ def test_each_storey_has_its_floor_and_stairs_are_none():
 
     assert [one.floor_m for one in found] == pytest.approx([0.0, 3.2], abs=0.06)
     assert [one.ceiling for one in found] == [False, True]
+    assert [one.name for one in found] == ["0", "1"]  # as in plans and exports
+    down = storeys(np.vstack([*floors, ceiling]), normal, walk[::-1])
+    assert [one.name for one in down] == ["-1", "0"]
 
 
 def test_what_was_walked_is_not_hidden_as_above_a_ceiling():
