@@ -19,6 +19,7 @@ from recon4_app.projects.store import ProjectStore
 from recon4_app.projects.thumbnail import Thumbnails
 from recon4_app.projects.trash import Trash
 from recon4_app.review.hash_checks import ApprovalChecks
+from recon4_app.review.presence import Presence
 from recon4_app.review.store import Reviews
 from recon4_app.rigs.calibrations import Calibrations
 from recon4_app.rigs.store import RigStore
@@ -49,6 +50,7 @@ class ServerParts:
     current_capture: CurrentCapture
     checks: ApprovalChecks
     reviews: Reviews
+    presence: Presence
     slices: Slices
     exports: KeptExports
     rigs: RigStore

@@ -14,8 +14,11 @@ from pathlib import Path
 from recon4.findings.summary_notes import SaidFinding, findings_in
 from recon4.model.finding import Finding
 from recon4.report.approval import add_to_block, is_draft
-from recon4.review.decisions import DecisionKind, SeenFinding
+from recon4.review.decisions import (
+    DecisionKind,
+)
 from recon4.review.journal import JournalRow, read_rows
+from recon4.review.row_contents import SeenFinding
 from recon4.review.state import read_summary
 from recon4.review.tuning import ACKNOWLEDGMENTS
 

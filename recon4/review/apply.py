@@ -18,7 +18,8 @@ from recon4.model.pose_graph import (
     Reason,
     Verdict,
 )
-from recon4.review.decisions import Measurement, Pair, Standing, pose_of
+from recon4.review.decisions import Pair, Standing
+from recon4.review.row_contents import Measurement, pose_of
 from recon4.review.tuning import CHANGES
 
 

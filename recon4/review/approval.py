@@ -20,12 +20,19 @@ from recon4.errors import StoreError
 from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.acknowledgments import signed_acknowledgments, write_into_report
 from recon4.review.approved import VERSIONS, Approval, approval_of, versions_without_row
-from recon4.review.decisions import ApprovalFacts, Decided, Decision, DecisionKind, fold
+from recon4.review.decisions import (
+    Decided,
+    Decision,
+    DecisionKind,
+    fold,
+)
 from recon4.review.journal import JournalRow, append, broken, head, read_rows
+from recon4.review.row_contents import ApprovalFacts
 from recon4.review.signature import sign
 from recon4.review.source import graph_key
 from recon4.review.stamp import NO_VERDICT, Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.review.teamwork import second_opinion_missing
 from recon4.review.tuning import APPROVALS
 from recon4.store.atomic import atomic_folder, link_file, make_folders, sweep, write_json
 from recon4.store.checked import Altered, CheckedArtifact
@@ -132,8 +139,9 @@ def approve(
 
     Raises:
         NotApprovable: If there is no finished run, it lacks decisions, is damaged, has conflicts
-            that are not confirmed with a reason, is approved already, differs from what the
-            signer saw, or its verdict needs a reason (`reason_needed`).
+            that are not confirmed with a reason, lacks a second opinion that was asked for, is
+            approved already, differs from what the signer saw, or its verdict needs a reason
+            (`reason_needed`).
         StoreError: If the project is in use or cannot be written (`NoSpace`: disk full).
     """
     with Project.open(root):
@@ -265,6 +273,8 @@ def _conflicts(root: Path, summary: dict[str, Any]) -> int:
 
 def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
     _refuse_without_decisions(root, asked.decided)
+    if missing := second_opinion_missing(row.decision() for row in asked.rows):
+        raise NotApprovable(missing)
     if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
         raise NotApprovable(
             f"{asked.conflicts} accepted loop closures do not fit the graph: reject them, or "

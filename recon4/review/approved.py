@@ -8,10 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4.review.decisions import ApprovalFacts, DecisionKind
+from recon4.review.decisions import (
+    DecisionKind,
+)
 from recon4.review.evidence import Evidence
 from recon4.review.journal import JournalRow, broken, read_rows
 from recon4.review.newest_approval import refuse_older
+from recon4.review.row_contents import ApprovalFacts
 from recon4.review.signature import fingerprint, has_valid_signature
 from recon4.review.stamp import Stamp
 from recon4.review.state import artifact_keys, read_summary

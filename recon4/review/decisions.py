@@ -5,7 +5,6 @@ A decision names its pair by the ids of two multiframes, so it stays valid after
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
@@ -15,11 +14,11 @@ import msgspec
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
-from recon4.geometry.se3 import SE3, Array
 from recon4.model.class_corrections import ClassCorrection
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import AUTOMATIC
 from recon4.model.site_control import SiteControl
+from recon4.review.row_contents import ApprovalFacts, Measurement, SeenFinding, measurement_in
 from recon4.store.hashing import hash_json
 
 Pair = tuple[int, int]
@@ -54,64 +53,35 @@ class DecisionKind(StrEnum):
     """Points in a volume get another class."""
     WITHDRAW = "withdraw"
     """Such a correction no longer applies, whatever was decided since."""
+    ASSIGN = "assign"
+    """A pair is assigned to a person, or to nobody; changes no decision."""
+    COMMENT = "comment"
+    """A remark about a pair; changes no decision."""
+    SKIP = "skip"
+    """A pair is left for later; changes no decision."""
+    SECOND = "second"
+    """A second opinion on a pair is asked for: two people have to agree before an approval."""
+    WAIVE = "waive"
+    """The second opinion is not asked for any more."""
 
 
 MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
 """Kinds with a measurement of their own."""
 ABOUT_MAPS = (DecisionKind.APPROVE, DecisionKind.ACKNOWLEDGE)
+"""Kinds about a finished map."""
+ABOUT_WORK = (
+    DecisionKind.ASSIGN,
+    DecisionKind.COMMENT,
+    DecisionKind.SKIP,
+    DecisionKind.SECOND,
+    DecisionKind.WAIVE,
+)
+"""Kinds by which people share the work on a pair."""
+CHANGE_NOTHING = (*ABOUT_MAPS, *ABOUT_WORK)
 """Kinds that change no decision, so they cannot be undone."""
 ABOUT_CLASSES = (DecisionKind.CLASSIFY, DecisionKind.WITHDRAW)
-ABOUT_PAIRS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Measurement:
-    """A registration requested by a reviewer."""
-
-    T_i_j: tuple[float, ...]
-    """Pose of ``j`` in ``i``: x y z [m], quaternion x y z w."""
-    information: tuple[float, ...]
-    """As `Edge.information`, row by row, 36 numbers."""
-    overlap: float
-    error_m: float
-    limit_m: float
-    degeneracy: float
-    iterations: int
-
-    def motion(self) -> SE3:
-        """``T_i_j``."""
-        return pose_of(self.T_i_j)
-
-    def matrix(self) -> Array:
-        """``information``, (6, 6)."""
-        return np.array(self.information).reshape(6, 6)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ApprovalFacts:
-    """What the journal says of an approval; the fields are its keys."""
-
-    version: int
-    approval: str
-    """SHA-256 of the signed statement."""
-    artifacts: str = ""
-    """SHA-256 of the keys of all artifacts."""
-    verdict: str = ""
-    """On the map; empty before statement format 3."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SeenFinding:
-    """A finding as the journal keeps it: without wording and place; the fields are its keys."""
-
-    kind: str
-    """Its code."""
-    level: str
-    span_s: tuple[float, float] | None
-    """Its stretch of the walk [s]; None = the whole walk."""
-    direction: str
-    sensor: str
-    values: dict[str, bool | int | float | str | None]
+VERDICTS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)
+ABOUT_PAIRS = (*VERDICTS, *ABOUT_WORK)
 
 
 class DecisionBody(TypedDict):
@@ -130,6 +100,8 @@ class DecisionBody(TypedDict):
     """Fields of `ClassCorrection`; only there in a row that gives points another class."""
     withdraws: NotRequired[str]
     """Id of a correction; only there in a row that withdraws one."""
+    assignee: NotRequired[str]
+    """Name of a person, empty = nobody; only there in a row that assigns a pair."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -155,6 +127,8 @@ class Decision:
     """Of `CLASSIFY`."""
     withdraws: str = ""
     """Id of the correction that is withdrawn; of `WITHDRAW`."""
+    assignee: str = ""
+    """To whom the pair is assigned; empty = nobody; of `ASSIGN`."""
     time: str = ""
     """When it was written, UTC, ISO 8601; empty before."""
 
@@ -183,6 +157,10 @@ class Decision:
             raise ConfigError(f"a decision to {self.kind} with or without a correction of classes")
         if (self.kind is DecisionKind.WITHDRAW) != bool(self.withdraws):
             raise ConfigError(f"a decision to {self.kind} with or without what is withdrawn")
+        if self.assignee and self.kind is not DecisionKind.ASSIGN:
+            raise ConfigError(f"a decision to {self.kind} assigns nothing")
+        if self.kind is DecisionKind.COMMENT and not self.why.strip():
+            raise ConfigError("a comment has a text")
 
     def body(self) -> DecisionBody:
         """What the journal stores beside its columns."""
@@ -199,6 +177,8 @@ class Decision:
             body["correction"] = to_plain(self.correction)
         if self.withdraws:
             body["withdraws"] = self.withdraws
+        if self.kind is DecisionKind.ASSIGN:
+            body["assignee"] = self.assignee
         return body
 
     @staticmethod
@@ -216,12 +196,13 @@ class Decision:
                 why=why,
                 pair=pair,
                 T_i_j=tuple(body["T_i_j"]),
-                measurement=_measurement(record) if record else None,
+                measurement=measurement_in(record) if record else None,
                 facts=msgspec.convert(body["facts"], ApprovalFacts | None),
                 finding=msgspec.convert(body.get("finding"), SeenFinding | None),
                 control=msgspec.convert(body.get("control"), SiteControl | None),
                 correction=msgspec.convert(body.get("correction"), ClassCorrection | None),
                 withdraws=body.get("withdraws", ""),
+                assignee=body.get("assignee", ""),
             )
         except (KeyError, TypeError, ValueError, msgspec.ValidationError) as error:
             raise StoreError(f"the journal has a row that is no decision: {error}") from error
@@ -315,6 +296,29 @@ def fold(decisions: Iterable[Decision]) -> Decided:
     Raises:
         StoreError: If an undo or redo has no decision to apply to.
     """
+    made = list(decisions)
+    done, undone = not_undone(made)
+    confirming = _confirming(made)
+    standing: dict[Pair, Standing] = {}
+    control: SiteControl | None = None
+    corrections: dict[str, StandingCorrection] = {}
+    for decision in done:
+        if decision.control is not None:
+            control = decision.control if decision.control.targets else None
+        elif decision.kind in ABOUT_CLASSES:
+            _correct(corrections, decision)
+        elif not (id(decision) in confirming and _confirms(standing, decision)):
+            _stand(standing, decision)
+    ordered = tuple(standing[pair] for pair in sorted(standing))
+    return Decided(ordered, len(done), len(undone), control, tuple(corrections.values()))
+
+
+def not_undone(decisions: Iterable[Decision]) -> tuple[list[Decision], list[Decision]]:
+    """Decisions that are in force one after the other, and those that a redo would bring back.
+
+    Raises:
+        StoreError: If an undo or redo has no decision to apply to.
+    """
     done: list[Decision] = []
     undone: list[Decision] = []
     for decision in decisions:
@@ -325,21 +329,38 @@ def fold(decisions: Iterable[Decision]) -> Decided:
             if not source:
                 raise StoreError(f"the journal is damaged: a row has nothing to {decision.kind}")
             target.append(source.pop())
-        elif decision.kind not in ABOUT_MAPS:
+        elif decision.kind not in CHANGE_NOTHING:
             done.append(decision)
             undone.clear()
-    standing: dict[Pair, Standing] = {}
-    control: SiteControl | None = None
-    corrections: dict[str, StandingCorrection] = {}
-    for decision in done:
-        if decision.control is not None:
-            control = decision.control if decision.control.targets else None
-        elif decision.kind in ABOUT_CLASSES:
-            _correct(corrections, decision)
-        else:
-            _stand(standing, decision)
-    ordered = tuple(standing[pair] for pair in sorted(standing))
-    return Decided(ordered, len(done), len(undone), control, tuple(corrections.values()))
+    return done, undone
+
+
+def _confirming(decisions: Iterable[Decision]) -> set[int]:
+    """Python's ids of the decisions that were made while a second opinion was asked for."""
+    asked: set[Pair] = set()
+    found: set[int] = set()
+    for decision in decisions:
+        if decision.pair is None:
+            continue
+        if decision.kind is DecisionKind.SECOND:
+            asked.add(decision.pair)
+        elif decision.kind is DecisionKind.WAIVE:
+            asked.discard(decision.pair)
+        elif decision.pair in asked:
+            found.add(id(decision))
+    return found
+
+
+def _confirms(standing: Mapping[Pair, Standing], decision: Decision) -> bool:
+    """Whether a second opinion changes nothing: the map that has the first one stays as it is."""
+    assert decision.pair is not None
+    first = standing.get(decision.pair)
+    return (
+        first is not None
+        and decision.kind in (DecisionKind.ACCEPT, DecisionKind.REJECT)
+        and first.accepted is (decision.kind is DecisionKind.ACCEPT)
+        and decision.T_i_j == first.T_i_j
+    )
 
 
 def _correct(corrections: dict[str, StandingCorrection], decision: Decision) -> None:
@@ -372,27 +393,3 @@ def _stand(standing: dict[Pair, Standing], decision: Decision) -> None:
     if decision.kind not in MEASURED and before is not None:
         after = replace(after, measurement=before.measurement)
     standing[decision.pair] = after
-
-
-def pose_of(numbers: Iterable[float]) -> SE3:
-    """A pose of x y z [m] and a quaternion x y z w."""
-    listed = list(numbers)
-    return SE3.from_quat(np.array(listed[3:]), np.array(listed[:3]))
-
-
-def numbers_of(T_a_b: SE3) -> tuple[float, ...]:
-    """The inverse of `pose_of`."""
-    return (*map(float, T_a_b.t), *map(float, T_a_b.quat_xyzw()))
-
-
-def _measurement(record: Mapping[str, Any]) -> Measurement:
-    known = {name: math.nan if value is None else value for name, value in record.items()}
-    return Measurement(
-        T_i_j=tuple(record["T_i_j"]),
-        information=tuple(record["information"]),
-        overlap=known["overlap"],
-        error_m=known["error_m"],
-        limit_m=known["limit_m"],
-        degeneracy=known["degeneracy"],
-        iterations=record["iterations"],
-    )

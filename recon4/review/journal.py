@@ -17,9 +17,12 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.review.decisions import (
     ABOUT_CLASSES,
+    ABOUT_WORK,
+    VERDICTS,
     Decided,
     Decision,
     DecisionKind,
+    Pair,
     correction_id,
     fold,
 )
@@ -143,20 +146,21 @@ def append(
         root: The project folder.
         decision: The new decision.
         after_seq: Required number of the last row; None = any.
-        seen_seq: Last row that the person saw; None = not known.
+        seen_seq: Last row that the person saw; None = not known: a decision of another person
+            about the same pair is never replaced then.
 
     Raises:
         NothingToUndo: If there is no decision to undo or redo, or no such correction.
-        JournalChanged: If the last row is not ``after_seq``, another person decided about the same
-            pair or corrected classes after ``seen_seq``, or the same correction is there already.
+        JournalChanged: If the last row is not ``after_seq`` (an undo or redo passes over rows that
+            change no decision), somebody decided about the same pair or corrected classes after
+            ``seen_seq``, or the same correction is there already.
         StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
     """
     with changing(root, NAME), _database(root / NAME, write=True) as db:
         db.execute("BEGIN IMMEDIATE")  # no other writer from here on
         rows = _rows(db)
         _check(rows, decision, after_seq)
-        if seen_seq is not None:
-            _check_unseen(rows[seen_seq:], decision)
+        _check_unseen(rows[seen_seq or 0 :], decision, seen=seen_seq is not None)
         row = _next(rows, decision)
         db.execute(
             f"INSERT INTO journal ({_COLUMNS}) VALUES (?,?,?,?,?,?,?,?,?,?)",
@@ -188,11 +192,14 @@ def head(rows: Sequence[JournalRow]) -> str:
 
 
 def _check(rows: Sequence[JournalRow], decision: Decision, after_seq: int | None) -> None:
+    steps = decision.kind in (DecisionKind.UNDO, DecisionKind.REDO)
     if after_seq is not None and after_seq != len(rows):
-        raise JournalChanged(
-            f"another reviewer made {len(rows) - after_seq} decisions meanwhile; look again"
-        )
-    if decision.kind in (DecisionKind.UNDO, DecisionKind.REDO):
+        unseen = [row for row in rows[after_seq:] if not steps or row.kind not in ABOUT_WORK]
+        if unseen or after_seq > len(rows):
+            raise JournalChanged(
+                f"another reviewer made {len(unseen)} decisions meanwhile; look again"
+            )
+    if steps:
         decided = fold(row.decision() for row in rows)
         left = decided.undoable if decision.kind is DecisionKind.UNDO else decided.redoable
         if not left:
@@ -213,20 +220,31 @@ def _check_correction(decided: Decided, decision: Decision) -> None:
         raise JournalChanged(f"{same.who} made the same correction of classes already")
 
 
-def _check_unseen(unseen: Sequence[JournalRow], decision: Decision) -> None:
-    """Reject a decision about what another person decided meanwhile."""
-    others = [row for row in reversed(unseen) if row.who != decision.who]
-    for row in others:
-        if decision.pair is not None and (row.frame_i, row.frame_j) == decision.pair:
+def _check_unseen(unseen: Sequence[JournalRow], decision: Decision, *, seen: bool) -> None:
+    """Reject a decision about what was decided meanwhile, in another window or by another person.
+
+    Args:
+        unseen: Rows that the person did not see; all if it is not known what they saw.
+        decision: The new decision.
+        seen: Whether it is known what they saw; else their own decisions do not count.
+    """
+    for row in reversed(unseen):
+        mine = row.who == decision.who
+        if decision.kind in VERDICTS and _is_verdict_on(row, decision.pair) and (seen or not mine):
+            by = "you, in another window," if mine else row.who
             raise JournalChanged(
-                f"{row.who} decided about this pair meanwhile ({row.kind}): look at it again, then "
+                f"{by} decided about this pair meanwhile ({row.kind}): look at it again, then "
                 "decide"
             )
-        if decision.correction is not None and row.kind in _CHANGE_CLASSES:
+        if seen and decision.correction is not None and row.kind in _CHANGE_CLASSES and not mine:
             raise JournalChanged(
                 f"{row.who} changed corrections of classes meanwhile ({row.kind}): count again, "
                 "then apply"
             )
+
+
+def _is_verdict_on(row: JournalRow, pair: Pair | None) -> bool:
+    return row.kind in VERDICTS and (row.frame_i, row.frame_j) == pair
 
 
 def _next(rows: Sequence[JournalRow], decision: Decision) -> JournalRow:

@@ -26,9 +26,10 @@ from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames
 from recon4.registration.tuning import OVERLAP
 from recon4.review.apply import is_measured, rows_by_pair
-from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
+from recon4.review.decisions import Pair
 from recon4.review.planar_pairs import align_keyframes, keyframe_points
 from recon4.review.queue import AlternativePath, alternative_paths
+from recon4.review.row_contents import Measurement, numbers_of, pose_of
 from recon4.review.source import Source
 from recon4.review.sweep_pairs import align_sweeps, has_sweeps, multiframes_of
 from recon4.review.tuning import QUEUE, REVIEW_PAIRS

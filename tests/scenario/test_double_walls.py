@@ -12,8 +12,9 @@ from recon4.model.pose_graph import EdgeKind, Verdict
 from recon4.model.rig import load_rig
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Silent
-from recon4.review.decisions import Decision, DecisionKind, Measurement
+from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
+from recon4.review.row_contents import Measurement
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.simulation.world import Waypoint

@@ -16,8 +16,12 @@ from recon4.pipeline import remake
 from recon4.progress import Silent
 from recon4.review.approval import put_back
 from recon4.review.approved import approval_of
-from recon4.review.decisions import ApprovalFacts, Decision, DecisionKind
+from recon4.review.decisions import (
+    Decision,
+    DecisionKind,
+)
 from recon4.review.journal import append
+from recon4.review.row_contents import ApprovalFacts
 from recon4.review.signature import sign
 from recon4.review.source import Source
 from recon4.store.atomic import write_json

@@ -14,8 +14,12 @@ from recon4.archive.verify import accept, verify
 from recon4.cli.main import main
 from recon4.progress import Silent
 from recon4.review.approval_state import ApprovalKind, latest_state
-from recon4.review.decisions import ApprovalFacts, Decision, DecisionKind
+from recon4.review.decisions import (
+    Decision,
+    DecisionKind,
+)
 from recon4.review.journal import append, read_rows
+from recon4.review.row_contents import ApprovalFacts
 from recon4.review.signature import public_key_of, sign
 from recon4.store.atomic import write_json
 from recon4.store.hashing import hash_json

@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { ReviewState } from "../../web/review/state.js";
 
 const SERVER = {
+  work: [],
   graph: "g",
   seq: 0,
   standing: [],

@@ -25,6 +25,11 @@ export const KINDS = {
   control: "changed the control points",
   classify: "corrected classes of points",
   withdraw: "withdrew a correction of classes",
+  assign: "assigned",
+  comment: "commented on",
+  skip: "left for later",
+  second: "asked for a second opinion on",
+  waive: "withdrew the question for a second opinion on",
 };
 
 /**
@@ -36,6 +41,7 @@ export const KEYS = [
   ["K", "Previous pair"],
   ["A", "Accept, once the points of this pair are drawn"],
   ["R", "Reject, once the points of this pair are drawn"],
+  ["S", "Skip for later"],
   ["U or Backspace", "Restore the automatic decision"],
   ["Ctrl Z", "Undo"],
   ["Ctrl Y", "Redo"],
@@ -122,17 +128,15 @@ export const permissionMissing = (/** @type {string} */ permission) =>
 
 /** Why the map cannot be approved now; empty if it can. */
 export function approvalObstacle(
-  /** @type {Pick<ReviewView, "busy" | "finished" | "in_map" | "may_review" | "approval">} */ {
-    busy,
-    finished,
-    in_map,
-    may_review,
-    approval,
-  },
+  /**
+   * @type {Pick<ReviewView,
+   *   "busy" | "finished" | "in_map" | "may_review" | "approval" | "obstacle">}
+   */ { busy, finished, in_map, may_review, approval, obstacle },
 ) {
   if (!may_review) return permissionMissing("review");
   if (busy) return "A job waits or runs";
   if (!finished) return "There is no finished map yet";
   if (!in_map) return "The last decisions are not in the map";
+  if (obstacle) return obstacle;
   return ["approved", "earlier"].includes(approval.kind) ? "This map is approved" : "";
 }

@@ -3,16 +3,20 @@
 
 import { html, nothing, render, repeat, targetOf, within } from "../shared/dom.js";
 import { VERDICTS, length, seconds } from "./captions.js";
+import { workMark } from "./team_captions.js";
 
 /** @import {Row} from "./state.js" */
 
-/** @type {Record<string, [string, (row: Row) => boolean]>} */
+/** @type {Record<string, [string, (row: Row, me: string) => boolean]>} */
 const SHOW = {
   loops: ["Loop closures", (row) => row.measured && row.kind !== "neighbor"],
   doubt: ["Rejected or unverified", (row) => row.measured && row.state !== "accepted"],
   kept: ["Accepted", (row) => row.measured && row.state === "accepted" && row.kind !== "neighbor"],
   open: ["Decided automatically", (row) => row.measured && !row.who],
   decided: ["Decided by people", (row) => Boolean(row.who)],
+  mine: ["Assigned to me", (row, me) => me !== "" && row.work?.assignee === me],
+  second: ["Waiting for a second opinion", (row) => Boolean(row.work?.waits)],
+  later: ["Skipped for later", (row) => Boolean(row.work?.skipped_by)],
   all: ["All registered pairs", (row) => row.measured],
   apart: ["Not registered", (row) => !row.measured],
 };
@@ -27,6 +31,7 @@ export class ReviewQueue extends HTMLElement {
     show: "loops",
     reason: "",
     chosen: "", // key of a pair
+    me: "", // who looks
   };
   /** @type {Map<string, Row>} */
   #byKey = new Map();
@@ -44,6 +49,11 @@ export class ReviewQueue extends HTMLElement {
     Object.assign(this.#state, { rows, chosen: "" });
     this.#byKey = new Map(rows.map((row) => [row.key, row]));
     this.#filter({});
+  }
+
+  /** Who looks: some pairs are theirs. */
+  set me(/** @type {string} */ me) {
+    this.#filter({ me });
   }
 
   get length() {
@@ -90,11 +100,11 @@ export class ReviewQueue extends HTMLElement {
   }
 
   /** Applies the filters, after one of them changed. */
-  #filter(/** @type {{show?: string, reason?: string}} */ changes) {
+  #filter(/** @type {{show?: string, reason?: string, me?: string}} */ changes) {
     const state = Object.assign(this.#state, changes);
     const matches = SHOW[state.show]?.[1] ?? (() => true);
     state.shown = state.rows.filter(
-      (row) => matches(row) && (!state.reason || row.reason === state.reason),
+      (row) => matches(row, state.me) && (!state.reason || row.reason === state.reason),
     );
     this.#draw();
   }
@@ -153,7 +163,11 @@ export class ReviewQueue extends HTMLElement {
           ><span aria-hidden="true">${mark}</span><span class="unseen">${word}</span></span
         ><span>${seconds(row.t_i_s)} – ${seconds(row.t_j_s)}</span
         ><span class="number">${row.measured ? length(row.influence_m) : nothing}</span
-        ><small>${row.who ? `by ${row.who}` : row.reason || row.kind}</small>
+        ><small
+          >${[row.who ? `by ${row.who}` : row.reason || row.kind, workMark(row.work)]
+            .filter(Boolean)
+            .join(" · ")}</small
+        >
       </button>
     </li>`;
   }

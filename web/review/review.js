@@ -14,7 +14,9 @@ import {
   readReview,
   readWalk,
   redoDecision,
+  readCurrentUser,
   remakeMap,
+  shareWork,
   undoDecision,
 } from "../shared/api.js";
 import { attempt, byId, detailOf, only, say, showError, within } from "../shared/dom.js";
@@ -24,6 +26,7 @@ import { keyOf } from "./captions.js";
 import { PairLoader } from "./loader.js";
 import { askToSign } from "./signing.js";
 import { ReviewState } from "./state.js";
+import { Team } from "./team.js";
 import { drawTools, goesOn, listenToActions } from "./tools.js";
 import { watchProject } from "./watch.js";
 import { withPassword } from "../account/recent_login.js";
@@ -39,10 +42,17 @@ const queue = only("review-queue");
 const view = only("pair-view");
 const message = byId("message");
 const state = new ReviewState();
+const team = new Team(id, byId("team"), (kind, more) => share(kind, more));
 const loader = new PairLoader(id);
 const effects = { requested: 0, shown: 0 };
-/** The requests that change something, one after the other. */
-const turns = { last: /** @type {Promise<unknown>} */ (Promise.resolve()) };
+/**
+ * The requests that change something, one after the other, and the row of the journal after the
+ * last one of this page about each pair.
+ */
+const turns = {
+  last: /** @type {Promise<unknown>} */ (Promise.resolve()),
+  own: /** @type {Map<string, number>} */ (new Map()),
+};
 
 document.title = `Review of ${id} · recon4`;
 
@@ -79,6 +89,7 @@ function drawSelected() {
   const enabled = state.enabled(queue.length);
   drawTools(byId("decision"), queue.tools, actions, { enabled, refineText: state.refineText });
   byId("said").textContent = state.hint;
+  team.show(selected && { pair: selected.pair, work: state.workOf(selected.pair) });
 }
 
 // -- decisions, sent in the order of the keys
@@ -151,12 +162,15 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
   const why = reason.value.trim();
   reason.value = "";
   const T_i_j = row.measured ? (facts?.measured ?? []) : [];
-  const seen_seq = state.server.seq;
-  const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j, why, seen_seq, ...more };
+  const seen = state.server.seq;
+  const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j, why, ...more };
   selected.decided = kind !== "restore";
   const sent = inTurn(async () => {
     try {
-      update(await decide(id, body));
+      const seen_seq = Math.max(seen, turns.own.get(row.key) ?? 0); // this page knows its own
+      const server = await decide(id, { ...body, seen_seq });
+      turns.own.set(row.key, server.seq);
+      update(server);
     } catch (error) {
       selected.decided = false;
       throw error;
@@ -164,6 +178,19 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
   });
   drawSelected();
   if (goesOn() && kind !== "restore") queue.step(1);
+  return sent;
+}
+
+/**
+ * Does something with the selected pair besides deciding about it.
+ * @type {import("./team.js").Share}
+ */
+async function share(kind, more = {}) {
+  const { selected } = state;
+  if (!selected || !state.server?.may_review) return undefined;
+  const [frame_i, frame_j] = selected.pair;
+  const sent = inTurn(async () => update(await shareWork(id, { kind, frame_i, frame_j, ...more })));
+  if (kind === "skip") queue.step(1);
   return sent;
 }
 
@@ -285,6 +312,7 @@ const actions = {
   accept: () => send("accept"),
   reject: () => send("reject"),
   restore: () => send("restore"),
+  skip: () => share("skip"),
   undo: () => step(undoDecision),
   redo: () => step(redoDecision),
   add: addLoop,
@@ -326,4 +354,11 @@ drawSelected();
 listenToActions(actions, view, reasonField(), () => Boolean(state.selected?.drawn));
 await attempt(message, begin);
 if (message.textContent) view.clear("Nothing to review");
-watchProject(id, poll);
+await attempt(message, async () => {
+  queue.me = (await readCurrentUser()).name;
+  await team.begin(state.server?.may_review ?? false);
+});
+watchProject(id, () => {
+  poll();
+  team.look();
+});

@@ -7,7 +7,7 @@ import { IDENTITY, apart } from "./math.js";
 /**
  * @typedef {import("../shared/http_types").ReviewView} ReviewView
  * @typedef {import("../shared/http_types").AlignmentView} AlignmentView
- * @import {Effect, Move, PairFacts} from "../shared/http_types"
+ * @import {Effect, Move, PairFacts, WorkView} from "../shared/http_types"
  * @typedef {object} Row a pair of the queue
  * @property {string} key
  * @property {string} title
@@ -30,13 +30,14 @@ import { IDENTITY, apart } from "./math.js";
  * @property {string} state the verdict in force
  * @property {string} who decided; empty = the program
  * @property {string} why
- * @typedef {Omit<Row, "key" | "title" | "state" | "who" | "why">} NewRow
+ * @property {WorkView} [work] of people on it
+ * @typedef {Omit<Row, "key" | "title" | "state" | "who" | "why" | "work">} NewRow
  * @typedef {Omit<Effect["last"], "moves"> & {moves: Array<Move & {t_s: number}>}} TimedDifference
  * @typedef {Omit<Effect, "last" | "all"> &
  *   {last: TimedDifference, all: TimedDifference}} TimedEffect
  * @typedef {{rows: any[][], columns: string[], began_ns: number, limit_m: number}} Queue
  * @typedef {Record<"previous" | "next" | "accept" | "reject" | "restore" | "refine" | "pick" |
- *   "undo" | "redo" | "add" | "keys", boolean>} Enabled which actions are
+ *   "skip" | "undo" | "redo" | "add" | "keys", boolean>} Enabled which actions are
  * @typedef {object} Selected the pair that is looked at
  * @property {[number, number]} pair frames of both places
  * @property {Row} row
@@ -114,6 +115,11 @@ export class ReviewState {
     /** @type {string[]} */
     const changed = [];
     for (const row of this.rows) {
+      const work = this.workOf([row.frame_i, row.frame_j]);
+      if (JSON.stringify(work) !== JSON.stringify(row.work)) {
+        row.work = work;
+        changed.push(row.key);
+      }
       if (row.kind === "manual") row.measured = this.#isMeasuredByPerson(row);
       const now = this.#decisionOf(row);
       if (now.state !== row.state || now.who !== row.who || now.why !== row.why) {
@@ -147,6 +153,11 @@ export class ReviewState {
   /** The decision of a person that is in force for a pair. */
   activeDecisionOf(/** @type {[number, number]} */ [i, j]) {
     return this.server?.standing.find((one) => one.frame_i === i && one.frame_j === j);
+  }
+
+  /** What people do with a pair besides deciding. */
+  workOf(/** @type {[number, number]} */ [i, j]) {
+    return this.server?.work.find((one) => one.frame_i === i && one.frame_j === j);
   }
 
   /** The measured pose of the selected pair; the graph's prediction if it was never registered. */
@@ -208,6 +219,7 @@ export class ReviewState {
       restore: may && Boolean(selected && this.activeDecisionOf(selected.pair)),
       refine: drawn && !selected.busy,
       pick: drawn,
+      skip: may && selected !== null,
       undo: may && (this.server?.undoable ?? 0) > 0,
       redo: may && (this.server?.redoable ?? 0) > 0,
       add: Boolean(this.graph),

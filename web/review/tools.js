@@ -92,6 +92,7 @@ const keyActions = (act, view, reason) => ({
   k: act.previous,
   a: act.accept,
   r: act.reject,
+  s: act.skip,
   u: act.restore,
   Backspace: act.restore,
   p: act.pick,

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from recon4.findings.summary_notes import SaidFinding
 from recon4.model.usability import MapVerdict
 from recon4.review.approval_state import ApprovalState
+from recon4.review.teamwork import Agreement, PairWork
 from recon4_app.names import Note
 
 Frame = Annotated[int, Field(ge=0, le=1 << 40)]
@@ -34,8 +35,8 @@ class NewDecision(BaseModel):
     measurement: Annotated[str, Field(max_length=64)] = ""
     """Of ``replace`` and ``add``: the ``measurement`` id that ``align`` returned."""
     seen_seq: Annotated[int | None, Field(ge=0)] = None
-    """Last row of the journal that the reviewer saw: reject the request if another person decided
-    about this pair since; null = do not compare."""
+    """Last row of the journal that the reviewer saw: reject the request if somebody decided about
+    this pair since; null = reject it if another person ever did."""
 
 
 class Step(BaseModel):
@@ -103,6 +104,50 @@ class StandingView:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class OpinionView:
+    """The last decision of a person about a pair."""
+
+    who: str
+    accepted: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkView:
+    """The work of people on a pair."""
+
+    frame_i: int
+    frame_j: int
+    assignee: str
+    """Who has it; empty = nobody."""
+    skipped_by: str
+    """Who left it for later; empty = nobody."""
+    second_by: str
+    """Who asked for a second opinion; empty = nobody."""
+    comments: int
+    opinions: list[OpinionView]
+    """Of each person who decided, one."""
+    agreement: Agreement
+    """What they say together."""
+    waits: bool
+    """Whether a second opinion was asked for, and two people do not agree yet."""
+
+
+def work_view(work: PairWork) -> WorkView:
+    """As the page shows it."""
+    return WorkView(
+        frame_i=work.pair[0],
+        frame_j=work.pair[1],
+        assignee=work.assignee,
+        skipped_by=work.skipped_by,
+        second_by=work.second_by,
+        comments=work.comments,
+        opinions=[OpinionView(who=one.who, accepted=one.accepted) for one in work.opinions],
+        agreement=work.agreement,
+        waits=work.waits,
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MapFacts:
     """What a person must know of a finished map before they approve it."""
 
@@ -133,6 +178,10 @@ class ReviewView:
     undoable: int
     redoable: int
     standing: list[StandingView]
+    work: list[WorkView]
+    """Of people on pairs that they decided, talked about or share."""
+    obstacle: str
+    """Why their work does not allow an approval yet; empty = it does."""
     in_map: bool
     """Whether the results include these decisions."""
     finished: bool

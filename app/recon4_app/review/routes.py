@@ -18,7 +18,7 @@ from recon4.model.usability import verdict_in
 from recon4.review.approval import NotApprovable, make_read_only, reason_needed, signed_figures
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval
-from recon4.review.decisions import ABOUT_MAPS, Decided, Decision, DecisionKind, fold
+from recon4.review.decisions import CHANGE_NOTHING, Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
 from recon4.review.newest_approval import judging_folders
 from recon4.review.pairs import (
@@ -33,6 +33,7 @@ from recon4.review.pairs import (
 from recon4.review.preview import Effect
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.review.teamwork import second_opinion_missing, team_work
 from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
 from recon4.review.tuning import APPROVALS
 from recon4_app.access.audit import audit
@@ -56,6 +57,7 @@ from recon4_app.review.model import (
     StandingView,
     Step,
     SupersededEffect,
+    work_view,
 )
 from recon4_app.review.newest_approvals import record_signed
 from recon4_app.review.store import terms_of
@@ -85,7 +87,7 @@ def review_page(project_id: str, request: Request, server: Server) -> HTMLRespon
 @router.get("", dependencies=LOOK, summary="State of the review")
 def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
     """Decisions in force, undo and redo counts, and whether the map includes the decisions."""
-    return _view(project_id, server, who)
+    return view_of(project_id, server, who)
 
 
 @router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
@@ -189,7 +191,7 @@ def decide(project_id: str, new: NewDecision, server: Server, *, who: Who) -> Re
         append(root, decision, seen_seq=new.seen_seq)
     except JournalChanged as error:
         raise Conflict(str(error)) from error
-    return _view(project_id, server, who)
+    return view_of(project_id, server, who)
 
 
 @router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
@@ -257,7 +259,7 @@ async def approve(
     server.webhooks.wake()
     what = f"{project_id} version {approval.version} {approval.hash}"
     await run_in_threadpool(audit, request, "approve", what)
-    return await run_in_threadpool(_view, project_id, server, who)
+    return await run_in_threadpool(view_of, project_id, server, who)
 
 
 async def _of_pairs(
@@ -299,13 +301,15 @@ def _step(
         append(root, Decision(kind=kind, who=who.name, why=step.why), after_seq=step.after_seq)
     except (NothingToUndo, JournalChanged) as error:
         raise Conflict(str(error)) from error
-    return _view(project_id, server, who)
+    return view_of(project_id, server, who)
 
 
-def _view(project_id: str, server: ServerParts, who: Person) -> ReviewView:
+def view_of(project_id: str, server: ServerParts, who: Person) -> ReviewView:
+    """The state of the review, for a person."""
     root = server.projects.folder(project_id)
     rows = read_rows(root)
-    decided = fold(row.decision() for row in rows)
+    decisions = [row.decision() for row in rows]
+    decided = fold(decisions)
     in_map = decisions_in_map(root)
     return ReviewView(
         seq=len(rows),
@@ -325,6 +329,8 @@ def _view(project_id: str, server: ServerParts, who: Person) -> ReviewView:
             )
             for one in decided.standing
         ],
+        work=[work_view(one) for one in team_work(decisions)],
+        obstacle=second_opinion_missing(decisions),
         in_map=in_map == decided.key,
         finished=in_map is not None,
         map=_map_facts(root),
@@ -353,5 +359,5 @@ def _map_facts(root: Path) -> MapFacts | None:
 def _now_and_before(rows: Sequence[JournalRow]) -> tuple[Decided, Decided]:
     """Decisions in force now, and before the last decision."""
     decisions = [row.decision() for row in rows]
-    decisions = [one for one in decisions if one.kind not in ABOUT_MAPS]
+    decisions = [one for one in decisions if one.kind not in CHANGE_NOTHING]
     return fold(decisions), fold(decisions[:-1])

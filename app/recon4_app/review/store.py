@@ -7,10 +7,11 @@ import secrets
 from collections import OrderedDict
 from pathlib import Path
 
-from recon4.review.decisions import Decided, Measurement, Pair
+from recon4.review.decisions import Decided, Pair
 from recon4.review.pairs import Alignment
 from recon4.review.preview import Effect, preview
 from recon4.review.queue import queue_json
+from recon4.review.row_contents import Measurement
 from recon4.review.source import Source
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool

@@ -35,3 +35,15 @@ class ReviewCacheLimits(Struct, frozen=True, kw_only=True):
 
 
 REVIEW_CACHE = ReviewCacheLimits()
+
+
+class PresenceLimits(Struct, frozen=True, kw_only=True):
+    """Open review pages."""
+
+    gone_s: float = 12.0
+    """A page that says nothing for this long is closed [s]; it speaks every 4 s."""
+    max_pages: int = 2000
+    """Beyond that the oldest are forgotten."""
+
+
+PRESENCE = PresenceLimits()

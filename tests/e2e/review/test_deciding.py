@@ -14,6 +14,7 @@ from tests.e2e.review.review_page import (
     decidable,
     fits,
     only_one_decision,
+    page_fits,
     settled,
 )
 
@@ -245,3 +246,35 @@ def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
         page.evaluate(f"open('/api/projects/{root.name}/report')")
     expect(report.value.get_by_text("Version 1, approved by local")).to_be_visible()
     expect(report.value.get_by_text(approval["hash"])).to_be_visible()
+
+
+@pytest.mark.study
+@looks("desktop light", "phone dark")
+def test_two_people_share_a_pair(opened, root, screenshot):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    frames = [
+        int(word) for word in page.locator("#pair h2").text_content().split() if word.isdigit()
+    ]
+    append(root, Decision(kind=DecisionKind.REJECT, who="rita", pair=tuple(frames)))
+    team = page.locator("#team")
+    expect(team.locator(".agreement")).to_have_text("rita rejected it")
+
+    team.get_by_label("Assigned to").select_option("local")
+    team.get_by_label("Comment").fill("Glass on both sides: look at the door")
+    team.get_by_role("button", name="Comment").click()
+    team.get_by_role("button", name="Ask for a second opinion").click()
+
+    expect(team.locator("q")).to_have_text("Glass on both sides: look at the door")
+    expect(team.locator(".agreement")).to_contain_text("local asked for a second opinion")
+    row = page.locator('.queue li[aria-current="true"]')
+    expect(row).to_contain_text("→ local · second opinion · ✎ 1")
+    expect(page.locator("#approve")).to_be_disabled()
+    screenshot(page, "review-team")
+    page_fits(page)
+    page.keyboard.press("r")
+    expect(team.locator(".agreement")).to_have_text("✓ rita and local agree: rejected")
+    page.keyboard.press("s")
+    page.get_by_label("Which pairs").select_option("later")
+    expect(page.locator(".queue li")).to_have_count(1)

@@ -120,7 +120,7 @@ def test_the_points_of_both_lie_on_each_other_where_the_graph_says(server):
     n_i = int(np.frombuffer(data[8:12], "<u4")[0])
     xyz = np.frombuffer(data[16:], "<f4").reshape(-1, 3).astype(float)
 
-    from recon4.review.decisions import pose_of
+    from recon4.review.row_contents import pose_of
 
     moved = pose_of(facts["predicted"]) @ xyz[n_i:]
     from scipy.spatial import cKDTree
@@ -226,3 +226,25 @@ def test_a_project_without_a_map_is_not_processed_again(server, root):
 
     assert answer.status_code == 404
     assert "no map yet" in answer.json()["detail"]
+
+
+def test_people_share_the_work_on_a_pair_and_an_approval_waits_for_both(server, root):
+    append(root, Decision(kind=DecisionKind.REJECT, who="rita", pair=(17, 77)))
+    server.post("/work", json={"kind": "assign", **RIGHT, "assignee": "local"})
+    server.post("/work", json={"kind": "comment", **RIGHT, "why": "a glass wall"})
+    asked = server.post("/work", json={"kind": "second", **RIGHT}).json()
+
+    (work,) = asked["work"]
+    assert (work["assignee"], work["comments"], work["second_by"]) == ("local", 1, "local")
+    assert work["waits"] and "second opinion on multiframes 17 and 77" in asked["obstacle"]
+    assert [one["text"] for one in server.get("/comments", params=RIGHT).json()] == ["a glass wall"]
+    agreed = decide(server, "reject", RIGHT, seen_seq=asked["seq"]).json()
+    assert (agreed["work"][0]["agreement"], agreed["obstacle"]) == ("agree", "")
+    assert agreed["key"] == asked["key"]  # nothing to rebuild
+    unknown = server.post("/work", json={"kind": "assign", **RIGHT, "assignee": "nobody"})
+    assert unknown.status_code == 400
+    assert server.post("/work", json={"kind": "comment", **RIGHT}).status_code == 422
+    page = {"page": "abcdefgh", **RIGHT}
+    assert server.post("/looking", json=page).json() == []
+    (other,) = server.post("/looking", json={"page": "hgfedcba"}).json()
+    assert (other["who"], other["frame_i"]) == ("local", 17)

@@ -11,8 +11,8 @@ from recon4.model.pose_graph import EdgeKind
 from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.sources import Sources
-from recon4.review.decisions import numbers_of, pose_of
 from recon4.review.pairs import LAYOUT
+from recon4.review.row_contents import numbers_of, pose_of
 from recon4.review.source import Source
 from tests.planar_walks import ring_corridor, ring_walk, scanned, write_carmen
 from tests.service.review.reviewing import Reviewing, decide, keys_of, make_a_new_map

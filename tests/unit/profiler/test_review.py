@@ -9,8 +9,8 @@ from recon4.pose_graph.files import load_graph
 from recon4.profiler.stage_odometry import run_line_odometry
 from recon4.profiler.sweep_graph import build_sweep_graph
 from recon4.progress import Silent
-from recon4.review.decisions import numbers_of, pose_of
 from recon4.review.pairs import LAYOUT, align, pair_points
+from recon4.review.row_contents import numbers_of, pose_of
 from recon4.review.source import Source
 
 

@@ -17,18 +17,14 @@ from recon4.model.classes import PointClass
 from recon4.model.site_control import SeenTarget, SiteControl
 from recon4.model.volumes import Prism
 from recon4.review.decisions import (
-    ABOUT_MAPS,
+    CHANGE_NOTHING,
     NOTHING_DECIDED,
-    ApprovalFacts,
     Decision,
     DecisionKind,
-    Measurement,
-    SeenFinding,
     correction_id,
     fold,
-    numbers_of,
-    pose_of,
 )
+from recon4.review.row_contents import ApprovalFacts, Measurement, SeenFinding, numbers_of, pose_of
 
 CAPTIONS = Path(__file__).parents[3] / "web" / "review" / "captions.js"
 HERE = (0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0)
@@ -95,6 +91,8 @@ def decide(kind, pair=(2, 7), who="Eva", **more):
         return Decision(kind=kind, who=who, **{"withdraws": correction_id(correction()), **more})
     if kind in (DecisionKind.REPLACE, DecisionKind.ADD):
         more.setdefault("measurement", MEASURED)
+    if kind is DecisionKind.COMMENT:
+        more.setdefault("why", "glass")
     return Decision(kind=kind, who=who, pair=pair, **more)
 
 
@@ -311,7 +309,7 @@ def test_a_thousand_operations_and_undoing_all_of_them_is_the_beginning(seed):
             undoable, redoable = undoable - 1, redoable + 1
         elif kind is DecisionKind.REDO:
             undoable, redoable = undoable + 1, redoable - 1
-        elif kind not in ABOUT_MAPS:
+        elif kind not in CHANGE_NOTHING:
             undoable, redoable = undoable + 1, 0
     decided = fold(rows)
     assert (decided.undoable, decided.redoable) == (undoable, redoable)

@@ -75,15 +75,15 @@ def test_writers_at_once_lose_nothing(tmp_path):
     def write(who):
         for k in range(20):
             together.wait()
-            append(tmp_path, reject(10 + k, who=who))
+            append(tmp_path, reject(10 + k + 100 * people.index(who), who=who))
 
     with ThreadPoolExecutor(len(people)) as pool:
         list(pool.map(write, people))
 
     rows = read_rows(tmp_path)
     assert broken(rows) == []
-    for who in people:
-        assert [row.frame_j for row in rows if row.who == who] == list(range(10, 30))
+    for first, who in zip(range(10, 400, 100), people, strict=True):
+        assert [row.frame_j for row in rows if row.who == who] == list(range(first, first + 20))
 
 
 def test_what_was_acknowledged_survives_kill_9(tmp_path):

@@ -7,7 +7,8 @@ from recon4.findings.review_problems import problem_findings
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict, known_judgment
 from recon4.pose_graph.verification import verify
 from recon4.review.apply import apply_decisions, rows_by_pair
-from recon4.review.decisions import Decision, DecisionKind, Measurement, fold, numbers_of
+from recon4.review.decisions import Decision, DecisionKind, fold
+from recon4.review.row_contents import Measurement, numbers_of
 from recon4.review.solve import difference, review, review_figures
 from recon4.review.tuning import CHANGES
 from recon4.settings import GraphSettings, Settings, VerificationSettings

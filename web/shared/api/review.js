@@ -4,8 +4,8 @@ import { ApiError, NO_RESPONSE, request, urlOf } from "../http.js";
 
 /**
  * @import {
- *   Approve, CorrectionSpec, NewAcknowledgment, NewCorrection, NewDecision, PointPairs,
- *   PredictedPose, Step
+ *   Approve, CorrectionSpec, Looking, NewAcknowledgment, NewCorrection, NewDecision, NewWork,
+ *   PointPairs, PredictedPose, Step
  * } from "../http_types"
  */
 
@@ -146,3 +146,27 @@ export async function readPoints(project_id, [frame_i, frame_j], reach) {
     j: new Float32Array(data, 16 + 12 * counted, 3 * other),
   };
 }
+
+/**
+ * @param {string} project_id
+ * @param {NewWork} body
+ */
+export const shareWork = (project_id, body) =>
+  request("POST /api/projects/{project_id}/review/work", { path: { project_id }, body });
+/**
+ * @param {string} project_id
+ * @param {[number, number]} pair
+ */
+export const readComments = (project_id, [frame_i, frame_j]) =>
+  request("GET /api/projects/{project_id}/review/comments", {
+    path: { project_id },
+    query: { frame_i, frame_j },
+  });
+export const readReviewers = (/** @type {string} */ project_id) =>
+  request("GET /api/projects/{project_id}/review/people", { path: { project_id } });
+/**
+ * @param {string} project_id
+ * @param {Looking} body
+ */
+export const look = (project_id, body) =>
+  request("POST /api/projects/{project_id}/review/looking", { path: { project_id }, body });

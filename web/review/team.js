@@ -1,0 +1,172 @@
+// The panel of several people who review one map: who has the selected pair, what they say of it,
+// and who is looking now.
+
+import { look, readComments, readReviewers } from "../shared/api.js";
+import { html, nothing, render, targetOf, within } from "../shared/dom.js";
+import { when } from "../shared/format.js";
+import { NO_WORK, agreementText, lookersText } from "./team_captions.js";
+
+/**
+ * @import {CommentView, LookerView, NewWork, WorkView} from "../shared/http_types"
+ * @typedef {(kind: NewWork["kind"], more?: {why?: string, assignee?: string}) => Promise<unknown>}
+ *   Share
+ * @typedef {object} Shown the selected pair for the panel
+ * @property {[number, number]} pair
+ * @property {WorkView | undefined} work
+ */
+
+const PAGE = Math.random().toString(36).slice(2, 12).padEnd(8, "0");
+
+export class Team {
+  #id;
+  #panel;
+  #share;
+  #state = {
+    may: false,
+    people: /** @type {string[]} */ ([]), // who may review
+    lookers: /** @type {LookerView[]} */ ([]),
+    shown: /** @type {Shown | null} */ (null),
+    comments: /** @type {CommentView[]} */ ([]),
+    commentsOf: "", // the pair and how many it had
+  };
+
+  /**
+   * @param {string} id of the project
+   * @param {HTMLElement} panel
+   * @param {Share} share does something with the selected pair; refusals are shown by the page
+   */
+  constructor(id, panel, share) {
+    this.#id = id;
+    this.#panel = panel;
+    this.#share = share;
+  }
+
+  /** Reads to whom pairs can be assigned, if this person may. */
+  async begin(/** @type {boolean} */ may) {
+    this.#state.may = may;
+    this.#state.people = may ? await readReviewers(this.#id) : [];
+    this.#draw();
+  }
+
+  /** The selected pair has changed, or what people do with it. */
+  show(/** @type {Shown | null} */ shown) {
+    const before = this.#state.shown;
+    this.#state.shown = shown;
+    const key = shown ? `${shown.pair.join("-")} ${shown.work?.comments ?? 0}` : "";
+    if (before?.pair.join() !== shown?.pair.join()) {
+      this.#state.comments = [];
+      this.look();
+    }
+    if (key !== this.#state.commentsOf) {
+      this.#state.commentsOf = key;
+      if (shown?.work?.comments) this.#readComments(shown.pair, key);
+    }
+    this.#draw();
+  }
+
+  /** Says what this page shows, and learns who else is here. */
+  async look() {
+    const pair = this.#state.shown?.pair;
+    const now = { page: PAGE, frame_i: pair?.[0] ?? null, frame_j: pair?.[1] ?? null };
+    const lookers = await look(this.#id, now).catch(() => null); // the head shows a lost link
+    if (!lookers) return;
+    this.#state.lookers = lookers;
+    this.#draw();
+  }
+
+  /**
+   * @param {[number, number]} pair
+   * @param {string} key
+   */
+  async #readComments(pair, key) {
+    const comments = await readComments(this.#id, pair).catch(() => []);
+    if (this.#state.commentsOf !== key) return;
+    this.#state.comments = comments;
+    this.#draw();
+  }
+
+  #draw() {
+    const { shown, lookers } = this.#state;
+    render(
+      html`<h2>Team</h2>
+        <p class="quiet" role="status">${lookersText(lookers, shown?.pair)}</p>
+        ${shown ? this.#work(shown.work ?? NO_WORK) : nothing}`,
+      this.#panel,
+    );
+  }
+
+  #work(/** @type {Omit<WorkView, "frame_i" | "frame_j">} */ work) {
+    const { may, comments } = this.#state;
+    const agreement = agreementText(work);
+    const question = work.second_by
+      ? this.#button("Withdraw the question", () => this.#share("waive"))
+      : this.#button("Ask for a second opinion", () => this.#share("second"));
+    return html`${
+      agreement
+        ? html`<p class="agreement ${work.waits ? "waits" : work.agreement}">${agreement}</p>`
+        : nothing
+    }
+    ${work.skipped_by ? html`<p class="quiet">${work.skipped_by} left it for later</p>` : nothing}
+    ${may ? this.#assignment(work.assignee) : assigned(work.assignee)}
+    ${
+      may
+        ? html`<div class="buttons">
+            ${this.#button("Skip for later (S)", () => this.#share("skip"))}${question}
+          </div>`
+        : nothing
+    }
+    ${
+      comments.length
+        ? html`<ol class="comments">
+            ${comments.map(
+              ({ who, time, text }) =>
+                html`<li><b>${who}</b> <small>${when(time)}</small><q>${text}</q></li>`,
+            )}
+          </ol>`
+        : nothing
+    }
+    ${may ? this.#commentForm() : nothing}`;
+  }
+
+  /**
+   * @param {string} text
+   * @param {() => unknown} action
+   */
+  #button(text, action) {
+    return html`<button type="button" @click=${action}>${text}</button>`;
+  }
+
+  #assignment(/** @type {string} */ assignee) {
+    const { people } = this.#state;
+    const names = assignee && !people.includes(assignee) ? [...people, assignee] : people;
+    const choose = (/** @type {Event} */ event) =>
+      this.#share("assign", { assignee: targetOf(event).value });
+    return html`<label
+      ><span>Assigned to</span
+      ><select @change=${choose}>
+        <option value="" .selected=${!assignee}>Nobody</option>
+        ${names.map(
+          (name) => html`<option value=${name} .selected=${name === assignee}>${name}</option>`,
+        )}
+      </select></label
+    >`;
+  }
+
+  #commentForm() {
+    const submit = async (/** @type {SubmitEvent} */ event) => {
+      event.preventDefault();
+      const field = within(targetOf(event), "input", HTMLInputElement);
+      const why = field.value.trim();
+      if (!why) return;
+      field.value = "";
+      await this.#share("comment", { why });
+    };
+    return html`<form class="comment" @submit=${submit}>
+      <label><span>Comment</span><input maxlength="500" required autocomplete="off" /></label>
+      <button>Comment</button>
+    </form>`;
+  }
+}
+
+const assigned = (/** @type {string} */ assignee) =>
+  assignee ? html`<p class="quiet">Assigned to ${assignee}</p>` : nothing;
