@@ -25,6 +25,7 @@ from recon4.store.atomic import make_folders
 from recon4.system.stopping import StopSignals
 from recon4_app import docs_pages, error_responses, metrics_routes, server_routes
 from recon4_app.access import admin_routes, key_routes
+from recon4_app.access.guests import routes as guest_routes
 from recon4_app.access.login import routes as login_routes
 from recon4_app.access.login.login_service import Access, open_access
 from recon4_app.access.middleware.origin import OriginMiddleware
@@ -75,10 +76,11 @@ from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.store import ProjectStore
 from recon4_app.projects.thumbnail import Thumbnails
 from recon4_app.projects.trash import Trash
-from recon4_app.review import acknowledgment_routes, correction_routes
+from recon4_app.review import acknowledgment_routes, correction_routes, team_routes
 from recon4_app.review import routes as review_routes
 from recon4_app.review.hash_checks import ApprovalChecks
 from recon4_app.review.newest_approvals import record_all
+from recon4_app.review.presence import Presence
 from recon4_app.review.store import Reviews
 from recon4_app.rigs import routes as rig_routes
 from recon4_app.rigs.calibrations import Calibrations
@@ -160,6 +162,7 @@ def _routes() -> list[BaseRoute]:
         key_routes,
         webhook_routes,
         pairing_routes,
+        guest_routes,
         project_routes,
         map_routes,
         export_routes,
@@ -170,7 +173,7 @@ def _routes() -> list[BaseRoute]:
     more = (choices, server_routes, metrics_routes, docs_pages)
     for part in (*more, reference_routes, align_routes, site_routes):
         router.include_router(part.router)
-    for part in (acknowledgment_routes, annotation_routes, correction_routes):
+    for part in (acknowledgment_routes, annotation_routes, correction_routes, team_routes):
         router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
@@ -294,6 +297,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         current_capture=CurrentCapture(settings.root),
         checks=checks,
         reviews=Reviews(pool),
+        presence=Presence(),
         slices=Slices(pool, projects, checks, settings=settings),
         exports=KeptExports(jobs, settings.state),
         rigs=rigs,
@@ -372,6 +376,7 @@ def _add_pages(app: FastAPI) -> None:
     page("/phone", "account/phone.html", REQUIRES_LOOK)
     page("/pair", "account/pair.html", anyone)
     page("/login", "account/login.html", anyone)
+    page("/guest", "account/guest.html", anyone)
     page("/people", "account/people.html", administer)
     page("/api", "shared/api.html", REQUIRES_LOOK)
 

@@ -12,7 +12,7 @@ from enum import StrEnum
 from recon4.review.decisions import MEASURED, VERDICTS, Decision, DecisionKind, Pair, not_undone
 
 
-class Agreement(StrEnum):
+class OpinionAgreement(StrEnum):
     """What the people who decided about a pair say together."""
 
     NONE = "none"
@@ -48,17 +48,17 @@ class PairWork:
     """Of each person one, in the order in which they were given."""
 
     @property
-    def agreement(self) -> Agreement:
+    def agreement(self) -> OpinionAgreement:
         """What they say together."""
         if len(self.opinions) < 2:
-            return Agreement.ONE if self.opinions else Agreement.NONE
+            return OpinionAgreement.ONE if self.opinions else OpinionAgreement.NONE
         alike = len({one.accepted for one in self.opinions}) == 1
-        return Agreement.AGREE if alike else Agreement.DISAGREE
+        return OpinionAgreement.AGREE if alike else OpinionAgreement.DISAGREE
 
     @property
     def waits(self) -> bool:
         """Whether a second opinion was asked for, and two people do not agree yet."""
-        return bool(self.second_by) and self.agreement is not Agreement.AGREE
+        return bool(self.second_by) and self.agreement is not OpinionAgreement.AGREE
 
 
 def team_work(decisions: Sequence[Decision]) -> list[PairWork]:
@@ -77,7 +77,7 @@ def team_work(decisions: Sequence[Decision]) -> list[PairWork]:
             _judge(work.setdefault(decision.pair, PairWork(pair=decision.pair)), decision)
     for decision in decisions:
         if decision.pair is not None:
-            _share(work.setdefault(decision.pair, PairWork(pair=decision.pair)), decision)
+            _take_work(work.setdefault(decision.pair, PairWork(pair=decision.pair)), decision)
     return [work[pair] for pair in sorted(work)]
 
 
@@ -105,7 +105,7 @@ def _judge(one: PairWork, decision: Decision) -> None:
         one.opinions = [*others, Opinion(decision.who, accepted)]
 
 
-def _share(one: PairWork, decision: Decision) -> None:
+def _take_work(one: PairWork, decision: Decision) -> None:
     if decision.kind is DecisionKind.ASSIGN:
         one.assignee = decision.assignee
     elif decision.kind is DecisionKind.COMMENT:

@@ -211,3 +211,43 @@ def test_the_first_admin_is_created_in_the_browser(tmp_path, page, look, screens
 
         expect(page.get_by_role("link", name="People")).to_be_visible()
         page.goto("about:blank")  # else its event stream is cut by the end of the server
+
+
+@looks("desktop light")
+def test_a_guest_opens_a_link_and_sees_one_map_until_it_is_revoked(
+    server, page, browser, look, screenshot
+):
+    with server.signed_in("rita") as rita:
+        made = rita.post("/api/projects/office/guests", json={"label": "Client", "days": 7}).json()
+    sign_in(page, server, "rita", "/projects/office/map/")
+    page.get_by_role("button", name="Share…").click()
+    dialog = page.get_by_role("dialog", name="Share with a guest")
+    expect(dialog.get_by_role("listitem").first).to_contain_text("not opened yet")
+    dialog.get_by_label("For whom").fill("Surveyor")
+    dialog.get_by_role("button", name="Make a link").click()
+    link = dialog.get_by_label("The link: copy it now").input_value()
+    expect(dialog.get_by_text("Surveyor").first).to_be_visible()
+    screenshot(page, "share")
+
+    with browser_context(browser, look) as context:
+        guest = context.new_page()
+        guest.goto(f"{server.url}/guest#{made['token']}?o=1")
+        expect(guest.locator("#status .shown")).to_contain_text("points")
+        assert "#" not in guest.url and "map/?" in guest.url
+        tabs = guest.get_by_role("navigation", name="Pages of the project")
+        expect(tabs.get_by_role("link")).to_have_text(["Map", "Slices", "Report"])
+        expect(guest.get_by_role("button", name="Share…")).to_have_count(0)
+        expect(guest.locator("#message")).to_be_empty()
+        screenshot(guest, "guest-map")
+        tabs.get_by_role("link", name="Slices").click()
+        expect(guest.locator(".caption").first).to_contain_text("points")
+        expect(guest.locator("#findings")).to_be_empty()
+        screenshot(guest, "guest-slices")
+
+        dialog.get_by_role("button", name="Revoke the link for Client").first.click()
+        expect(dialog.get_by_role("listitem").last).to_contain_text("revoked")
+        guest.goto(link)
+        expect(guest.locator("#status .shown")).to_contain_text("points")  # the other one works
+        guest.goto(f"{server.url}/guest#{made['token']}")
+        expect(guest.locator("#message")).to_contain_text("revoked")
+        screenshot(guest, "guest-refused")

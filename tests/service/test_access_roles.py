@@ -117,7 +117,9 @@ def closed():
 
 def test_the_roles_are_as_documented():
     assert MAY[Role.NOBODY] == frozenset()
-    assert MAY[Role.VIEWER] == {Permission.LOOK}
+    assert MAY[Role.GUEST] == {Permission.SHARED}
+    assert MAY[Role.VIEWER] == {Permission.SHARED, Permission.LOOK}
+    assert {role for role in Role if Permission.SHARE in MAY[role]} == {Role.REVIEWER, Role.ADMIN}
     assert Permission.REVIEW not in MAY[Role.OPERATOR]
     assert Permission.PROCESS in MAY[Role.REVIEWER]
     assert {role for role in Role if Permission.ADMINISTER in MAY[role]} == {Role.ADMIN}

@@ -15,6 +15,7 @@ import { VIEWS } from "./views.js";
  * @property {(tool: import("./page.js").Tool, kind?: MeasureKind) => void} tool
  * @property {() => void} fly
  * @property {() => unknown} share
+ * @property {() => unknown} invite a guest
  * @property {() => unknown} whole
  * @property {() => void} panel
  * @property {() => void} help
@@ -114,7 +115,9 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
         ${tool("Fly", "P", act.fly, flight.on)}
       </div>
       <div role="toolbar" aria-label="Page">
-        ${tool("Link", "L", act.share)} ${tool("Full window", "full screen", act.whole)}
+        ${tool("Link", "L", act.share)}
+        ${page.mayShare ? tool("Share…", "with a guest", act.invite) : nothing}
+        ${tool("Full window", "full screen", act.whole)}
         ${tool("Panel", "T", act.panel, page.panel)} ${tool("?", "keys", act.help)}
       </div>`,
     element,

@@ -1,6 +1,6 @@
 // Keys of the map, without a click first.
 
-import { byId, targetOf } from "../shared/dom.js";
+import { targetOf } from "../shared/dom.js";
 import { VIEWS } from "./views.js";
 
 /**
@@ -73,7 +73,7 @@ export function listenToKeys(act, more) {
     );
     if ((typing && event.key !== "Escape") || event.ctrlKey || event.metaKey || event.altKey)
       return;
-    if (byId("help", HTMLDialogElement).open) return;
+    if (document.querySelector("dialog[open]")) return;
     const control = targetOf(event).closest?.("button, summary, a, input");
     if (control && (OF_CONTROLS.includes(event.key) || event.key.startsWith("Arrow"))) return;
     const action = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];

@@ -2,17 +2,21 @@
 
 import { idHere } from "../shared/address.js";
 import {
+  isGuest,
   pointReader,
   projectUrl,
+  readCurrentUser,
   readMapIndex,
   readMapWalk,
   readProject,
+  slicesUrl,
   stretchUrl,
 } from "../shared/api.js";
 import { attempt, byId, html, only, render, say, showError, svg } from "../shared/dom.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
+import { openShare } from "../shared/share.js";
 import { aimOf } from "./aim.js";
 import { drawBar, drawHelp, drawStatus } from "./bar.js";
 import { between, panned, pixelM, rayAt, zoomed } from "./camera.js";
@@ -243,6 +247,7 @@ const act = {
   fly,
   seek,
   share: () => attempt(byId("message"), share).then(draw),
+  invite: () => attempt(byId("message"), () => openShare(id, () => format(page.state))),
   save: (name) => attempt(byId("message"), () => saved.keep(name)),
   open,
   forget: (view) => attempt(byId("message"), () => saved.remove(view)),
@@ -328,7 +333,7 @@ function listen() {
   });
   place().addEventListener("pointerdown", aim.end);
   addEventListener("popstate", () => open(location.search));
-  addEventListener("focus", () => notes.read().catch(showProblem)); // others change them, too
+  if (!page.guest) addEventListener("focus", () => notes.read().catch(showProblem)); // by others
   only("map-verdict").addEventListener("click", marking.followLinks);
 }
 
@@ -336,6 +341,7 @@ function listen() {
 function passOn() {
   const { span, place } = Object.fromEntries(new URLSearchParams(location.search));
   const stretch = [span && `span=${span}`, place && `place=${place}`].filter(Boolean).join("&");
+  if (page.guest) return location.replace(slicesUrl(id));
   if (stretch) return location.replace(stretchUrl(id, stretch));
   say(
     byId("message"),
@@ -346,8 +352,8 @@ function passOn() {
 
 async function begin() {
   drawHelp(byId("help"));
-  const project = await readProject(id);
-  page.project = project;
+  const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
+  Object.assign(page, { project, guest: isGuest(me), mayShare: me.may.includes("share") });
   only("page-head").name = project.name;
   only("map-verdict").facts = factsIn(project.summary);
   document.title = `Map · ${project.name} · recon4`;
@@ -360,11 +366,11 @@ async function begin() {
   new ResizeObserver(draw).observe(place());
   listen();
   if (takeNews()) page.reading = "The map was made again: this is the new one";
-  followJobs(byId("news"));
+  if (!page.guest) followJobs(byId("news"));
   draw();
   place().focus({ preventScroll: true });
   await run.canvas.tiles.readSample(storedOf(shown.colorShown()));
-  const lists = [notes, saved].map((one) => one.read().catch(showProblem));
+  const lists = page.guest ? [] : [notes, saved].map((one) => one.read().catch(showProblem));
   const [walk] = await Promise.all([readMapWalk(id), ...lists]);
   page.walk = walk;
   run.canvas.layers(walk.positions_m, walk.nodes_m);

@@ -25,6 +25,8 @@ export const page = {
   index: null,
   /** @type {ProjectView | null} */
   project: null,
+  guest: false, // somebody with a guest link
+  mayShare: false,
   /** @type {MapWalk | null} */
   walk: null,
   /** @type {Tool} */

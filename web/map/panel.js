@@ -19,6 +19,9 @@ import { COLORS, LAYERS } from "./state.js";
  * @import {MapIndex} from "../shared/http_types"
  */
 
+/** Layers that a guest does not get. @type {Layer[]} */
+const OF_THE_TEAM = ["marks", "notes"];
+
 export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */ act) {
   const { index, panel } = page;
   element.hidden = !panel || !index;
@@ -36,8 +39,8 @@ export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */
         <h2 id="layers-title">Layers</h2>
         ${layers(act)}
       </section>
-      ${corrections(index)} ${placesSections(act)} ${measuredSection(act)} ${notesSection(act)}
-      ${savedSection(act)}`,
+      ${page.guest ? nothing : corrections(index)} ${placesSections(act)} ${measuredSection(act)}
+      ${page.guest ? nothing : [notesSection(act), savedSection(act)]}`,
     element,
   );
 }
@@ -117,9 +120,13 @@ function clip(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
     <div class="buttons">
       <button type="button" @click=${() => heights([null, null])}>All heights</button>
       ${index.storeys.map(
-        (storey, k) =>
-          html`<button type="button" @click=${() => heights(heightsOf(storey))}>
-            Storey ${k + 1}
+        (storey) =>
+          html`<button
+            type="button"
+            title="Floor at ${storey.floor_m.toFixed(2)} m"
+            @click=${() => heights(heightsOf(storey))}
+          >
+            Storey ${storey.name}
           </button>`,
       )}
       <a
@@ -208,7 +215,8 @@ function layers(/** @type {Act} */ act) {
         ? state.layers.filter((one) => one !== layer)
         : [...state.layers, layer],
     });
-  const names = /** @type {Array<[Layer, string]>} */ (Object.entries(LAYERS));
+  const every = /** @type {Array<[Layer, string]>} */ (Object.entries(LAYERS));
+  const names = every.filter(([layer]) => !page.guest || !OF_THE_TEAM.includes(layer));
   return html`${names.map(
     ([layer, text]) =>
       html`<label class="check"

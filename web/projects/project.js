@@ -7,6 +7,7 @@ import {
   findingsUrl,
   listJobsOf,
   mapUrl,
+  readCurrentUser,
   readProject,
   reportPdfUrl,
   reportUrl,
@@ -35,6 +36,7 @@ import "./export_panel.js";
 import { FindingList } from "../shared/finding_list.js";
 import { factsIn, firstText } from "../shared/verdict.js";
 import "../shared/page_head.js";
+import { openShare } from "../shared/share.js";
 import "./project_storage.js";
 import "./project_tools.js";
 import "./rig_section.js";
@@ -53,6 +55,7 @@ const state = {
   /** @type {JobView | null} */
   view: null, // the newest job
   lacking: /** @type {unknown} */ (null), // why there is no project
+  mayShare: false,
   exportsOf: "", // when the map was made whose exports are shown
 };
 
@@ -83,7 +86,13 @@ function draw() {
 
 /** The delivered points fill a page of their own; beside this text is the graph. */
 const mapLink = (/** @type {string} */ id) =>
-  html`<p><a class="button" href=${mapUrl(id)}>Open the map</a></p>`;
+  html`<div class="buttons">
+    <a class="button" href=${mapUrl(id)}>Open the map</a>${
+      state.mayShare
+        ? html`<button type="button" @click=${() => openShare(id)}>Share…</button>`
+        : nothing
+    }
+  </div>`;
 
 const factsOf = (/** @type {ProjectView} */ { preset, rig, bytes: size, updated }) =>
   [preset && `preset ${preset}`, rig && `rig ${rig}`, bytes(size), when(updated)]
@@ -281,6 +290,12 @@ async function findJob() {
   if (newest && !state.view) receive(newest);
 }
 
+readCurrentUser()
+  .then(({ may }) => {
+    state.mayShare = may.includes("share");
+    draw();
+  })
+  .catch(() => {}); // the head of the page says what is wrong
 reload();
 findJob().catch((error) => {
   state.lacking ??= error;

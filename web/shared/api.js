@@ -4,11 +4,13 @@ export {
   ApiError,
   LIVE_URL as liveUrl,
   changeHeaders,
+  isGuest,
   isSignedIn,
   readCurrentUser,
 } from "./http.js";
 export * from "./api/people.js";
 export * from "./api/projects.js";
+export * from "./api/guests.js";
 export * from "./api/exports.js";
 export * from "./api/uploads.js";
 export * from "./api/review.js";

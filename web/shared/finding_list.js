@@ -6,10 +6,12 @@ import { idHere } from "./address.js";
 import {
   acknowledge,
   findingHelpUrl,
+  isGuest,
   mapPlaceUrl,
   mapUrl,
   projectUrl,
   readAcknowledgments,
+  readCurrentUser,
   slicesUrl,
   stretchUrl,
 } from "./api.js";
@@ -44,6 +46,7 @@ export class FindingList extends HTMLElement {
     findings: [],
     duration_s: 0,
     notes: NO_NOTES,
+    guest: false, // sees the map, not the graph
     filter: { level: "", kind: "" },
   };
   /** Whether it has no field for notes: a dialog is about the state when it was opened. */
@@ -77,12 +80,14 @@ export class FindingList extends HTMLElement {
   };
 
   async #readNotes() {
+    this.#state.guest = isGuest(await readCurrentUser());
+    if (this.#state.guest) return this.#draw();
     this.#state.notes = await readAcknowledgments(idHere()).catch(() => NO_NOTES);
     if (this.#state.notes.may_acknowledge || this.#state.notes.notes.length) this.#draw();
   }
 
   #draw() {
-    const { findings, duration_s, filter, notes: all } = this.#state;
+    const { findings, duration_s, filter, guest, notes: all } = this.#state;
     const { notes, may_acknowledge } = all;
     const span = spanIn(location);
     const isMarked = (/** @type {MapFinding} */ { span_s }) => span_s?.join(",") === span;
@@ -94,6 +99,7 @@ export class FindingList extends HTMLElement {
       const about = notes.filter((note) => note.finding === at);
       return item(finding, about, {
         hidden: !fits,
+        guest,
         form: mayNote ? this.#form(finding, at) : null,
       });
     });
@@ -196,26 +202,31 @@ const outdatedNotes = (/** @type {Acknowledgment[]} */ notes) =>
 /**
  * @param {MapFinding} finding
  * @param {Acknowledgment[]} notes
- * @param {{hidden: boolean, form: Content}} options
+ * @param {{hidden: boolean, guest: boolean, form: Content}} options
  */
-const item = (finding, notes, { hidden, form }) =>
+const item = (finding, notes, { hidden, guest, form }) =>
   html`<li class=${finding.level.replaceAll(" ", "-")} ?hidden=${hidden}>
     <p class="finding-head">
-      <span class="level">${levelText(finding.level)}</span><strong>${finding.title}</strong
-      ><a class="code" href=${findingHelpUrl(finding.kind)} target="_blank" rel="noopener"
-        >${finding.kind}</a
-      >
+      <span class="level">${levelText(finding.level)}</span><strong>${finding.title}</strong>${
+        guest
+          ? html`<span class="code">${finding.kind}</span>`
+          : html`<a class="code" href=${findingHelpUrl(finding.kind)} target="_blank" rel="noopener"
+              >${finding.kind}</a
+            >`
+      }
     </p>
     <p>${finding.text}</p>
     ${finding.remedy ? html`<p class="remedy">${finding.remedy}</p>` : nothing}
-    ${placeLinks(finding)} ${sliceLink(finding)} ${notes.map(noteLine)} ${form}
+    ${placeLinks(finding, guest)} ${sliceLink(finding)} ${notes.map(noteLine)} ${form}
   </li>`;
 
 /**
  * Links to the stretch in the map and in the graph, which open beside a page that may have fields
  * filled in; nothing without a stretch.
+ * @param {MapFinding} finding
+ * @param {boolean} guest
  */
-function placeLinks(/** @type {MapFinding} */ finding) {
+function placeLinks(finding, guest) {
   const stretch = stretchOf(finding);
   if (!stretch) return nothing;
   const pages = [projectUrl(idHere()), mapUrl(idHere())];
@@ -228,14 +239,18 @@ function placeLinks(/** @type {MapFinding} */ finding) {
       rel=${rel}
       >Show in the map: ${stretchText(finding)}</a
     >
-    <a
-      class="button stretch"
-      href=${stretchUrl(idHere(), stretch)}
-      target=${beside}
-      rel=${rel}
-      aria-label="In the graph: ${stretchText(finding)}"
-      >In the graph</a
-    >`;
+    ${
+      guest
+        ? nothing
+        : html`<a
+            class="button stretch"
+            href=${stretchUrl(idHere(), stretch)}
+            target=${beside}
+            rel=${rel}
+            aria-label="In the graph: ${stretchText(finding)}"
+            >In the graph</a
+          >`
+    }`;
 }
 
 /** On the page of slices a link to the slice at the place of a finding. */

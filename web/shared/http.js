@@ -92,11 +92,17 @@ const known = { me: /** @type {Promise<import("./http_types").Me> | null} */ (nu
 export const readCurrentUser = (again = false) =>
   again ? request("GET /api/me") : (known.me ??= request("GET /api/me"));
 
-/** Whether this browser is signed in already; for the login page. */
-export const isSignedIn = async () => (await fetch(at("/api/me"))).ok;
+/** Whether somebody came by a guest link: many requests would be refused. */
+export const isGuest = (/** @type {Me} */ { role }) => role === "guest";
+
+/** Whether this browser is signed in already, not as a guest; for the login page. */
+export async function isSignedIn() {
+  const response = await fetch(at("/api/me"));
+  return response.ok && !isGuest(await response.json());
+}
 
 export const LIVE_URL = at("/live");
-const BEFORE_LOGIN = [at("/login"), at("/pair")];
+const BEFORE_LOGIN = [at("/login"), at("/pair"), at("/guest")];
 
 /**
  * Headers of a request that changes something; exported for requests made elsewhere.

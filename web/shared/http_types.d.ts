@@ -191,6 +191,12 @@ export interface ClassChoice {
   delivered: boolean;
 }
 
+export interface CommentView {
+  who: string;
+  time: string;
+  text: string;
+}
+
 export interface CompareRequest {
   reference: string;
   method?: "plane" | "point";
@@ -518,6 +524,33 @@ export interface GroupView {
   settings: Array<SettingView>;
 }
 
+export interface GuestLink {
+  id: string;
+  project: string;
+  label: string;
+  by: string;
+  created_s: number;
+  until_s: number;
+  opened: number;
+  opened_s: number | null;
+  revoked_s: number | null;
+  revoked_by: string;
+  works: boolean;
+}
+
+export interface GuestLinksView {
+  login: boolean;
+  links: Array<GuestLink>;
+}
+
+export interface GuestPlace {
+  project: string;
+}
+
+export interface GuestToken {
+  token: string;
+}
+
 export interface HitPoint {
   p_map: [number, number, number];
   p_crs: [number, number, number] | null;
@@ -664,6 +697,18 @@ export interface LogPiece {
   next: number;
 }
 
+export interface LookerView {
+  who: string;
+  frame_i: number | null;
+  frame_j: number | null;
+}
+
+export interface Looking {
+  page: string;
+  frame_i?: number | null;
+  frame_j?: number | null;
+}
+
 export interface MapColumn {
   name: "intensity" | "normalized" | "time" | "uncertainty" | "thickness";
   unit: string;
@@ -803,6 +848,16 @@ export interface NewExport {
   options?: ExportOptions;
 }
 
+export interface NewGuestLink {
+  label: string;
+  days: number;
+}
+
+export interface NewGuestLinkView {
+  link: GuestLink;
+  token: string;
+}
+
 export interface NewInvitation {
   role: Role;
 }
@@ -890,6 +945,14 @@ export interface NewWebhookView {
   secret: string;
 }
 
+export interface NewWork {
+  kind: "assign" | "comment" | "skip" | "second" | "waive";
+  frame_i: number;
+  frame_j: number;
+  why?: string;
+  assignee?: string;
+}
+
 export interface NoteChange {
   revision: number;
   text?: string | null;
@@ -906,6 +969,13 @@ export interface OperatorMark {
   p_map: [number, number, number];
   text: string;
   who: string;
+}
+
+export type OpinionAgreement = "none" | "one" | "agree" | "disagree";
+
+export interface OpinionView {
+  who: string;
+  accepted: boolean;
 }
 
 export interface OtherMap {
@@ -964,7 +1034,7 @@ export interface PasswordConfirmation {
   password: string;
 }
 
-export type Permission = "look" | "review" | "process" | "capture" | "administer";
+export type Permission = "shared" | "look" | "review" | "process" | "capture" | "share" | "administer";
 
 export interface PickRequest {
   plane: SlicePlaneSpec;
@@ -1183,6 +1253,8 @@ export interface ReviewView {
   undoable: number;
   redoable: number;
   standing: Array<StandingView>;
+  work: Array<WorkView>;
+  obstacle: string;
   in_map: boolean;
   finished: boolean;
   map: MapFacts | null;
@@ -1251,7 +1323,7 @@ export interface RigView {
   uses: Array<RigUse>;
 }
 
-export type Role = "nobody" | "viewer" | "operator" | "reviewer" | "admin";
+export type Role = "nobody" | "guest" | "viewer" | "operator" | "reviewer" | "admin";
 
 export interface RowView {
   seq: number;
@@ -1340,6 +1412,9 @@ export interface Session {
   address: string;
   agent: string;
   phone: boolean;
+  guest_link: string;
+  project: string;
+  until_s: number;
 }
 
 export interface SessionView {
@@ -1506,6 +1581,7 @@ export interface StoredPart {
 }
 
 export interface Storey {
+  name: string;
   floor_m: number;
   walk_m: number;
   ceiling: boolean;
@@ -1615,6 +1691,18 @@ export interface WindowSpec {
   top: number;
 }
 
+export interface WorkView {
+  frame_i: number;
+  frame_j: number;
+  assignee: string;
+  skipped_by: string;
+  second_by: string;
+  comments: number;
+  opinions: Array<OpinionView>;
+  agreement: OpinionAgreement;
+  waits: boolean;
+}
+
 export interface Operations {
   "DELETE /api/keys/{fingerprint}": {
     path: { fingerprint: string };
@@ -1631,6 +1719,10 @@ export interface Operations {
   "DELETE /api/projects/{project_id}/exports/{export_id}/file": {
     path: { project_id: string; export_id: string };
     response: ExportView;
+  };
+  "DELETE /api/projects/{project_id}/guests/{link_id}": {
+    path: { project_id: string; link_id: string };
+    response: GuestLink;
   };
   "DELETE /api/projects/{project_id}/notes/{note_id}": {
     path: { project_id: string; note_id: string };
@@ -1767,6 +1859,10 @@ export interface Operations {
     path: { project_id: string; ending: string };
     response: string;
   };
+  "GET /api/projects/{project_id}/guests": {
+    path: { project_id: string };
+    response: GuestLinksView;
+  };
   "GET /api/projects/{project_id}/jobs": {
     path: { project_id: string };
     response: Array<JobView>;
@@ -1822,6 +1918,11 @@ export interface Operations {
     path: { project_id: string };
     response: CorrectionsView;
   };
+  "GET /api/projects/{project_id}/review/comments": {
+    path: { project_id: string };
+    query: { frame_i: number; frame_j: number };
+    response: Array<CommentView>;
+  };
   "GET /api/projects/{project_id}/review/effect": {
     path: { project_id: string };
     response: Effect | SupersededEffect;
@@ -1835,6 +1936,10 @@ export interface Operations {
     path: { project_id: string };
     query: { frame_i: number; frame_j: number };
     response: PairFacts;
+  };
+  "GET /api/projects/{project_id}/review/people": {
+    path: { project_id: string };
+    response: Array<string>;
   };
   "GET /api/projects/{project_id}/review/points": {
     path: { project_id: string };
@@ -1851,7 +1956,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/slices": {
     path: { project_id: string };
-    query?: { source?: string };
+    query?: { source?: string; reference?: string };
     response: SliceFacts;
   };
   "GET /api/projects/{project_id}/slices/compare.csv": {
@@ -1894,12 +1999,12 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/slices/overview": {
     path: { project_id: string };
-    query?: { source?: string };
+    query?: { source?: string; reference?: string };
     response: string;
   };
   "GET /api/projects/{project_id}/slices/overview/window": {
     path: { project_id: string };
-    query?: { source?: string };
+    query?: { source?: string; reference?: string };
     response: WindowSpec;
   };
   "GET /api/projects/{project_id}/slices/references/{reference_id}/points": {
@@ -2008,6 +2113,10 @@ export interface Operations {
     path: { file_id: string };
     response: string;
   };
+  "POST /api/guests/open": {
+    body: GuestToken;
+    response: GuestPlace;
+  };
   "POST /api/jobs": {
     body: NewJob;
     response: JobView;
@@ -2107,6 +2216,11 @@ export interface Operations {
     body: FreeRequest;
     response: ProjectSpace;
   };
+  "POST /api/projects/{project_id}/guests": {
+    path: { project_id: string };
+    body: NewGuestLink;
+    response: NewGuestLinkView;
+  };
   "POST /api/projects/{project_id}/map/pick": {
     path: { project_id: string };
     body: RayRequest;
@@ -2161,6 +2275,11 @@ export interface Operations {
     body: PointPairs;
     response: Array<number>;
   };
+  "POST /api/projects/{project_id}/review/looking": {
+    path: { project_id: string };
+    body: Looking;
+    response: Array<LookerView>;
+  };
   "POST /api/projects/{project_id}/review/redo": {
     path: { project_id: string };
     body: Step;
@@ -2169,6 +2288,11 @@ export interface Operations {
   "POST /api/projects/{project_id}/review/undo": {
     path: { project_id: string };
     body: Step;
+    response: ReviewView;
+  };
+  "POST /api/projects/{project_id}/review/work": {
+    path: { project_id: string };
+    body: NewWork;
     response: ReviewView;
   };
   "POST /api/projects/{project_id}/slices/compare": {

@@ -1,7 +1,17 @@
 // <page-head>: the bar at the top of every page, with links to the other pages of a project.
 
 import { at, pathHere } from "./address.js";
-import { liveUrl, projectUrl, readCapture, readCurrentUser, signOut } from "./api.js";
+import {
+  isGuest,
+  liveUrl,
+  mapUrl,
+  projectUrl,
+  readCapture,
+  readCurrentUser,
+  reportUrl,
+  signOut,
+  slicesUrl,
+} from "./api.js";
 import { asError, html, nothing, render } from "./dom.js";
 
 /**
@@ -35,6 +45,7 @@ export class PageHead extends HTMLElement {
 
   async #greet() {
     const me = await readCurrentUser();
+    if (isGuest(me)) return this.#draw({ me });
     const captures = me.may.includes("capture");
     this.#draw({ me, live: captures });
     if (!captures) this.#draw({ live: (await readCapture()) !== null });
@@ -62,20 +73,27 @@ export class PageHead extends HTMLElement {
   #draw(/** @type {Partial<HeadState>} */ changes) {
     const { name, problem, me, live } = Object.assign(this.#state, changes);
     const { id, page } = placeOf(pathHere());
+    const guest = me !== null && isGuest(me);
     render(
-      html`<a class="brand" href=${at("/")}>recon4</a>
-        ${id ? [way(name), tabs(id, page)] : nothing}
+      html`<a class="brand" href=${guest ? mapUrl(id) : at("/")}>recon4</a>
+        ${id ? [way(name, guest), tabs(id, page, guest ? guestPages(id) : pagesOf(id))] : nothing}
         <span class="link-state" role="status">${problem}</span>
-        <span class="account">${me ? [links(me, live), this.#person(me)] : nothing}</span>`,
+        <span class="account"
+          >${me ? [guest ? nothing : links(me, live), this.#person(me)] : nothing}</span
+        >`,
       this,
     );
   }
 
   #person(/** @type {Me} */ { name, role, login }) {
     if (!login) return nothing;
-    return html`<a class="who" href=${at("/account")} aria-label="Account of ${name}, ${role}"
-        ><b>${name}</b><span class="role">${role}</span></a
-      ><button type="button" @click=${() => this.#leave()}>Sign out</button>`;
+    return html`${
+        role === "guest"
+          ? html`<span class="who"><b>${name}</b></span>`
+          : html`<a class="who" href=${at("/account")} aria-label="Account of ${name}, ${role}"
+              ><b>${name}</b><span class="role">${role}</span></a
+            >`
+      }<button type="button" @click=${() => this.#leave()}>Sign out</button>`;
   }
 }
 
@@ -85,23 +103,39 @@ function placeOf(/** @type {string} */ path) {
   return first === "projects" ? { id: decodeURIComponent(id), page } : { id: "", page: "" };
 }
 
-const way = (/** @type {string} */ name) =>
-  html`<nav aria-label="Where you are" class="way">
-    <a href=${at("/")}>Projects</a><span aria-hidden="true">/</span><b>${name}</b>
-  </nav>`;
+/**
+ * @param {string} name
+ * @param {boolean} guest
+ */
+const way = (name, guest) =>
+  guest
+    ? html`<span class="way"><b>${name}</b></span>`
+    : html`<nav aria-label="Where you are" class="way">
+        <a href=${at("/")}>Projects</a><span aria-hidden="true">/</span><b>${name}</b>
+      </nav>`;
+
+/** @returns {Array<[string, string]>} */
+const pagesOf = (/** @type {string} */ id) =>
+  PAGES.map(([path, text]) => [projectUrl(id) + path, text]);
+
+/** What a guest link shows. @returns {Array<[string, string]>} */
+const guestPages = (/** @type {string} */ id) => [
+  [mapUrl(id), "Map"],
+  [slicesUrl(id), "Slices"],
+  [reportUrl(id), "Report"],
+];
 
 /**
  * @param {string} id
  * @param {string} page
+ * @param {Array<[string, string]>} pages
  */
-function tabs(id, page) {
-  const here = page && `${page}/`;
+function tabs(id, page, pages) {
+  const here = projectUrl(id) + (page && `${page}/`);
   return html`<nav aria-label="Pages of the project" class="tabs">
-    ${PAGES.map(
-      ([path, text]) =>
-        html`<a href=${projectUrl(id) + path} aria-current=${path === here ? "page" : nothing}
-          >${text}</a
-        >`,
+    ${pages.map(
+      ([href, text]) =>
+        html`<a href=${href} aria-current=${href === here ? "page" : nothing}>${text}</a>`,
     )}
   </nav>`;
 }

@@ -1,7 +1,7 @@
 // What the slices page shows of a 2-D map, which is itself one slice.
 
-import { fileUrl, projectUrl } from "../shared/api.js";
-import { byId, html, render, within } from "../shared/dom.js";
+import { fileUrl, projectUrl, thumbnailUrl } from "../shared/api.js";
+import { byId, html, nothing, render, within } from "../shared/dom.js";
 
 /** @import {ProjectView} from "../shared/http_types" */
 
@@ -14,8 +14,9 @@ const inCm = (/** @type {number} */ m) => Math.round(m * 1000) / 10;
  * Shows the plan in place of cuts and findings.
  * @param {string} id
  * @param {ProjectView} project
+ * @param {boolean} guest who sees the image, not the files
  */
-export function showPlan(id, { summary }) {
+export function showPlan(id, { summary }, guest) {
   const { cell_m, overview_cell_m } = summary.grid;
   // Of an earlier version: there is no overview.
   const shown_m = overview_cell_m || cell_m;
@@ -26,11 +27,19 @@ export function showPlan(id, { summary }) {
   render(
     html`<p>
         This is a 2-D map: one slice at the height of the laser, so no other can be cut. A pixel is
-        ${inCm(shown_m)} cm. ${finer}<a href=${projectUrl(id)}
-          >The page Project shows places and distances.</a
-        >
+        ${inCm(shown_m)} cm.
+        ${
+          guest
+            ? nothing
+            : html`${finer}<a href=${projectUrl(id)}
+                  >The page Project shows places and distances.</a
+                >`
+        }
       </p>
-      <img src=${fileUrl(id, name)} alt="Floor plan: walls black, free white, not seen gray" />`,
+      <img
+        src=${guest ? thumbnailUrl(id, "") : fileUrl(id, name)}
+        alt="Floor plan: walls black, free white, not seen gray"
+      />`,
     main,
   );
   within(document, "main").replaceWith(main);

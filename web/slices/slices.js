@@ -4,8 +4,10 @@ import { idHere } from "../shared/address.js";
 import {
   aboveUrl,
   ApiError,
+  isGuest,
   pickOnSlice,
   readAboveWindow,
+  readCurrentUser,
   readProject,
   readSlice,
   readSliceFacts,
@@ -26,7 +28,7 @@ import { SliceAbove } from "./above.js";
 import { drawPage, first, page, second } from "./drawing.js";
 
 /**
- * @import {SliceImageRequest} from "../shared/http_types"
+ * @import {SliceFacts, SliceImageRequest} from "../shared/http_types"
  * @import {Color, Kind, SliceState, Surface} from "./state.js"
  * @import {Place, SliceView} from "./view.js"
  */
@@ -313,16 +315,19 @@ const draw = () => drawPage(act);
 
 // -- begin
 
-const found = findings(byId("findings"), {
-  id,
-  change,
-  state: () => page.state,
-  ask: () => ask(first),
-  point: (p) => (above.place = p),
-  reload,
-  measured: () => page.picked,
-  outline,
-});
+/** The panels of findings; a guest has none of them: they change, compare and export. */
+const found = { show: () => {}, facts: /** @type {(facts: SliceFacts) => void} */ (() => {}) };
+const fillFindings = () =>
+  findings(byId("findings"), {
+    id,
+    change,
+    state: () => page.state,
+    ask: () => ask(first),
+    point: (p) => (above.place = p),
+    reload,
+    measured: () => page.picked,
+    outline,
+  });
 
 async function reload() {
   page.facts = await readSliceFacts(id, page.state.source);
@@ -351,11 +356,12 @@ async function begin() {
   });
   dark.addEventListener("change", load);
   await attempt(byId("message"), async () => {
-    const project = await readProject(id);
+    const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
+    if (!isGuest(me)) Object.assign(found, fillFindings());
     only("page-head").name = project.name;
     only("map-verdict").facts = factsIn(project.summary);
     document.title = `Slices · ${project.name} · recon4`;
-    if (isPlan(project)) return showPlan(id, project);
+    if (isPlan(project)) return showPlan(id, project, isGuest(me));
     await reload();
     above.walk = page.stretch = await stretchOf();
     const { facts, state } = page;

@@ -46,9 +46,29 @@ SESSIONS = sa.Table(
     sa.Column("address", sa.String, nullable=False),
     sa.Column("agent", sa.String, nullable=False),
     sa.Column("phone_role", sa.String, nullable=True),
+    sa.Column("guest_link", sa.String, nullable=True),
 )
 """``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is the
-role of a phone that the person paired, NULL for a login."""
+role of a phone that the person paired, ``guest_link`` the link of `GUEST_LINKS` that the person
+made and a guest opened; both are NULL for a login."""
+
+GUEST_LINKS = sa.Table(
+    "guest_links",
+    METADATA,
+    sa.Column("id", sa.String, primary_key=True),
+    sa.Column("token_hash", sa.String, unique=True, nullable=False),
+    sa.Column("project", sa.String, nullable=False),
+    sa.Column("label", sa.String, nullable=False),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("created_s", sa.Float, nullable=False),
+    sa.Column("until_s", sa.Float, nullable=False),
+    sa.Column("opened", sa.Integer, nullable=False),
+    sa.Column("opened_s", sa.Float, nullable=True),
+    sa.Column("revoked_s", sa.Float, nullable=True),
+    sa.Column("revoked_by", sa.String, nullable=False),
+)
+"""``person`` is the key of who made it; ``opened`` counts how often, ``opened_s`` is the last time;
+``revoked_s`` is NULL while it is not revoked."""
 
 KNOWN_BROWSERS = sa.Table(
     "browsers",

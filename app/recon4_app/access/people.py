@@ -19,6 +19,8 @@ from recon4_app.errors import LOGIN, Refused, SignInAgain
 class Permission(StrEnum):
     """What a route requires; deny by default: every route names one."""
 
+    SHARED = "shared"
+    """See what a guest link shows: map, slices and report of one project."""
     LOOK = "look"
     """See projects, maps, reports; measure and cut slices."""
     REVIEW = "review"
@@ -27,6 +29,8 @@ class Permission(StrEnum):
     """Upload recordings, start and stop jobs."""
     CAPTURE = "capture"
     """Start and stop live captures."""
+    SHARE = "share"
+    """Make and revoke guest links."""
     ADMINISTER = "administer"
     """People, sessions, audit log."""
 
@@ -36,19 +40,25 @@ class Role(StrEnum):
 
     NOBODY = "nobody"
     """Not signed in; never assigned to an account."""
+    GUEST = "guest"
+    """Came by a guest link to one project; never assigned to an account."""
     VIEWER = "viewer"
     OPERATOR = "operator"
     REVIEWER = "reviewer"
     ADMIN = "admin"
 
 
+_LOOKS = frozenset({Permission.SHARED, Permission.LOOK})
 MAY: dict[Role, frozenset[Permission]] = {
     Role.NOBODY: frozenset(),
-    Role.VIEWER: frozenset({Permission.LOOK}),
-    Role.OPERATOR: frozenset({Permission.LOOK, Permission.PROCESS, Permission.CAPTURE}),
-    Role.REVIEWER: frozenset({Permission.LOOK, Permission.PROCESS, Permission.REVIEW}),
+    Role.GUEST: frozenset({Permission.SHARED}),
+    Role.VIEWER: _LOOKS,
+    Role.OPERATOR: _LOOKS | {Permission.PROCESS, Permission.CAPTURE},
+    Role.REVIEWER: _LOOKS | {Permission.PROCESS, Permission.REVIEW, Permission.SHARE},
     Role.ADMIN: frozenset(Permission),
 }
+ASSIGNABLE = tuple(role for role in Role if role not in (Role.NOBODY, Role.GUEST))
+"""Roles that an account can have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +67,8 @@ class Person:
 
     name: str
     role: Role
+    project: str = ""
+    """The only project that a guest may see; empty = all."""
 
     def may(self, what: Permission) -> bool:
         """Whether the role of this person has a permission."""
@@ -83,6 +95,7 @@ def signed_in_s(connection: HTTPConnection) -> float:
     return found
 
 
+ONE_PROJECT = "a guest link shows the map, the slices and the report of one project, nothing else"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 """Of requests that change nothing."""
 
@@ -105,7 +118,13 @@ def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
             await asyncio.to_thread(audit, connection, what, path, outcome="refused")
             if who is READER:
                 raise Refused("the folder of the projects cannot be written: nothing can change")
+            if who.project:
+                raise Refused(ONE_PROJECT)
             raise Refused(f"{who.name} is a {who.role} here and may not {what}; ask an admin")
+        if who.project and connection.path_params.get("project_id", who.project) != who.project:
+            path = connection.scope["path"]
+            await asyncio.to_thread(audit, connection, what, path, outcome="refused")
+            raise Refused(ONE_PROJECT)
         if connection.scope.get("method", "GET") not in SAFE_METHODS:
             await asyncio.to_thread(log.require_room)
         return who

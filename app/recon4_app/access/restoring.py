@@ -18,8 +18,11 @@ ACCESS_FILE = "access.sqlite"
 
 
 def access_copies(state: Path) -> StateCopies:
-    """The copies of the access database; without sessions, so that none comes back to life."""
-    return StateCopies(state / ACCESS_FILE, without=("sessions", "browsers"))
+    """The copies of the access database.
+
+    Without sessions and guest links, so that none that was ended comes back to life.
+    """
+    return StateCopies(state / ACCESS_FILE, without=("sessions", "browsers", "guest_links"))
 
 
 def restore_access(state: Path) -> str:

@@ -87,6 +87,28 @@ class SessionWatchTimes(Struct, frozen=True, kw_only=True):
 SESSION_WATCH = SessionWatchTimes()
 
 
+class GuestLinkLimits(Struct, frozen=True, kw_only=True):
+    """Guest links."""
+
+    max_days: int = 365
+    """Longest time until a link expires [days]."""
+    max_open: int = 100
+    """Links of a project that are neither expired nor revoked."""
+    max_sessions: int = 20
+    """Browsers that have one link open; the one that came first is signed out."""
+    kept_s: float = 365.0 * 24 * HOUR_S
+    """An expired or revoked link stays in the list for this time [s]."""
+    tries_a_minute: int = 20
+    """Links that one network may open in a minute."""
+    burst: int = 240
+    """Requests at once of all guests of one link …"""
+    per_s: float = 60.0
+    """… and in a second after that."""
+
+
+GUEST_LINK = GuestLinkLimits()
+
+
 class PairingLimits(Struct, frozen=True, kw_only=True):
     """Pairing of phones."""
 

@@ -152,9 +152,9 @@ def access_of(root: Path) -> Iterator[Access]:
 
 
 def _role(text: str) -> Role:
-    from recon4_app.access.people import Role
+    from recon4_app.access.people import ASSIGNABLE, Role
 
-    roles = [one.value for one in Role if one is not Role.NOBODY]
+    roles = [one.value for one in ASSIGNABLE]
     if text not in roles:
         raise typer.BadParameter(f"no role {text!r}; one of {', '.join(roles)}")
     return Role(text)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from recon4.review.approval_state import ApprovalState
 
@@ -99,6 +99,28 @@ class ProjectView:
     """Of the files that are offered."""
     problem: str = ""
     """Files of the project that cannot be read, and why; empty = none."""
+
+
+SHARED_SUMMARY = ("map", "points", "duration_s", "verdict", "findings", "warnings", "grid")
+"""Fields of a summary that the pages of a guest show."""
+
+
+def for_guests(project: ProjectView) -> ProjectView:
+    """What a guest learns of a project: no files, settings, tags or machine figures."""
+    return replace(
+        project,
+        bytes=0,
+        preset="",
+        rig="",
+        files=(),
+        tags=(),
+        stages=tuple(
+            StageView(stage=one.stage, seconds=0.0, peak_bytes=0, finished=one.finished)
+            for one in project.stages
+        ),
+        summary={name: project.summary[name] for name in SHARED_SUMMARY if name in project.summary},
+        problem="",
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

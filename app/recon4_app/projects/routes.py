@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from recon4.review.acknowledgments import report_with_notes
 from recon4.review.state import artifact_keys
 from recon4_app.access.audit import audit
-from recon4_app.access.people import Permission, needs
+from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
@@ -21,14 +21,21 @@ from recon4_app.errors import Conflict
 from recon4_app.names import Name
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
-from recon4_app.projects.model import MAP_IMAGES, FolderEntry, ProjectCard, ProjectView
+from recon4_app.projects.model import (
+    MAP_IMAGES,
+    FolderEntry,
+    ProjectCard,
+    ProjectView,
+    for_guests,
+)
 from recon4_app.projects.trash import Deleted
 from recon4_app.projects.tuning import LOOKS, PROJECT_LIST
 
+LOOK = [Depends(needs(Permission.LOOK))]
+SHARED = [Depends(needs(Permission.SHARED))]
 router = APIRouter(
     prefix="/api",
     tags=["projects"],
-    dependencies=[Depends(needs(Permission.LOOK))],
     responses=problems(404),
 )
 
@@ -73,7 +80,7 @@ class Restored(BaseModel):
     """Name of its folder."""
 
 
-@router.get("/projects", summary="Projects")
+@router.get("/projects", dependencies=LOOK, summary="Projects")
 def list_projects(server: Server) -> list[ProjectCard]:
     """List all projects, the newest first."""
     root = server.settings.root.resolve()
@@ -83,10 +90,11 @@ def list_projects(server: Server) -> list[ProjectCard]:
     ]
 
 
-@router.get("/projects/{project_id}", summary="One project")
-def read_project(project_id: str, server: Server) -> ProjectView:
-    """Read a project with its results and finished stages."""
-    return _compared(server, server.projects.get(project_id))
+@router.get("/projects/{project_id}", dependencies=SHARED, summary="One project")
+def read_project(project_id: str, server: Server, who: Who) -> ProjectView:
+    """Read a project with its results and finished stages; guests get what their pages show."""
+    project = _compared(server, server.projects.get(project_id))
+    return for_guests(project) if who.project else project
 
 
 @router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Change a project")
@@ -105,10 +113,14 @@ def change_project(
 
 
 @router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete a project")
-def delete_project(project_id: str, server: Server, request: Request) -> Deleted:
-    """Move a project to the trash; it can be restored for a week. Not while a job runs."""
+def delete_project(project_id: str, server: Server, request: Request, *, who: Who) -> Deleted:
+    """Move a project to the trash; it can be restored for a week. Not while a job runs.
+
+    Its guest links are revoked, for good.
+    """
     folder = server.projects.folder(project_id)
     _refuse_while_busy(server, project_id)
+    server.access.guests.revoke_all(project_id, who)  # first: another project may get its name
     deleted = server.trash.put(folder)
     server.jobs.move_exports(project_id, deleted.id)
     audit(request, "delete project", project_id)
@@ -140,7 +152,10 @@ def remove_project(deleted_id: str, server: Server, request: Request) -> None:
 
 
 @router.get(
-    "/projects/{project_id}/files/{name}", response_class=FileResponse, summary="Download a result"
+    "/projects/{project_id}/files/{name}",
+    response_class=FileResponse,
+    dependencies=LOOK,
+    summary="Download a result",
 )
 def download(project_id: str, name: str, server: Server) -> FileResponse:
     """Download a result file."""
@@ -150,20 +165,29 @@ def download(project_id: str, name: str, server: Server) -> FileResponse:
     )
 
 
-@router.get("/projects/{project_id}/report", response_class=HTMLResponse, summary="Report")
-def report(project_id: str, server: Server) -> StreamingResponse:
-    """Show the quality report; that of a draft with the notes of reviewers."""
+@router.get(
+    "/projects/{project_id}/report",
+    response_class=HTMLResponse,
+    dependencies=SHARED,
+    summary="Report",
+)
+def report(project_id: str, server: Server, who: Who) -> Response:
+    """Show the quality report; that of a draft with the notes of reviewers, except to guests."""
     path = server.projects.result(project_id, "report.html")
+    headers = {"Content-Security-Policy": REPORT_POLICY}
+    if who.project:
+        return FileResponse(path, media_type="text/html; charset=utf-8", headers=headers)
     return StreamingResponse(
         report_with_notes(server.projects.folder(project_id), path),
         media_type="text/html; charset=utf-8",
-        headers={"Content-Security-Policy": REPORT_POLICY},
+        headers=headers,
     )
 
 
 @router.get(
     "/projects/{project_id}/findings.{ending}",
     response_class=PlainTextResponse,
+    dependencies=LOOK,
     summary="Findings as a table or for a GIS",
 )
 def findings(
@@ -179,7 +203,12 @@ def findings(
     return PlainTextResponse(text, media_type=FINDINGS_TYPES[ending], headers=head)
 
 
-@router.get("/projects/{project_id}/thumbnail", response_class=FileResponse, summary="Thumbnail")
+@router.get(
+    "/projects/{project_id}/thumbnail",
+    response_class=FileResponse,
+    dependencies=SHARED,
+    summary="Thumbnail",
+)
 async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
     """The map from above as PNG image, made at the first request; a 2-D map is its own image."""
     artifact = await run_in_threadpool(server.projects.map_of_any_kind, project_id)

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from recon4.findings.summary_notes import SaidFinding
 from recon4.model.usability import MapVerdict
 from recon4.review.approval_state import ApprovalState
-from recon4.review.teamwork import Agreement, PairWork
+from recon4.review.teamwork import OpinionAgreement, PairWork
 from recon4_app.names import Note
 
 Frame = Annotated[int, Field(ge=0, le=1 << 40)]
@@ -126,7 +126,7 @@ class WorkView:
     comments: int
     opinions: list[OpinionView]
     """Of each person who decided, one."""
-    agreement: Agreement
+    agreement: OpinionAgreement
     """What they say together."""
     waits: bool
     """Whether a second opinion was asked for, and two people do not agree yet."""

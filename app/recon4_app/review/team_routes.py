@@ -8,7 +8,7 @@ from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
 from recon4_app.access.people import LOCAL, MAY, Permission, Who
 from recon4_app.deps import Server, ServerParts
-from recon4_app.error_responses import ProblemDetail
+from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest
 from recon4_app.review.model import Frame, ReviewView
 from recon4_app.review.routes import LOOK, PREFIX, REVIEW, view_of
@@ -17,12 +17,12 @@ from recon4_app.review.team_model import CommentView, LookerView, Looking, NewWo
 router = APIRouter(
     prefix=PREFIX,
     tags=["review"],
-    responses={404: {"model": ProblemDetail}, 422: {"model": ProblemDetail}},
+    responses=problems(404, 422),
 )
 
 
 @router.post("/work", status_code=201, dependencies=REVIEW, summary="Share the work on a pair")
-def share_work(project_id: str, new: NewWork, server: Server, *, who: Who) -> ReviewView:
+def work_on_pair(project_id: str, new: NewWork, server: Server, *, who: Who) -> ReviewView:
     """Assign, comment, leave for later, ask for a second opinion or withdraw that question.
 
     A row of the journal; no decision changes. An approval waits for second opinions.

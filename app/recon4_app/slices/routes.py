@@ -17,11 +17,11 @@ from recon4.slices.compare import Comparison
 from recon4.slices.control_points import ControlPreview
 from recon4.slices.double_places import DoubleReport
 from recon4.slices.residuals import ControlReport
-from recon4_app.access.people import Permission, needs
+from recon4_app.access.people import ONE_PROJECT, Permission, Who, needs
 from recon4_app.compute_pool.model import Terms
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
-from recon4_app.errors import BadRequest
+from recon4_app.errors import BadRequest, Refused
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
 from recon4_app.projects.routes import REPORT_POLICY
@@ -48,6 +48,20 @@ from recon4_app.slices.store import Asking
 Second = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
 """Time after the start of the walk [s]."""
 LOOK = [Depends(needs(Permission.LOOK))]
+
+
+def of_shared_map(who: Who, source: str = "", reference: str = "") -> None:
+    """Check that a guest asks for the shared map: a source may be another project.
+
+    Raises:
+        Refused: If a guest asks for another source, or for a reference.
+    """
+    if who.project and (source or reference):
+        raise Refused(ONE_PROJECT)
+
+
+SHARED = [Depends(needs(Permission.SHARED))]
+SHARED_MAP = [*SHARED, Depends(of_shared_map)]
 PROCESS = [Depends(needs(Permission.PROCESS))]
 SURFACES = "surfaces.json"
 """Name of the file that a child process writes in its working folder."""
@@ -55,27 +69,26 @@ SURFACES = "surfaces.json"
 router = APIRouter(
     prefix="/api/projects/{project_id}/slices",
     tags=["slices"],
-    dependencies=LOOK,
     responses=problems(404, 422),
 )
 page = APIRouter()
 
 
-@page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=LOOK)
+@page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=SHARED)
 def slices_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
     return page_response("slices/slices.html", request)
 
 
-@router.get("", summary="Facts about the map")
+@router.get("", dependencies=SHARED_MAP, summary="Facts about the map")
 async def read_facts(
-    project_id: str, server: Server, caller: CalledBy, *, source: str = ""
+    project_id: str, server: Server, caller: CalledBy, *, who: Who, source: str = ""
 ) -> SliceFacts:
-    """Bounds, frame, fields, references and the other maps to compare with."""
-    slices = server.slices
+    """Bounds, frame, fields; for people who signed in references and other maps to compare with."""
+    slices, guest = server.slices, bool(who.project)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    references = await run_in_threadpool(slices.references, project_id)
-    sources = await run_in_threadpool(slices.sources, project_id)
+    references = [] if guest else await run_in_threadpool(slices.references, project_id)
+    sources = [] if guest else await run_in_threadpool(slices.sources, project_id)
     approval = await run_in_threadpool(slices.approval, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
     return await caller.wait(
@@ -85,14 +98,15 @@ async def read_facts(
     )
 
 
-@router.post("/image", summary="An image of a slice")
+@router.post("/image", dependencies=SHARED, summary="An image of a slice")
 async def slice_image(
-    project_id: str, ask: SliceImageRequest, server: Server, *, caller: CalledBy
+    project_id: str, ask: SliceImageRequest, server: Server, *, caller: CalledBy, who: Who
 ) -> SliceImageView:
     """All points of the map in the window, at full resolution.
 
     Of the requests of one ``page`` only the latest gets an image; the others get 409.
     """
+    of_shared_map(who, ask.source, ask.reference)
     slices = server.slices
     evidence = await run_in_threadpool(slices.evidence_to_show, project_id, ask.source)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
@@ -113,7 +127,9 @@ async def slice_image(
     )
 
 
-@router.get("/overview", response_class=FileResponse, summary="The map from above")
+@router.get(
+    "/overview", response_class=FileResponse, dependencies=SHARED_MAP, summary="The map from above"
+)
 async def overview(
     project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> FileResponse:
@@ -122,7 +138,7 @@ async def overview(
     return FileResponse(image, media_type="image/png")
 
 
-@router.get("/overview/window", summary="Window of the image from above")
+@router.get("/overview/window", dependencies=SHARED_MAP, summary="Window of the image from above")
 async def overview_window(
     project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> WindowSpec:
@@ -131,7 +147,7 @@ async def overview_window(
     return await run_in_threadpool(readers.read_window, image.with_suffix(".json"))
 
 
-@router.get("/walk", summary="Where the walk was during a stretch")
+@router.get("/walk", dependencies=SHARED, summary="Where the walk was during a stretch")
 async def walk(
     project_id: str, server: Server, caller: CalledBy, *, start_s: Second, end_s: Second
 ) -> WalkStretch:
@@ -144,9 +160,12 @@ async def walk(
     )
 
 
-@router.post("/pick", summary="The point of the map at a position on a slice")
-async def pick(project_id: str, ask: PickRequest, server: Server, *, caller: CalledBy) -> PickView:
+@router.post("/pick", dependencies=SHARED, summary="The point of the map at a position on a slice")
+async def pick(
+    project_id: str, ask: PickRequest, server: Server, *, caller: CalledBy, who: Who
+) -> PickView:
     """Coordinates of the nearest full-resolution point, in the map and in its CRS."""
+    of_shared_map(who, ask.source)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
     ask.plane.slice_plane()  # an invalid plane is rejected before the request waits
@@ -155,7 +174,7 @@ async def pick(project_id: str, ask: PickRequest, server: Server, *, caller: Cal
     )
 
 
-@router.get("/doubles", summary="Double walls")
+@router.get("/doubles", dependencies=LOOK, summary="Double walls")
 async def doubles(
     project_id: str, server: Server, caller: CalledBy, *, source: str = ""
 ) -> DoubleReport:
@@ -174,7 +193,7 @@ async def doubles(
     return await run_in_threadpool(readers.read_double_walls, path)
 
 
-@router.post("/compare", summary="Compare slices with a reference")
+@router.post("/compare", dependencies=LOOK, summary="Compare slices with a reference")
 async def compare(
     project_id: str, ask: CompareRequest, server: Server, *, caller: CalledBy
 ) -> Comparison:
@@ -196,7 +215,9 @@ def remove_reference(project_id: str, reference_id: str, server: Server) -> Resp
     return Response(status_code=204)  # without a content type: there is no JSON in it
 
 
-@router.get("/export.{ending}", response_class=FileResponse, summary="Export slices")
+@router.get(
+    "/export.{ending}", response_class=FileResponse, dependencies=LOOK, summary="Export slices"
+)
 async def export(
     project_id: str,
     ending: Literal["png", "svg", "pdf", "tif", "dxf", "laz", "csv"],
@@ -251,7 +272,7 @@ async def preview_control(
     )
 
 
-@router.get("/control", summary="Control and check points")
+@router.get("/control", dependencies=LOOK, summary="Control and check points")
 def read_control(project_id: str, server: Server) -> ControlState:
     """The stored points, with their positions in the map."""
     return server.slices.control(project_id)
@@ -263,7 +284,7 @@ def keep_control(project_id: str, state: ControlState, server: Server) -> Contro
     return server.slices.keep_control(project_id, state)
 
 
-@router.get("/control/report", summary="Residuals")
+@router.get("/control/report", dependencies=LOOK, summary="Residuals")
 async def control_report(project_id: str, server: Server, caller: CalledBy) -> ControlReport:
     """Map minus survey, separate for control and check points, with every limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
@@ -274,7 +295,7 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> C
     )
 
 
-@router.get("/control/report.{ending}", summary="Residuals as a file")
+@router.get("/control/report.{ending}", dependencies=LOOK, summary="Residuals as a file")
 async def control_file(
     project_id: str,
     ending: Literal["csv", "html"],
@@ -302,7 +323,7 @@ async def control_file(
     return HTMLResponse(text, headers={"Content-Security-Policy": REPORT_POLICY})
 
 
-@router.get("/control/surface", summary="The map's surface at a surveyed point")
+@router.get("/control/surface", dependencies=LOOK, summary="The map's surface at a surveyed point")
 async def surface(project_id: str, point: str, server: Server, *, caller: CalledBy) -> SurfacePoint:
     """Position of a surveyed point in the map, and its foot on the nearest surface."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
@@ -318,7 +339,9 @@ async def surface(project_id: str, point: str, server: Server, *, caller: Called
     )
 
 
-@router.get("/compare.csv", response_class=PlainTextResponse, summary="The table as CSV")
+@router.get(
+    "/compare.csv", response_class=PlainTextResponse, dependencies=LOOK, summary="The table as CSV"
+)
 async def compare_csv(
     project_id: str, ask: str, server: Server, *, caller: CalledBy
 ) -> PlainTextResponse:

@@ -249,7 +249,7 @@ def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
 
 
 @pytest.mark.study
-@looks("desktop light", "phone dark")
+@looks("desktop light")
 def test_two_people_share_a_pair(opened, root, screenshot):
     page = opened
     page.keyboard.press("j")
@@ -276,5 +276,6 @@ def test_two_people_share_a_pair(opened, root, screenshot):
     page.keyboard.press("r")
     expect(team.locator(".agreement")).to_have_text("✓ rita and local agree: rejected")
     page.keyboard.press("s")
+    expect(page.locator(".queue li").first).to_contain_text("later")
     page.get_by_label("Which pairs").select_option("later")
     expect(page.locator(".queue li")).to_have_count(1)

@@ -11,7 +11,7 @@ from msgspec import structs
 from recon4_app.access.login.login_service import LoginOrigin
 from recon4_app.access.login.sessions import LIVES, form_token
 from recon4_app.access.middleware import session as session_middleware
-from recon4_app.access.people import Role
+from recon4_app.access.people import ASSIGNABLE, Role
 from recon4_app.errors import Conflict, NotFound, Refused, WeakPassword, WrongPassword
 
 PASSWORD = "three green owls dance"
@@ -21,7 +21,7 @@ HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")
 # -- sessions
 
 
-@pytest.mark.parametrize("role", LIVES)
+@pytest.mark.parametrize("role", ASSIGNABLE)
 def test_a_session_ends_when_it_was_idle_too_long_and_not_before(access, clock, role):
     access.accounts.add("Anna", role, PASSWORD)
     token = access.sessions.begin("Anna", address="?", agent="")
@@ -35,7 +35,7 @@ def test_a_session_ends_when_it_was_idle_too_long_and_not_before(access, clock, 
     assert access.sessions.cached_sessions(token) is None
 
 
-@pytest.mark.parametrize("role", LIVES)
+@pytest.mark.parametrize("role", ASSIGNABLE)
 def test_a_session_in_use_ends_at_last(access, clock, role):
     access.accounts.add("Anna", role, PASSWORD)
     token = access.sessions.begin("Anna", address="?", agent="")

@@ -5,7 +5,7 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.review.decisions import Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, append, broken, read_decided, read_rows
-from recon4.review.teamwork import Agreement, second_opinion_missing, team_work
+from recon4.review.teamwork import OpinionAgreement, second_opinion_missing, team_work
 from tests.unit.review.test_decisions import HERE, MEASURED
 
 PAIR = (2, 7)
@@ -27,13 +27,13 @@ def of(*rows):
 def test_two_people_agree_disagree_and_change_their_mind():
     accepted, rejected = row("accept"), row("reject", "Jan")
 
-    assert of(accepted).agreement is Agreement.ONE
-    assert of(accepted, row("accept", "Jan")).agreement is Agreement.AGREE
-    assert of(accepted, rejected).agreement is Agreement.DISAGREE
-    assert of(accepted, rejected, row("accept", "Jan")).agreement is Agreement.AGREE
-    assert of(accepted, row("accept")).agreement is Agreement.ONE  # the same person twice
-    assert of(accepted, rejected, undo()).agreement is Agreement.ONE
-    assert of(accepted, rejected, row("restore", "Jan")).agreement is Agreement.NONE
+    assert of(accepted).agreement is OpinionAgreement.ONE
+    assert of(accepted, row("accept", "Jan")).agreement is OpinionAgreement.AGREE
+    assert of(accepted, rejected).agreement is OpinionAgreement.DISAGREE
+    assert of(accepted, rejected, row("accept", "Jan")).agreement is OpinionAgreement.AGREE
+    assert of(accepted, row("accept")).agreement is OpinionAgreement.ONE  # the same person twice
+    assert of(accepted, rejected, undo()).agreement is OpinionAgreement.ONE
+    assert of(accepted, rejected, row("restore", "Jan")).agreement is OpinionAgreement.NONE
 
 
 def test_an_opinion_about_an_earlier_measurement_is_void():

@@ -13,7 +13,7 @@ from sqlalchemy.exc import IntegrityError
 
 from recon4_app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
 from recon4_app.access.login import passwords
-from recon4_app.access.people import Role
+from recon4_app.access.people import ASSIGNABLE, Role
 from recon4_app.errors import Conflict, NotFound, Refused
 
 NAME = re.compile(r"[^\W_](?:[\w .'@+-]{0,62}[\w.])?")
@@ -152,8 +152,8 @@ def _admins() -> sa.Select[int]:
 
 
 def _assignable(role: Role) -> Role:
-    if role is Role.NOBODY:
-        raise Refused("the role nobody cannot be assigned; disable the person instead")
+    if role not in ASSIGNABLE:
+        raise Refused(f"the role {role} cannot be assigned; disable the person instead")
     return role
 
 

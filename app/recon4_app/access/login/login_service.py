@@ -14,6 +14,7 @@ import sqlalchemy as sa
 
 from recon4_app.access.audit import AuditLog
 from recon4_app.access.database import open_database
+from recon4_app.access.guests.guest_links import GuestLinks
 from recon4_app.access.login import passwords
 from recon4_app.access.login.accounts import Account, Accounts, lookup_key
 from recon4_app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
@@ -157,6 +158,7 @@ class Access:
     logins: LoginService
     engine: sa.Engine
     pairings: Pairings
+    guests: GuestLinks
     notice: str = ""
     """Notice for users: set when the database was damaged, else empty."""
     rates: dict[str, TokenBuckets] = field(default_factory=dict)
@@ -194,4 +196,5 @@ def open_access(
         logins=LoginService(accounts, sessions),
         engine=engine,
         pairings=Pairings(),
+        guests=GuestLinks(engine, sessions, clock),
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -9,6 +10,7 @@ from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from recon4_app.access.audit import address, audit
+from recon4_app.access.guests.guest_links import GuestEntry
 from recon4_app.access.login.login_service import Access, LoginOrigin, LoginResult
 from recon4_app.access.login.sessions import LIVES, PHONE_LIFE, Session, form_token
 from recon4_app.access.middleware.session import CookieNames, cookie, cookie_names
@@ -37,6 +39,8 @@ router = APIRouter(
 ALLOW_ANONYMOUS = Depends(allow_anonymous)
 SIGNED_IN = Depends(needs(Permission.LOOK))
 """Every signed-in person may look."""
+WITH_SESSION = Depends(needs(Permission.SHARED))
+"""Guests, too."""
 INTERACTIVE = Depends(interactive_login)
 """Rejects paired phones."""
 
@@ -141,7 +145,7 @@ def login_again(
     return _me(access, session.person, role=session.role, token=token)
 
 
-@router.post("/logout", status_code=204, dependencies=[SIGNED_IN])
+@router.post("/logout", status_code=204, dependencies=[WITH_SESSION])
 def logout(request: Request, response: Response, server: Server) -> None:
     """Sign out: end this session; its open streams and WebSockets close."""
     access = _with_login(server.access)
@@ -156,7 +160,7 @@ def logout(request: Request, response: Response, server: Server) -> None:
         response.headers["Clear-Site-Data"] = '"cache", "storage"'
 
 
-@router.get("/me", dependencies=[SIGNED_IN])
+@router.get("/me", dependencies=[WITH_SESSION])
 def read_me(request: Request, who: Who, server: Server) -> Me:
     """The signed-in person, the person's permissions, and the token for changes."""
     token = cookie(request.scope, _cookies(request).session) if server.access.login else ""
@@ -209,6 +213,15 @@ def enter_paired(
     access.log.add(grant.person, caller.address, action="pair phone", what=grant.role)
     _set_cookie(request, response, token, lasts_s=PHONE_LIFE.whole_s)
     return _me(access, grant.person, role=grant.role, token=token)
+
+
+def enter_guest(access: Access, request: Request, response: Response, *, entry: GuestEntry) -> None:
+    """Set the cookie of a guest; the guest's session that this browser had before ends."""
+    before: Session | None = request.scope["state"].get("session")
+    if before is not None and access.sessions.alive(before.id):
+        access.sessions.end(before.id)
+    lasts_s = min(LIVES[Role.GUEST].whole_s, entry.link.until_s - time.time())
+    _set_cookie(request, response, entry.token, lasts_s=max(1.0, lasts_s))
 
 
 def _with_login(access: Access) -> Access:

@@ -20,11 +20,23 @@ import sqlalchemy as sa
 
 from recon4.units import HOUR_S
 from recon4_app.access.audit import printable
-from recon4_app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
+from recon4_app.access.database import (
+    GUEST_LINKS,
+    KNOWN_BROWSERS,
+    PEOPLE,
+    SESSIONS,
+    writing,
+)
 from recon4_app.access.login.accounts import lookup_key
-from recon4_app.access.people import Person, Role
+from recon4_app.access.people import MAY, Permission, Person, Role
 from recon4_app.access.tuning import SESSION_TIMES
 from recon4_app.errors import NoRoom, NotFound
+
+GUEST_NAME = "guest: "
+"""Begins the name of a guest; no account has a colon in its name."""
+MAY_INVITE = PEOPLE.c.role.in_([role for role in Role if Permission.SHARE in MAY[role]])
+LINK_OPENS = GUEST_LINKS.c.revoked_s.is_(None) & MAY_INVITE
+"""A link that was not revoked, of somebody who may still make one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +50,7 @@ class Life:
 
 
 LIVES = {
+    Role.GUEST: Life(12 * HOUR_S, 2 * HOUR_S),
     Role.VIEWER: Life(12 * HOUR_S, 12 * HOUR_S),
     Role.OPERATOR: Life(12 * HOUR_S, 2 * HOUR_S),
     Role.REVIEWER: Life(12 * HOUR_S, 2 * HOUR_S),
@@ -66,11 +79,18 @@ class Session:
     """User-Agent header of the browser."""
     phone: bool = False
     """Whether it is a paired phone; ``person`` paired it, ``role`` is the phone's own."""
+    guest_link: str = ""
+    """Id of the guest link that began it; empty = a login or a phone."""
+    project: str = ""
+    """The only project that a guest may see; empty = all."""
+    until_s: float = math.inf
+    """When the guest link expires, seconds since 1970."""
 
     def over(self, now_s: float) -> bool:
         """Whether the session has expired."""
         life = PHONE_LIFE if self.phone else LIVES[self.role]
-        return now_s - self.began_s > life.whole_s or now_s - self.seen_s > life.idle_s
+        old = now_s - self.began_s > life.whole_s or now_s - self.seen_s > life.idle_s
+        return old or now_s >= self.until_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +103,7 @@ class AuthenticatedSession:
     @property
     def person(self) -> Person:
         """The person of the session."""
-        return Person(self.session.person, self.session.role)
+        return Person(self.session.person, self.session.role, self.session.project)
 
 
 class Sessions:
@@ -102,15 +122,8 @@ class Sessions:
             Its token, which is stored nowhere.
         """
         token, now_s = new_token(), self._clock()
-        row = {
-            "id": secrets.token_hex(8),
-            "token_hash": hash_of(token),
-            "person": lookup_key(name),
-            "address": address,
-            "agent": printable(agent[:120]),
-            "phone_role": phone_role,
-            **dict.fromkeys(("began_s", "proved_s", "seen_s"), now_s),
-        }
+        row = session_row(token, now_s, address=address, agent=agent)
+        row |= {"person": lookup_key(name), "phone_role": phone_role}
         longest_s = max(life.whole_s for life in LIVES.values())
         with writing(self._engine) as connection:
             old = SESSIONS.delete().where(SESSIONS.c.began_s < now_s - longest_s)
@@ -170,8 +183,13 @@ class Sessions:
         return max(0.0, age_s) if age_s > -SESSION_TIMES.clock_step_s else math.inf
 
     def all(self, *, person: str | None = None) -> list[Session]:
-        """Sessions that have not expired, the latest first; of one person, or of all."""
-        mine = SESSIONS.c.person == lookup_key(person) if person is not None else sa.true()
+        """Sessions that have not expired, the latest first; of one person, or of all.
+
+        Those of guests are listed with their links (`recon4_app.access.guests`).
+        """
+        mine = SESSIONS.c.guest_link.is_(None)
+        if person is not None:
+            mine &= SESSIONS.c.person == lookup_key(person)
         now_s = self._clock()
         return [session for session in self._select(mine) if not session.over(now_s)]
 
@@ -215,13 +233,24 @@ class Sessions:
         return known_s is not None and self._clock() - known_s < SESSION_TIMES.browser_known_s
 
     def _select(self, condition: sa.ColumnElement[bool]) -> list[Session]:
+        own = ("id", "began_s", "proved_s", "seen_s", "address", "agent")
+        link = GUEST_LINKS.c
+        guest = SESSIONS.c.guest_link.is_not(None)
         join = sa.join(SESSIONS, PEOPLE, SESSIONS.c.person == PEOPLE.c.key)
-        left_out = ("token_hash", "person", "phone_role")
-        own = [column for column in SESSIONS.c if column.name not in left_out]
-        role = sa.func.coalesce(SESSIONS.c.phone_role, PEOPLE.c.role).label("role")
-        phone = SESSIONS.c.phone_role.is_not(None).label("phone")
-        query = sa.select(*own, PEOPLE.c.name.label("person"), role, phone)
-        query = query.select_from(join).where(condition, ~PEOPLE.c.disabled)
+        join = sa.outerjoin(join, GUEST_LINKS, SESSIONS.c.guest_link == link.id)
+        query = sa.select(
+            *(SESSIONS.c[name] for name in own),
+            sa.case((guest, GUEST_NAME + link.label), else_=PEOPLE.c.name).label("person"),
+            sa.case(
+                (guest, Role.GUEST.value),
+                else_=sa.func.coalesce(SESSIONS.c.phone_role, PEOPLE.c.role),
+            ).label("role"),
+            SESSIONS.c.phone_role.is_not(None).label("phone"),
+            sa.func.coalesce(link.id, "").label("guest_link"),
+            sa.func.coalesce(link.project, "").label("project"),
+            sa.func.coalesce(link.until_s, math.inf).label("until_s"),
+        )
+        query = query.select_from(join).where(condition, ~PEOPLE.c.disabled, ~guest | LINK_OPENS)
         with self._engine.connect() as connection:
             rows = connection.execute(query.order_by(SESSIONS.c.began_s.desc())).mappings()
             return [Session(**{**row, "role": Role(row["role"])}) for row in rows]
@@ -231,6 +260,17 @@ class Sessions:
             changed: Any = connection.execute(statement)
             self._cached.clear()
             return int(changed.rowcount)
+
+
+def session_row(token: str, now_s: float, *, address: str, agent: str) -> dict[str, object]:
+    """Columns of a session that begins now."""
+    return {
+        "id": secrets.token_hex(8),
+        "token_hash": hash_of(token),
+        "address": address,
+        "agent": printable(agent[:120]),
+        **dict.fromkeys(("began_s", "proved_s", "seen_s"), now_s),
+    }
 
 
 def new_token() -> str:

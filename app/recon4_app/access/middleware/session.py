@@ -15,14 +15,15 @@ from recon4_app.access.login.login_backoff import TokenBuckets
 from recon4_app.access.login.login_service import Access
 from recon4_app.access.login.sessions import AuthenticatedSession, Session, form_token
 from recon4_app.access.middleware.rejection import Rejection, note
-from recon4_app.access.people import NOBODY, SAFE_METHODS
-from recon4_app.access.tuning import SESSION_WATCH
+from recon4_app.access.people import NOBODY, SAFE_METHODS, Role
+from recon4_app.access.tuning import GUEST_LINK, SESSION_WATCH
 from recon4_app.network.behind import prefix_of, public_path, route_path
 
 FORM_HEADER = "X-Recon4-Token"
 
 PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
-OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
+GUESTS = frozenset({"/guest", "/api/guests/open"})
+OPEN_PATHS = PAIRING | GUESTS | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
 """Paths answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
 
@@ -61,6 +62,7 @@ class SessionMiddleware:
     def __init__(self, app: ASGIApp) -> None:
         self._app = app
         self._requests = TokenBuckets(burst=60, per_s=20.0)
+        self._guests = TokenBuckets(burst=GUEST_LINK.burst, per_s=GUEST_LINK.per_s)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
@@ -89,11 +91,12 @@ class SessionMiddleware:
 
     def _judge(self, scope: Scope, authenticated: AuthenticatedSession | None) -> Rejection | None:
         path = route_path(scope)
-        if path.startswith(OPEN_FOLDER) or (authenticated is None and path in OPEN_PATHS):
+        stranger = authenticated is None or authenticated.person.role is Role.GUEST
+        if path.startswith(OPEN_FOLDER) or (stranger and path in OPEN_PATHS):
             return None
         if authenticated is None:
             return sign_in_first(scope)
-        if wait_s := self._requests.take(authenticated.session.id):
+        if wait_s := self._wait_s(authenticated.session):
             retry = {"Retry-After": str(int(wait_s) + 1)}
             return Rejection(429, "TooMany", "too many requests at a time", retry)
         if scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
@@ -102,6 +105,13 @@ class SessionMiddleware:
                 detail = f"the header {FORM_HEADER} must carry the token of /api/me"
                 return Rejection(403, "StaleToken", detail)
         return None
+
+    def _wait_s(self, session: Session) -> float:
+        """How long a request must wait; all guests of a link wait together."""
+        wait_s = self._requests.take(session.id)
+        if not wait_s and session.guest_link:
+            wait_s = self._guests.take(session.guest_link)
+        return wait_s
 
 
 class SessionMonitor:

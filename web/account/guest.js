@@ -1,0 +1,24 @@
+// Opens a guest link: exchanges the token in the fragment for a session, and shows the map.
+
+import { forgetFragment } from "../shared/address.js";
+import { isSignedIn, mapUrl, openGuestLink } from "../shared/api.js";
+import { attempt, byId } from "../shared/dom.js";
+
+/** The token, and the view that the link shows: "TOKEN?camera=…". */
+const [token, query] = location.hash.slice(1).split(/\?(.*)/s);
+forgetFragment();
+
+async function open() {
+  if (await isSignedIn().catch(() => false)) {
+    byId("words").textContent =
+      "This browser is signed in already: sign out to see what a guest sees.";
+    return;
+  }
+  const place = token && (await attempt(byId("message"), () => openGuestLink(token)));
+  if (place) return location.replace(mapUrl(place.project) + (query ? `?${query}` : ""));
+  byId("words").textContent = token
+    ? "This link opens nothing."
+    : "Open the link that you were given; its address ends with a long word.";
+}
+
+open();

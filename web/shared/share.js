@@ -1,0 +1,164 @@
+// The dialog "Share…": makes guest links to a project, lists and revokes them.
+
+import { guestUrl, listGuestLinks, makeGuestLink, revokeGuestLink } from "./api.js";
+import { closeButton, openDialog } from "./dialog.js";
+import {
+  asError,
+  fields,
+  html,
+  nothing,
+  remedyLink,
+  render,
+  repeat,
+  targetOf,
+  within,
+} from "./dom.js";
+import { when } from "./format.js";
+
+/** @import {GuestLink} from "./http_types" */
+
+const DAYS = [1, 7, 30, 90, 365];
+const USUAL_DAYS = 30;
+
+/**
+ * Opens the dialog.
+ * @param {string} id of the project
+ * @param {() => string} query of the view that a new link shows first; "" = the whole map
+ */
+export async function openShare(id, query = () => "") {
+  const state = {
+    links: /** @type {GuestLink[] | null} */ (null),
+    login: true,
+    made: "", // address of the new link
+    copied: false,
+    problem: /** @type {unknown} */ (null),
+  };
+  const dialog = openDialog("Share with a guest", html`<div></div>`);
+  dialog.classList.add("share");
+  const place = within(dialog, "div");
+
+  async function read() {
+    const { login, links } = await listGuestLinks(id);
+    Object.assign(state, { login, links });
+  }
+
+  async function attempt(/** @type {() => Promise<unknown>} */ action) {
+    state.problem = null;
+    try {
+      await action();
+      await read();
+    } catch (error) {
+      state.problem = error;
+    }
+    draw();
+  }
+
+  const make = (/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const form = /** @type {HTMLFormElement} */ (targetOf(event).closest("form"));
+    const { label, days } = fields(form);
+    return attempt(async () => {
+      const link = { label: label.value.trim(), days: Number(days.value) };
+      const { token } = await makeGuestLink(id, link);
+      Object.assign(state, { made: guestUrl(token, query()), copied: false });
+      form.reset();
+    });
+  };
+
+  async function copy() {
+    // Browsers have a clipboard on https and on this computer only.
+    await navigator.clipboard?.writeText(state.made);
+    state.copied = Boolean(navigator.clipboard);
+    if (!state.copied) within(dialog, ".made input", HTMLInputElement).select();
+    draw();
+  }
+
+  function draw() {
+    const { links, login, problem } = state;
+    render(
+      html`<p class="quiet">
+          Anyone who has a link sees the map, the slices and the report of this project; no other
+          project, no jobs, no people, no notes. Nothing can be changed or downloaded.
+        </p>
+        ${login ? form() : html`<p>This server has no login, so it has no guests.</p>`}
+        ${state.made ? made() : nothing}
+        <p class="error" role="alert">${problem ? problemText(problem) : nothing}</p>
+        <h3>Links (${links?.filter(({ works }) => works).length ?? "…"} open)</h3>
+        <ul class="links">
+          ${repeat(links ?? [], (link) => link.id, row)}
+        </ul>
+        ${links?.length === 0 ? html`<p class="quiet">None yet</p>` : nothing}
+        <div class="buttons">${closeButton("Close")}</div>`,
+      place,
+    );
+  }
+
+  const form = () =>
+    html`<form @submit=${make}>
+      <label
+        ><span>For whom</span
+        ><input name="label" maxlength="64" required autocomplete="off" placeholder="Client"
+      /></label>
+      <label
+        ><span>Works for</span
+        ><select name="days">
+          ${DAYS.map(
+            (days) =>
+              html`<option value=${days} ?selected=${days === USUAL_DAYS}>
+                ${days} ${days === 1 ? "day" : "days"}
+              </option>`,
+          )}
+        </select></label
+      >
+      <button class="primary">Make a link</button>
+    </form>`;
+
+  const made = () =>
+    html`<div class="made" role="status">
+      <label
+        ><span>The link: copy it now, it is shown this once</span
+        ><input readonly .value=${state.made}
+      /></label>
+      <button type="button" @click=${copy}>${state.copied ? "✓ Copied" : "Copy"}</button>
+    </div>`;
+
+  const row = (/** @type {GuestLink} */ link) =>
+    html`<li class=${link.works ? "" : "ended"}>
+      <p><strong>${link.label}</strong> ${stateText(link)}</p>
+      <p class="quiet">${historyText(link)}</p>
+      ${
+        link.works
+          ? html`<button
+              type="button"
+              aria-label="Revoke the link for ${link.label}"
+              @click=${() => attempt(() => revokeGuestLink(id, link.id))}
+            >
+              Revoke
+            </button>`
+          : nothing
+      }
+    </li>`;
+
+  draw();
+  await attempt(async () => {});
+}
+
+function problemText(/** @type {unknown} */ problem) {
+  const { message, remedy } = asError(problem);
+  return html`${message}${remedy ? html` ${remedyLink(remedy)}` : nothing}`;
+}
+
+const at = (/** @type {number} */ seconds) => when(new Date(1000 * seconds).toISOString());
+
+/** Whether a link works, and until when. */
+function stateText(/** @type {GuestLink} */ { works, revoked_s, revoked_by, until_s }) {
+  if (revoked_s) return `✕ revoked ${at(revoked_s)} by ${revoked_by}`;
+  if (works) return `works until ${at(until_s)}`;
+  return 1000 * until_s < Date.now() ? `✕ expired ${at(until_s)}` : "✕ its maker may not share";
+}
+
+const historyText = (/** @type {GuestLink} */ { by, created_s, opened, opened_s }) =>
+  `by ${by}, ${at(created_s)} · ` +
+  (opened_s
+    ? `opened ${opened === 1 ? "once" : `${opened} times, last`} ${at(opened_s)}`
+    : "not opened yet");
