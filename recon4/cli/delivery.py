@@ -71,8 +71,8 @@ def deliver(
         typer.Option(
             help="What is in it, with commas: copc.laz, laz, ply, pcd, xyz, e57, plan.dxf, "
             "plan.geojson, orthophoto.tif, dtm.tif, dsm.tif, contours.dxf, poses.txt, "
-            "findings.csv, findings.geojson; default: copc.laz, findings.csv. Reports are always "
-            "in it."
+            "layers.gpkg, findings.csv, findings.geojson; default: copc.laz, findings.csv. Reports "
+            "are always in it."
         ),
     ] = None,
     crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",

@@ -91,7 +91,22 @@ def write_kind(
         return 0, f"{export_poses(project, path, draft=wanted.options.draft)} poses"
     if kind.name.startswith("findings"):
         return 0, f"{export_findings(project, path)} findings"
+    if kind.name == "layers.gpkg":
+        return 0, _write_layers(project, path, wanted, progress=progress)
     return 0, _write_product(kind, path, wanted, progress=progress)
+
+
+def _write_layers(project: Path, path: Path, wanted: WantedFile, *, progress: Progress) -> str:
+    from recon4.delivery.geopackage_layers import LayerSource, write_layers
+
+    artifacts, evidence = wanted.artifacts, wanted.evidence
+    if evidence:
+        evidence.check_frame(artifacts)
+        evidence.artifact("level", artifacts["level"]).check("trajectory.npz")
+    folder = artifacts["map"]
+    tiles = evidence.open_map(folder) if evidence else TileSet.open(folder)
+    source = LayerSource(artifacts["level"], tiles, wanted.options.crs)
+    return write_layers(project, path, source, progress=progress)
 
 
 def _write_product(kind: ExportKind, path: Path, wanted: WantedFile, *, progress: Progress) -> str:

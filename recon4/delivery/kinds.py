@@ -99,6 +99,8 @@ KINDS: dict[str, ExportKind] = {
         _kind("contours.dxf", "Contours, DXF", "CAD", group=_DRAWINGS, takes=("crs", *_ALWAYS)),
         _kind("poses.txt", "Poses, KITTI", "SLAM tools", group=_LISTS, takes=_ALWAYS),
         _kind("findings.csv", "Findings, CSV", "spreadsheets", group=_LISTS, takes=()),
+        _kind("layers.gpkg", "Trajectory, points, findings, notes, double walls, GeoPackage",
+              "QGIS", group=_LISTS, takes=("crs",)),
         _kind("findings.geojson", "Findings, GeoJSON", "GIS", group=_LISTS, takes=()),
     )
 }  # fmt: skip

@@ -29,6 +29,7 @@ from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import ConfigError, StoreError
 from recon4.export.map_files import MapToExport, map_to_export
 from recon4.export.options import ExportOptions
+from recon4.model.height_system import height_system
 from recon4.progress import Progress
 from recon4.report.client import Row
 from recon4.report.client_words import Words, words
@@ -40,7 +41,9 @@ from recon4.review.state import read_summary
 from recon4.store.atomic import atomic_file, raise_if_full, write_text
 from recon4.store.formats import FORMATS
 from recon4.store.hashing import FileDigest
+from recon4.store.json_files import read_object
 from recon4.store.project import read_artifacts
+from recon4.untrusted.limits import LIMITS
 from recon4.untrusted.names import visible
 
 CHOICES = tuple(KINDS)
@@ -224,6 +227,17 @@ def _digest(path: Path) -> DeliveredFile:
     return DeliveredFile(found.size, found.sha256)
 
 
+def _heights(project: Path, wish: DeliveryWish, texts: Words) -> str:
+    """What the heights of the exports are above."""
+    crs = wish.crs or str((read_summary(project) or {}).get("crs") or "")
+    level = read_artifacts(project).get("level")
+    record = level / "georeference.json" if level is not None else None
+    controlled = False
+    if record is not None and record.exists():
+        controlled = "control" in read_object(record, max_bytes=LIMITS.findings_bytes)
+    return texts(f"heights.{height_system(crs, controlled=controlled)}", crs=visible(crs))
+
+
 def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words, name: str) -> None:
     """What is in the delivery and how it is checked, in plain words."""
     summary = read_summary(map_.project) or {}
@@ -233,6 +247,7 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
     lines.append(texts("readme.state", state=map_.state.text))
     crs = wish.crs or str(summary.get("crs") or "") or texts("front.crs_local")
     lines.append(texts("readme.crs", crs=visible(crs)))
+    lines.append(texts("readme.heights", heights=_heights(map_.project, wish, texts)))
     lines += ["", texts("readme.what"), ""]
     for one in sorted(path.name for path in folder.iterdir()):
         kind = kinds.get(one, {"map": "cloud"}.get(one.partition(".")[0], one.partition(".")[0]))

@@ -48,15 +48,26 @@ def findings_file(project: Path, ending: str) -> tuple[int, str]:
     """How many findings a finished map has, and the file as text; see `export_findings`."""
     if ending not in ENDINGS:
         raise ConfigError(f"findings are written as .csv or .geojson, got {ending or 'no ending'}")
-    findings = findings_in(read_summary(project) or {})
-    if findings is None:
-        raise StoreError(f"{project} has no findings yet: run recon4 process, or recon4 audit")
+    placed = placed_findings(project)
+    findings, lines = [one for one, _ in placed], [line for _, line in placed]
     artifacts = read_artifacts(project)
     place = read_crs(artifacts["level"]) if "level" in artifacts else None
-    lines = [_line(one, _walk(artifacts)) for one in findings]
     if ending == ".csv":
         return len(findings), _table(findings, lines, place)
     return len(findings), _geometries(findings, lines, place)
+
+
+def placed_findings(project: Path) -> list[tuple[SaidFinding, Array]]:
+    """The findings of a finished map with their positions in it [m], (N, 3); see `_line`.
+
+    Raises:
+        StoreError: If there is no map yet, or an earlier version made it.
+    """
+    findings = findings_in(read_summary(project) or {})
+    if findings is None:
+        raise StoreError(f"{project} has no findings yet: run recon4 process, or recon4 audit")
+    walk = _walk(read_artifacts(project))
+    return [(one, _line(one, walk)) for one in findings]
 
 
 def _walk(artifacts: dict[str, Path]) -> Trajectory | None:

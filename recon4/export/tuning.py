@@ -81,6 +81,19 @@ class RereadTuning(Struct, frozen=True, kw_only=True):
 REREAD = RereadTuning()
 
 
+class GeoPackageTuning(Struct, frozen=True, kw_only=True):
+    """Numbers of the standard, and of ours."""
+
+    application_id: int = 0x47504B47
+    """``GPKG``."""
+    version: int = 10300
+    own_system: int = 100_000
+    """Number of a system without an EPSG code of its own."""
+
+
+GEOPACKAGES = GeoPackageTuning()
+
+
 class ExpectedTuning(Struct, frozen=True, kw_only=True):
     """The estimate of an export."""
 

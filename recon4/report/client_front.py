@@ -10,6 +10,7 @@ from recon4.findings.walk import path_length_m
 from recon4.findings.wording import headline, title_of
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaneThickness
+from recon4.model.height_system import height_system
 from recon4.model.rig_origin import recording_day
 from recon4.model.site_control import SITE_GRID
 from recon4.model.usability import Unobserved, Usability
@@ -148,6 +149,9 @@ def _where(assessed: Assessment, tiles: TileSet | None, words: Words) -> list[Ro
     crs = assessed.facts.crs
     local = "front.crs_local_level" if assessed.results.placement.is_leveled else "front.crs_local"
     out = [Row(words("front.crs"), shown(crs) if crs else words(local))]
+    controlled = control_in(assessed.results.georeference) is not None
+    heights = words(f"heights.{height_system(crs, controlled=controlled)}", crs=shown(crs))
+    out.append(Row(words("front.heights"), heights))
     if tiles is not None and len(tiles):
         low, high = tiles.bounds_m
         x, y, z = (number(float(b - a), 1) for a, b in zip(low, high, strict=True))

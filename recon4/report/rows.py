@@ -37,7 +37,8 @@ def placed_rows(georeference: Mapping[str, Any]) -> Rows:
     if "reason" in inner:
         inner["reason"] = word_of(FindingKind.GNSS_NOT_USED, inner["reason"])
     if "georeferenced" in inner:
-        out.append(("georeferenced", "yes" if inner.pop("georeferenced") else "no"))
+        by_points = "no: control points alone placed it" if georeference.get("crs") else "no"
+        out.append(("georeferenced", "yes" if inner.pop("georeferenced") else by_points))
     if "edges_rejected" in inner:
         out.append(("loop closures rejected by GNSS priors", str(len(inner.pop("edges_rejected")))))
     out += _rows(inner, "") + _rows(georeference.get("crs") or {}, "CRS: ")

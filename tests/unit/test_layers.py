@@ -106,6 +106,7 @@ MAY_IMPORT = {
     "recon4/export/map_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
     | {"recon4.pose_graph.files", "recon4.products.storeys", "recon4.recording.formats.poses"},
+    "recon4/export/geopackage.py": STAGE | {"recon4.export", "recon4.georeference"},
     "recon4/export/geojson.py": STAGE | {"recon4.georeference"},
     "recon4/export/notes.py": STAGE | {"recon4.export", "recon4.georeference"},
     "recon4/export/findings.py": STAGE
@@ -147,6 +148,10 @@ MAY_IMPORT = {
     "recon4/delivery": STAGE
     | {"recon4.delivery", "recon4.export", "recon4.report", "recon4.review"}
     | {"recon4.mapping.tiles", "recon4.products", "recon4.slices.map_crs"},
+    "recon4/delivery/geopackage_layers.py": STAGE
+    | {"recon4.delivery", "recon4.evaluation.site_control", "recon4.export", "recon4.review"}
+    | {"recon4.findings.summary_notes", "recon4.georeference.crs_file"}
+    | {"recon4.mapping.tiles", "recon4.slices.doubles"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4/workflows": {"recon4"},
     "recon4": {"recon4"},
@@ -217,6 +222,7 @@ ONLY_HERE = {
     "rich": {"recon4/cli/terminal.py"},
     "sqlite3": {
         "recon4/archive/backup.py",
+        "recon4/export/geopackage.py",
         "recon4/store",
         "recon4/recording",
         "recon4/review",

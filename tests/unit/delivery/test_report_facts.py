@@ -15,6 +15,8 @@ from recon4.findings.summary_notes import findings_in
 from recon4.findings.wording import said
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.height_system import height_system
+from recon4.model.site_control import SITE_GRID
 from recon4.report.assessment import assess
 from recon4.report.client import Signature
 from recon4.report.client_front import front_page
@@ -115,6 +117,27 @@ def _georeferenced(room, crs):
     record = assessed.results.georeference | {"control": control}
     results = replace(assessed.results, georeference=record)
     return replace(assessed, results=results, facts=replace(assessed.facts, crs=crs))
+
+
+@pytest.mark.parametrize(
+    ("crs", "controlled", "heights"),
+    [
+        ("", False, "local"),
+        (SITE_GRID, True, "site"),
+        ("EPSG:25832", True, "survey"),
+        ("EPSG:25832", False, "ellipsoid"),
+        ("EPSG:25832+7837", True, "crs"),
+        ("EPSG:5555", False, "crs"),
+    ],
+)
+def test_what_heights_are_above_follows_from_the_system_and_its_points(crs, controlled, heights):
+    assert height_system(crs, controlled=controlled) == heights
+
+
+def test_heights_of_a_horizontal_system_are_those_of_the_survey(room):
+    front = _front(_with_points(assess(project_facts(room)), crs="EPSG:25832", role="control"))
+    (value,) = [row.value for row in front.where if row.label == words()("front.heights")]
+    assert value.startswith("those of the control points: EPSG:25832 is horizontal only")
 
 
 def _titles(*names):
