@@ -128,6 +128,7 @@ _POINTS = {
     "files_corrupt": _lost("files", stated=True),
     "files_damaged": _STATED,
     "files_out_of_order": _repaired("files"),
+    "status_files_damaged": _repaired(),
     "imu_files_missing": _STATED,
     "files_missing": _STATED,
 }

@@ -1,8 +1,8 @@
 """Folders of MANDEYE devices, as HDMapping reads them: which files belong to a walk.
 
 A walk is written in parts, each with the files ``lidarNNNN.laz`` (points of all LiDARs),
-``imuNNNN.csv``, ``lidarNNNN.sn`` (lines ``id serial``) and ``statusNNNN.json``. Sources: HDMapping
-wiki, *File formats*; mandeye_controller, ``save_laz.cpp`` and ``save_data.cpp``.
+``imuNNNN.csv``, ``lidarNNNN.sn`` (lines ``id serial``) and ``statusNNNN.json`` (`status`). Sources:
+HDMapping wiki, *File formats*; mandeye_controller, ``save_laz.cpp`` and ``save_data.cpp``.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.folders import natural
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.las_records import las_header, las_points
+from recon4.recording.mandeye.status import DeviceStatus, read_status
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.report import ImportReport
 from recon4.untrusted.bounded import lines_limited
@@ -53,6 +54,8 @@ class MandeyeWalk:
     parts: tuple[WalkPart, ...]
     serials: dict[int, str]
     """LiDAR -> its serial number, where it is stated."""
+    status: DeviceStatus
+    """What the device says of its LiDARs."""
     positions: tuple[Path, ...] = ()
     """Files of positions: one of each number, sentences only where nothing else is."""
 
@@ -92,7 +95,15 @@ def list_walk(folder: Path, report: ImportReport) -> MandeyeWalk:
     moved = sum(a is not b for a, b in zip(parts, ordered, strict=True))
     report.count("files_out_of_order", moved)
     _note_missing(folder, ordered, report)
-    return MandeyeWalk(folder, tuple(ordered), _serials(ordered, report), _positions(folder))
+    serials = _serials(ordered, report)
+    status = read_status((_status_path(part.path) for part in ordered), report)
+    return MandeyeWalk(folder, tuple(ordered), serials, status, _positions(folder))
+
+
+def _status_path(points: Path) -> Path:
+    number = POINTS_NAME.fullmatch(points.name)
+    assert number is not None
+    return points.with_name(f"status{number[1]}.json")
 
 
 def _part(path: Path, report: ImportReport) -> WalkPart | None:

@@ -31,15 +31,17 @@ _LINES = {"around": 4, "ahead": 6}
 
 
 def walk_streams(walk: MandeyeWalk) -> list[Stream]:
-    """The LiDARs of a walk, each with its model by the view of its first points."""
-    return [
-        Stream(f"LiDAR {lidar}", _model(walk, lidar), serial=walk.serials.get(lidar, ""))
-        for lidar in walk.ids
-    ]
+    """The LiDARs of a walk, each with the model that the device states, or that of its view."""
+    streams = []
+    for lidar in walk.ids:
+        serial = walk.serials.get(lidar, "")
+        model = walk.status.model_of(serial) or _model(walk, lidar)
+        streams.append(Stream(f"LiDAR {lidar}", model, serial=serial))
+    return streams
 
 
 def _model(walk: MandeyeWalk, lidar: int) -> str:
-    """The model; the files do not name it, and a Livox is what these devices carry first."""
+    """The model by the view; a Livox is what these devices carry first."""
     for part in walk.parts:
         if lidar not in part.ids:
             continue

@@ -20,6 +20,8 @@ class MandeyeTuning(Struct, frozen=True, kw_only=True):
     """Accelerations whose median is below this are in g, else in m/s²."""
     most_bytes: int = 1 << 30
     """Of a file of IMU samples or positions."""
+    status_bytes: int = 1 << 20
+    """Of a file of the state of the device; those that are seen have some 3 kB."""
     position_cells: int = 7
     """Cells of a line with a position: up to the geoid separation …"""
     quality_cell: int = 9

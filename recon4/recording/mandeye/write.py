@@ -90,12 +90,16 @@ class MandeyeWriter:
         path = self._folder / f"{name}.laz"
         points = _write_points(path, shots)
         self._numbers.append(number)
-        serials = "".join(
-            f"{row} {sensor.serial or sensor.name.replace(' ', '_')}\n"
-            for row, sensor in enumerate(self._rig.sensors)
-        )
-        write_text(self._folder / f"{name}.sn", serials)
-        status = {"name": "recon4", "state": "SCANNING", "lidar": {"points_count": points}}
+        sensors = self._rig.sensors
+        serials = [sensor.serial or sensor.name.replace(" ", "_") for sensor in sensors]
+        text = "".join(f"{row} {serial}\n" for row, serial in enumerate(serials))
+        write_text(self._folder / f"{name}.sn", text)
+        lidars = [
+            {"sn": serial, "lidar_ip": sensor.address, "model": sensor.model}
+            for serial, sensor in zip(serials, sensors, strict=True)
+        ]
+        state = {"points_count": points, "multi": {"LivoxLidarInfo": lidars}}
+        status = {"name": "recon4", "state": "SCANNING", "lidar": state}
         write_json(self._folder / f"status{number:04d}.json", status)
         self.points += points
 

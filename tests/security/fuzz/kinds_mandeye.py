@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from dataclasses import replace
 from functools import cache, partial
@@ -9,11 +10,13 @@ from pathlib import Path
 
 from recon4.recording.mandeye.gnss import read_positions
 from recon4.recording.mandeye.imu import read_imu
+from recon4.recording.mandeye.status import read_status
 from recon4.recording.report import ImportReport
 from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.seeds_recordings import read_recording
 from tests.unit.recording.test_mandeye import RIG, write_walk
 from tests.unit.recording.test_mandeye_positions import write_positions
+from tests.unit.recording.test_mandeye_status import DEVICE
 
 _ONE = replace(RIG, sensors=RIG.sensors[:1])
 
@@ -49,6 +52,16 @@ def _read_samples(path: Path) -> Reading:
     return Reading(len(found.samples.t_ns), salvaged=bool(report.lost()))
 
 
+def _read_status(path: Path) -> Reading:
+    report = ImportReport()
+    found = read_status([path], report)
+    return Reading(len(found.models), salvaged=bool(report.counts["status_files_damaged"]))
+
+
+def _status() -> tuple[bytes, ...]:
+    return (_files()["status0000.json"], json.dumps(DEVICE).encode())
+
+
 def _positions(name: str) -> tuple[bytes, ...]:
     with tempfile.TemporaryDirectory() as place:
         write_positions(Path(place), ending=name.split(".")[1])
@@ -75,6 +88,13 @@ MANDEYE_KINDS = (
         read=_read_samples,
         knows_end=False,  # text has no end mark
     ),
+    Kind(
+        name="json-mandeye",
+        file_name="status0000.json",
+        seeds=_status,
+        read=_read_status,
+        knows_end=False,  # a folder without such a file is whole
+    ),
     *(
         Kind(
             name=f"{ending}-mandeye",
@@ -86,4 +106,4 @@ MANDEYE_KINDS = (
         for ending in ("gnss", "nmea")
     ),
 )
-"""Points in a whole walk of one LiDAR; samples alone; positions alone."""
+"""Points in a whole walk of one LiDAR; samples, the status and positions alone."""
