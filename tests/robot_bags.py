@@ -37,6 +37,19 @@ class RobotBag(Bag):
         """Write the description of a robot."""
         self.write(topic, "std_msgs/msg/String", t_ns, self.make("std_msgs/msg/String", data=urdf))
 
+    def positions(self, topic, t_ns, stated):
+        """Write positions of joints: name -> rad or m."""
+        kind = "sensor_msgs/msg/JointState"
+        message = self.make(
+            kind,
+            header=self.header(t_ns, ""),
+            name=list(stated),
+            position=np.array([*stated.values()], np.float64),
+            velocity=np.zeros(0),
+            effort=np.zeros(0),
+        )
+        self.write(topic, kind, int(t_ns), message)
+
     def laser(self, topic, t_ns, ranges, *, angles):
         """Write a scan of a 2-D laser with a beam at each angle [rad]; NaN = no return."""
         message = self.make(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.recording.driven_joints import DrivenJoint
 from recon4.recording.tuning_mounts import SAME_MOUNT
 
 WORLD_FRAMES = frozenset({"map", "odom", "world", "earth", "utm", "enu", "camera_init"})
@@ -35,7 +36,7 @@ class StatedTransform:
         return f"{self.parent} -> {self.child} {mount_text(self.T_parent_child)} ({self.source})"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MovingJoint:
     """Two frames that move against each other during the recording."""
 
@@ -44,6 +45,14 @@ class MovingJoint:
     tilt_rad: float
     """Largest angle between the vertical at first and later, in the axes of the child [rad]."""
     source: str
+    """Topic with its transforms, or with its positions."""
+    driven: DrivenJoint | None = None
+    """How positions move it; None = transforms state its poses."""
+
+    @property
+    def named_by(self) -> str:
+        """Topic that tells this joint as the head of a profiler: transforms, or a description."""
+        return self.driven.description if self.driven else self.source
 
 
 class FrameGraph:

@@ -22,13 +22,13 @@ from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import (
     CLOUD,
+    JOINT_STATES,
     LASER_SCAN,
     Bag,
     BagMessage,
     BagTopic,
 )
 from recon4.recording.formats.cloud_tables import cloud_table
-from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.head_angles import Head, HeadAngles
 from recon4.recording.joint_head import JointHead
 from recon4.recording.mount_check import compare_mounts
@@ -45,7 +45,6 @@ from recon4.recording.tuning import LISTED
 from recon4.recording.tuning_lasers import LINES
 from recon4.settings import IngestSettings
 
-JOINTS = "sensor_msgs/msg/JointState"
 LineItem = Shots | LineScans | LaserScans | ImuSamples
 
 
@@ -189,9 +188,9 @@ class LineRecording:
         Raises:
             ConfigError: If the rig names transforms, and no joint of them moves the profiler.
         """
-        types = {topic.name: topic.type for topic in self.topics if topic.messages}
-        is_named = types.get(sensor.head_topic, "") in TRANSFORMS
-        has_angles = bool(sensor.head_rate_rad_s or sensor.head_topic) or JOINTS in types.values()
+        is_named = has_frames([t for t in self.topics if t.name == sensor.head_topic])
+        types = {topic.type for topic in self.topics if topic.messages}
+        has_angles = bool(sensor.head_rate_rad_s or sensor.head_topic) or JOINT_STATES in types
         if not is_named and (has_angles or not has_frames(self.topics)):
             return None
         with Bag(self._paths, ImportReport()) as bag:
@@ -222,7 +221,7 @@ class LineRecording:
                 "the rig file says"
             )
             return ""
-        joints = [t for t in self.topics if t.type == JOINTS and t.messages]
+        joints = [t for t in self.topics if t.type == JOINT_STATES and t.messages]
         named = [t.name for t in joints if t.name == sensor.head_topic]
         if named:
             return named[0]
@@ -232,8 +231,9 @@ class LineRecording:
         there = ", ".join(t.name for t in joints) or "none"
         raise ConfigError(
             f"{sensor.name}: the angles of its head are missing: expected topic "
-            f"{sensor.head_topic or '(one)'} of type {JOINTS}, got {there}; a head may also "
-            "move by a joint of /tf, or at a constant rate: head_rate_deg_s in the rig file"
+            f"{sensor.head_topic or '(one)'} of type {JOINT_STATES}, got {there}; a head may also "
+            "move by a joint of /tf or of the robot description, or at a constant rate: "
+            "head_rate_deg_s in the rig file"
         )
 
     def _find_scans(self, rig: Rig) -> str:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from recon4.recording.formats.bags import Bag, BagTopic
+from recon4.recording.formats.bags import JOINT_STATES, TEXT, Bag, BagTopic
 from recon4.recording.formats.typestore import TRANSFORMS
-from recon4.recording.line_recording import JOINTS
 from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
+
+_MOVES = {
+    **dict.fromkeys(TRANSFORMS, ("joint", "transforms")),
+    TEXT: ("joint", "description of the robot"),
+}
+"""Type of a head's topic -> what it moves, and what its messages are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +44,7 @@ def line_topics(bag: Bag) -> LineTopics | None:
             continue
         if sensor.head_topic in filled:
             head = filled[sensor.head_topic]
-            moves = ("joint", "transforms") if head.type in TRANSFORMS else ("head", "angles")
-            found.append((head, *moves))
+            found.append((head, *_MOVES.get(head.type, ("head", "angles"))))
         else:
-            missing.append(f"angles of the head ({sensor.head_topic}, {JOINTS})")
+            missing.append(f"angles of the head ({sensor.head_topic}, {JOINT_STATES})")
     return LineTopics(tuple(found), tuple(missing))

@@ -1,15 +1,15 @@
 """Sensors on joints that move: where each is in the part that carries the joint, by time.
 
-A bag states a joint that moves in the transforms of ``/tf``, each with its own time. Every point is
-placed by the pose of its own time. So the frame that carries the joint, which does not move with
-it, is the frame of the sensor for everything that follows.
+A bag states a joint that moves in the transforms of ``/tf``, or by positions of a joint of the
+robot description, each with its own time. Every point is placed by the pose of its own time. So the
+frame that carries the joint, which does not move with it, is the frame of the sensor for everything
+that follows.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,14 +19,10 @@ from recon4.geometry.se3 import SE3, Array, so3_log
 from recon4.kernels.imu import place_points
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_messages import stamp_ns
-from recon4.recording.clock_compare import JOINT
 from recon4.recording.formats.bags import Bag
 from recon4.recording.frame_graph import FrameGraph, MovingJoint
-from recon4.recording.limits import LIMITS
+from recon4.recording.joint_poses import read_joint_poses
 from recon4.recording.report import ImportReport
-from recon4.recording.stamps import strays
-from recon4.recording.transform_messages import frame_name, numbers_of, transform_fault
 from recon4.recording.tuning_mounts import JOINTS
 
 
@@ -100,7 +96,7 @@ def moving_mount(
     joints = graph.joints_above(frame)
     if not joints:
         return None
-    poses = _read_poses(bag, joints, report)
+    poses = read_joint_poses(bag, joints, report)
     for joint in joints:
         why = _why_no_joint(poses[joint.child])
         if why:
@@ -117,50 +113,6 @@ def moving_mount(
         f"{len(T_base_sensor)} poses in {seconds:.1f} s)"
     )
     return MovingMount(joints[-1].parent, T_base_sensor, angle_rad, text)
-
-
-def _read_poses(
-    bag: Bag, joints: Sequence[MovingJoint], report: ImportReport
-) -> dict[str, Trajectory]:
-    """Poses of joints by their child frame, in order of time; counts what is left out."""
-    wanted = {(joint.parent, joint.child): joint.child for joint in joints}
-    found: dict[str, list[tuple[float, ...]]] = {joint.child: [] for joint in joints}
-    times: dict[str, list[int]] = {joint.child: [] for joint in joints}
-    for message in bag.messages({joint.source for joint in joints}):
-        content = bag.decode(message)
-        for one in content.transforms if content is not None else ():
-            child = _wanted(one, wanted)
-            if child is None:
-                continue
-            if len(times[child]) >= LIMITS.joint_poses:
-                report.count("joint_poses_beyond_limit")
-                continue
-            t_ns = stamp_ns(one.header.stamp)
-            report.note_lag(JOINT, message.t_ns - t_ns)
-            times[child].append(t_ns)
-            found[child].append(numbers_of(one.transform))
-    return {
-        child: _in_order(np.array(times[child], np.int64), found[child], report) for child in found
-    }
-
-
-def _wanted(one: Any, wanted: Mapping[tuple[str, str], str]) -> str | None:
-    """The child frame, if a transform is a sound one of a joint."""
-    pair = frame_name(one.header.frame_id), frame_name(one.child_frame_id)
-    child = wanted.get(pair)
-    return None if child is None or transform_fault(pair, numbers_of(one.transform)) else child
-
-
-def _in_order(t_ns: Times, rows: list[tuple[float, ...]], report: ImportReport) -> Trajectory:
-    """Poses at increasing times; single ones of another time and repeated ones are left out."""
-    numbers = np.array(rows, np.float64).reshape(-1, 7)
-    stray = strays(t_ns) | (t_ns <= 0)
-    report.count("joint_poses_wrong_time", int(stray.sum()))
-    order = np.flatnonzero(~stray)[np.argsort(t_ns[~stray], kind="stable")]
-    later = np.diff(t_ns[order], prepend=np.int64(-1)) > 0
-    report.count("joint_poses_repeated", int((~later).sum()))
-    kept = order[later]
-    return Trajectory(t_ns[kept], SE3.from_quat(numbers[kept, 3:], numbers[kept, :3]))
 
 
 def _why_no_joint(poses: Trajectory) -> str:

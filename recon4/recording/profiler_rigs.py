@@ -32,7 +32,7 @@ class TiltingLaser:
     topic: str
     mount: MovingMount
     source: str
-    """Topic of the transforms of the joint."""
+    """Topic of the transforms of the joint, or of the robot description that has it."""
 
 
 def profiler_rig(bag: Bag, rig: Rig | None, report: ImportReport) -> Rig | None:
@@ -93,7 +93,7 @@ def tilting_lasers(bag: Bag, mounts: Mounts, topics: list[str]) -> Iterator[Tilt
         if any(joint.tilt_rad > LASERS.tilted_rad for joint in joints):
             mount = moving_mount(bag, mounts.graph, frame, report=ImportReport())
             if mount is not None:
-                yield TiltingLaser(topic, mount, joints[0].source)
+                yield TiltingLaser(topic, mount, joints[0].named_by)
 
 
 def _rig(

@@ -1,4 +1,4 @@
-"""The frames of a robot in a bag: static transforms, constant ones of ``/tf``, fixed joints.
+"""The frames of a robot in a bag: static transforms, constant ones of ``/tf``, joints.
 
 What a bag states is hostile until proven: numbers, names and sizes are checked, and everything that
 is left out is counted.
@@ -12,12 +12,15 @@ from itertools import islice
 from math import acos, isfinite
 from typing import Any
 
+import numpy as np
+
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3
-from recon4.recording.formats.bags import TEXT, Bag, BagTopic
+from recon4.recording.driven_joints import DrivenJoint, driven_joint, stated_positions
+from recon4.recording.formats.bags import JOINT_STATES, TEXT, Bag, BagTopic
 from recon4.recording.formats.limits import clean_name
 from recon4.recording.formats.typestore import TRANSFORMS
-from recon4.recording.formats.urdf import fixed_joints
+from recon4.recording.formats.urdf import UrdfJoint, urdf_joints
 from recon4.recording.frame_graph import (
     WORLD_FRAMES,
     FrameGraph,
@@ -44,9 +47,10 @@ def has_frames(topics: Sequence[BagTopic]) -> bool:
 def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameGraph:
     """Read what a bag states about its frames.
 
-    Static transforms come first, then the fixed joints of a robot description, then those
-    transforms of ``/tf`` that do not change. ``/tf`` is only read if the others do not connect all
-    frames with each other and with the robot.
+    Static transforms come first, then the fixed joints of a robot description, then its other
+    joints at their positions by ``JointState``, then ``/tf``: transforms that do not change, and
+    joints that move. Positions and ``/tf`` are only read if what comes before does not connect all
+    frames with each other and with the robot. Where both state how a joint moves, ``/tf`` counts.
 
     Args:
         bag: An open bag.
@@ -63,9 +67,12 @@ def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameG
         stated.add_description(
             topic.name, _messages(bag, topic.name, most=LIMITS.descriptions, report=report)
         )
-    graph = stated.graph()
-    if _is_complete(graph, frames) or not moving:
-        return graph
+    if _is_complete(stated.graph(), frames):
+        return stated.graph()
+    for topic in bag.topics:
+        if topic.type == JOINT_STATES and topic.messages and stated.drivers:
+            most = LIMITS.transform_messages
+            stated.add_positions(topic.name, _messages(bag, topic.name, most=most, report=report))
     for name in moving:
         stated.add_constant(
             name, _messages(bag, name, most=LIMITS.transform_messages, report=report)
@@ -124,12 +131,19 @@ class _Statements:
         self._report = report
         self._stated: list[StatedTransform] = []
         self._moving: list[MovingJoint] = []
+        self._driven: dict[_Pair, DrivenJoint] = {}
+        """Joints of descriptions that are not fixed."""
         self._children: set[str] = set()
         """Frames with a static parent: what others state about them is not asked for."""
 
     def graph(self) -> FrameGraph:
         """The frames so far."""
         return FrameGraph(self._stated, self._moving)
+
+    @property
+    def drivers(self) -> frozenset[str]:
+        """Names of the joints whose positions would tell more."""
+        return frozenset(joint.driver for joint in self._driven.values())
 
     def add_static(self, name: str, messages: Iterator[Any]) -> None:
         """Add static transforms; of several between two frames the last counts, as in tf2."""
@@ -150,22 +164,52 @@ class _Statements:
                 self._keep(pair, one, name)
 
     def add_description(self, name: str, messages: Iterator[Any]) -> None:
-        """Add the fixed joints of a robot description; of several the last counts."""
+        """Add the joints of a robot description; of several descriptions the last counts."""
         texts = [str(content.data) for content in messages]
         if not texts:
             return
         try:
-            joints = fixed_joints(texts[-1])
+            joints = urdf_joints(texts[-1])
         except CorruptFile as error:
             self._report.count("robot_descriptions_refused")
             self._report.derive(f"{name}: the robot description is not read: {error}")
             return
         for joint in joints:
-            turn = SE3.from_rpy(*joint.rpy_rad, t=joint.xyz_m)
-            numbers = (*joint.xyz_m, *turn.quat_xyzw().tolist())
-            pair = self._pair(name, (joint.parent, joint.child), numbers)
-            if pair is not None and len(self._stated) < LIMITS.frame_pairs:
-                self._keep(pair, _Statement(numbers), name)
+            self._add_joint(name, joint)
+
+    def _add_joint(self, name: str, joint: UrdfJoint) -> None:
+        turn = SE3.from_rpy(*joint.rpy_rad, t=joint.xyz_m)
+        numbers = (*joint.xyz_m, *turn.quat_xyzw().tolist())
+        pair = self._pair(name, (joint.parent, joint.child), numbers)
+        if pair is None or len(self._stated) + len(self._driven) >= LIMITS.frame_pairs:
+            return
+        if joint.kind == "fixed":
+            self._keep(pair, _Statement(numbers), name)
+            return
+        driven = driven_joint(joint, name)
+        if driven is None:
+            self._report.count("transforms_invalid")
+            self._report.derive(
+                f"{name}: joint {joint.name!r}: expected a name, an axis and a gear"
+            )
+        elif pair[1] not in self._children:
+            self._driven[pair] = driven
+
+    def add_positions(self, name: str, messages: Iterator[Any]) -> None:
+        """Add the joints of descriptions that messages of positions move, or hold in one place."""
+        found = stated_positions(messages, self.drivers, self._report)
+        for pair, joint in list(self._driven.items()):
+            stated = found.get(joint.driver)
+            if stated is None:
+                continue
+            del self._driven[pair]
+            if stated.moves(joint):
+                self._moving.append(MovingJoint(*pair, stated.tilt_rad(joint), name, joint))
+            else:
+                T = joint.at(np.array([stated.first]))[0]
+                numbers = (*T.t.tolist(), *T.quat_xyzw().tolist())
+                if self._pair(name, pair, numbers) is not None:
+                    self._keep(pair, _Statement(numbers), name)
 
     def _keep(self, pair: _Pair, one: _Statement, source: str) -> None:
         T_parent_child = SE3.from_quat(one.numbers[3:], one.numbers[:3])

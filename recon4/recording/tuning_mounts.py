@@ -53,6 +53,12 @@ class SensorJointTuning(Struct, frozen=True, kw_only=True):
     """Between two poses of a joint that moved, farther apart, its pose is not known [ns]."""
     stands: tuple[float, float] = (float(np.deg2rad(0.1)), 1e-3)
     """A joint that moved by less between two poses stood still [rad], [m]."""
+    most_position: float = 1e9
+    """Larger positions are none [rad or m]: a head that spins at 20 Hz takes weeks for them."""
+    most_geared: float = 1e4
+    """Larger factors, offsets and axes of a robot description are none."""
+    tilt_steps: int = 65
+    """Positions between its limits at which the tilt of a joint is looked at."""
     travel_m: float = 1.0
     """No joint of a sensor shifts it farther: what does is a pose in the world [m]."""
     off_axis: float = 0.1

@@ -51,6 +51,7 @@ NAVSATFIX = "sensor_msgs/msg/NavSatFix"
 ODOMETRY = "nav_msgs/msg/Odometry"
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 TEXT = "std_msgs/msg/String"
+JOINT_STATES = "sensor_msgs/msg/JointState"
 _MEASURED = frozenset({*DATA_MESSAGES, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
 """Types whose messages come when something is measured. With simulated time, messages that are sent
 once, such as static transforms, may be recorded at time 0."""

@@ -1,7 +1,7 @@
-"""Fixed joints of a robot description (URDF), read without a library that fetches anything.
+"""Joints of a robot description (URDF), read without a library that fetches anything.
 
-Links and joints of a URDF are children of ``robot``; only ``parent``, ``child`` and ``origin`` of
-joints are read, and no mesh, no entity and no document type.
+Links and joints of a URDF are children of ``robot``; only ``parent``, ``child``, ``origin``,
+``axis`` and ``mimic`` of joints are read, and no mesh, no entity and no document type.
 """
 
 from __future__ import annotations
@@ -18,19 +18,33 @@ MAX_DEPTH = 64
 MAX_JOINTS = 10_000
 
 
-@dataclass(slots=True)
-class FixedJoint:
-    """A joint that does not move: pose of the child link in the parent link."""
+KINDS = ("fixed", "revolute", "continuous", "prismatic")
+"""Joints whose pose follows from one position at most."""
 
+
+@dataclass(slots=True)
+class UrdfJoint:
+    """A joint: pose of the child link in the parent link, at position 0 if it moves."""
+
+    kind: str
+    """One of `KINDS`."""
+    name: str = ""
     parent: str = ""
     child: str = ""
     xyz_m: tuple[float, ...] = (0.0, 0.0, 0.0)
     rpy_rad: tuple[float, ...] = (0.0, 0.0, 0.0)
     """Roll, pitch, yaw: ``Rz(yaw) Ry(pitch) Rx(roll)``."""
+    axis: tuple[float, ...] = (1.0, 0.0, 0.0)
+    """In the frame of the child, of any length."""
+    mimics: str = ""
+    """Name of the joint whose position moves it; empty = its own."""
+    factor: float = 1.0
+    offset: float = 0.0
+    """Its position is ``factor`` times that of the other one plus ``offset`` [rad or m]."""
 
 
-def fixed_joints(text: str) -> list[FixedJoint]:
-    """The fixed joints of a robot description.
+def urdf_joints(text: str) -> list[UrdfJoint]:
+    """The joints of a robot description of one of `KINDS`.
 
     Raises:
         CorruptFile: If it is no sound, plain XML, too large or too deep, or a number is none.
@@ -46,7 +60,7 @@ def fixed_joints(text: str) -> list[FixedJoint]:
         parser.Parse(_without_declaration(text.encode("utf-8", "replace")), True)
     except expat.ExpatError as error:
         raise CorruptFile(f"no sound XML: {error}") from None
-    return found.fixed
+    return found.joints
 
 
 def _without_declaration(xml: bytes) -> bytes:
@@ -65,28 +79,29 @@ def _refuse_doctype(*_: object) -> None:
 class _Joints:
     """Receives the elements of the XML."""
 
-    fixed: list[FixedJoint] = field(default_factory=list)
+    joints: list[UrdfJoint] = field(default_factory=list)
     depth: int = 0
-    _joint: FixedJoint | None = None
+    _joint: UrdfJoint | None = None
 
     def begin(self, name: str, attributes: dict[str, str]) -> None:
         self.depth += 1
         if self.depth > MAX_DEPTH:
             raise CorruptFile(f"elements nested deeper than {MAX_DEPTH}")
         if name == "joint" and self.depth == 2:
-            self._joint = FixedJoint() if attributes.get("type") == "fixed" else None
+            kind, called = attributes.get("type", ""), attributes.get("name", "")
+            self._joint = UrdfJoint(kind, called) if kind in KINDS else None
         elif self._joint is not None and self.depth == 3:
             self._fill(self._joint, name, attributes)
 
     def end(self, name: str) -> None:
         if self.depth == 2 and self._joint is not None:
-            if len(self.fixed) >= MAX_JOINTS:
-                raise CorruptFile(f"more than {MAX_JOINTS} fixed joints")
-            self.fixed.append(self._joint)
+            if len(self.joints) >= MAX_JOINTS:
+                raise CorruptFile(f"more than {MAX_JOINTS} joints")
+            self.joints.append(self._joint)
             self._joint = None
         self.depth -= 1
 
-    def _fill(self, joint: FixedJoint, name: str, attributes: dict[str, str]) -> None:
+    def _fill(self, joint: UrdfJoint, name: str, attributes: dict[str, str]) -> None:
         if name == "parent":
             joint.parent = attributes.get("link", "")
         elif name == "child":
@@ -94,14 +109,24 @@ class _Joints:
         elif name == "origin":
             joint.xyz_m = _three(attributes.get("xyz", "0 0 0"), "xyz")
             joint.rpy_rad = _three(attributes.get("rpy", "0 0 0"), "rpy")
+        elif name == "axis":
+            joint.axis = _three(attributes.get("xyz", "1 0 0"), "axis")
+        elif name == "mimic":
+            joint.mimics = attributes.get("joint", "")
+            (joint.factor,) = _numbers(attributes.get("multiplier", "1"), "multiplier", count=1)
+            (joint.offset,) = _numbers(attributes.get("offset", "0"), "offset", count=1)
 
 
 def _three(text: str, what: str) -> tuple[float, ...]:
+    return _numbers(text, what, count=3)
+
+
+def _numbers(text: str, what: str, *, count: int) -> tuple[float, ...]:
     words = text[:200].split()
     try:
         numbers = tuple(float(word) for word in words)
     except ValueError:
         numbers = ()
-    if len(numbers) != 3 or not np.all(np.isfinite(numbers)):
-        raise CorruptFile(f"{what} of a joint: expected three numbers, got {text[:80]!r}")
+    if len(numbers) != count or not np.all(np.isfinite(numbers)):
+        raise CorruptFile(f"{what} of a joint: expected {count} numbers, got {text[:80]!r}")
     return numbers

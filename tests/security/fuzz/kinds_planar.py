@@ -19,7 +19,9 @@ from recon4.errors import Recon4Error
 from recon4.evaluation.relations import read_relations
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
+from recon4.recording.driven_joints import driven_joint
 from recon4.recording.formats.three_dtk import read_pose, read_scan
+from recon4.recording.formats.urdf import urdf_joints
 from recon4.recording.info import describe
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.laser_tables import read_laser_table
@@ -27,10 +29,12 @@ from recon4.recording.line_recording import LineRecording
 from recon4.recording.line_tables import LineTableRecording, LineTables
 from recon4.recording.report import ImportReport
 from recon4.simulation.line_bag import open_line_bag
+from recon4.untrusted.bounded import read_text_limited
 from tests.builders import storage_file
 from tests.line_tables import laser_columns, line_columns, write_csv, write_npz
 from tests.planar_walks import carmen_lines
 from tests.security.fuzz.kind import Kind, Reading
+from tests.unit.recording.test_transform_messages import URDF
 
 _T0_NS = 1_700_000_000_000_000_000
 _LINE_NS = 10_000_000
@@ -175,7 +179,23 @@ def _table_kinds() -> Iterator[Kind]:
             )
 
 
+def _urdf() -> tuple[bytes, ...]:
+    driven = '<joint name="{}" type="prismatic"><parent link="imu"/><child link="{}"/>{}</joint>'
+    more = driven.format("d", "e", '<axis xyz="0 0.6 0.8"/>')
+    more += driven.format("f", "g", '<mimic joint="b" multiplier="-2" offset="0.1"/>')
+    return (URDF.encode(), URDF.replace("</robot>", more + "</robot>").encode())
+
+
+def _read_urdf(path: Path) -> Reading:
+    joints = urdf_joints(read_text_limited(path, 1 << 20))
+    moved = [driven_joint(joint, "/robot_description") for joint in joints]
+    for joint in filter(None, moved):
+        assert np.isfinite(joint.at(np.array([-1e3, 0.0, 1.0])).matrix()).all()
+    return Reading(len(joints))
+
+
 PLANAR_KINDS = (
+    Kind(name="urdf", file_name="robot.urdf", seeds=_urdf, read=_read_urdf),
     *_table_kinds(),
     Kind(
         name="scan-3d",

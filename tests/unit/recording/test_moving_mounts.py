@@ -41,18 +41,37 @@ def room_ranges(T, direction):
         return ((ROOM_M / 2 - np.sign(d) * T.t) / np.abs(d)).min(axis=1)
 
 
-def tilting_bag(folder, *, imu_frame="base_link", travel=0.0, late_ns=0, without=(), level=False):
-    """A robot that stands in a room: a laser on a joint, an IMU; times without transforms [s]."""
+def tilting_bag(
+    folder,
+    *,
+    imu_frame="base_link",
+    travel=0.0,
+    late_ns=0,
+    without=(),
+    level=False,
+    urdf="",
+):
+    """A robot that stands in a room: a laser on a joint, an IMU; times without transforms [s].
+
+    With a description, positions tell how the joint moves, in place of transforms.
+    """
     path = bag_path(folder, "bag1")
     beams = np.stack([np.cos(ANGLES), np.sin(ANGLES), 0 * ANGLES], axis=1)
     with RobotBag(path, "bag1") as bag:
-        still = [("axis", "laser", AXIS_LASER), ("base_link", "level", mount(z=0.1))]
+        turned = mount(yaw=-90.0 if urdf else 0.0)
+        still = [("axis", "laser", turned @ AXIS_LASER), ("base_link", "level", mount(z=0.1))]
         if imu_frame == "laser_imu":
             still.append(("axis", "laser_imu", mount()))
         bag.tf(*still)
+        if urdf:
+            bag.description(urdf)
         for t_ns in range(T0_NS - POSE_NS, T0_NS + SCANS * SCAN_NS + 2 * POSE_NS, POSE_NS):
             s = (t_ns - T0_NS) * 1e-9
-            if not any(first < s < last for first, last in without):
+            if urdf:
+                motor = (np.deg2rad(pitch_deg(t_ns)) - 0.1) / -0.5
+                stated = {"wheel": 9.0 * s, "motor": motor, "broken": np.nan}
+                bag.positions("/joint_states", t_ns, stated)
+            elif not any(first < s < last for first, last in without):
                 moved = mount(travel * s) @ BODY_AXIS @ mount(pitch=pitch_deg(t_ns))
                 message = bag.stated([("base_link", "axis", moved)], t_ns=t_ns)
                 bag.write("/tf", "tf2_msgs/msg/TFMessage", t_ns + late_ns, message)
@@ -91,6 +110,31 @@ def test_every_shot_of_a_laser_on_a_joint_lies_where_the_joint_was(tmp_path):
     expected = np.deg2rad(pitch_deg(lines.t_ns))
     turned = lines.head_rad - lines.head_rad[0]
     np.testing.assert_allclose(np.abs(turned), np.abs(expected - expected[0]), atol=1e-3)
+
+
+URDF = """<robot name="r">
+  <joint name="wheel" type="continuous"><parent link="base_link"/><child link="w"/></joint>
+  <joint name="tilt" type="revolute"><parent link="base_link"/><child link="axis"/>
+    <origin xyz="0.1 0 0.2" rpy="0 0 1.5707963267948966"/><axis xyz="2 0 0"/>
+    <mimic joint="motor" multiplier="-0.5" offset="0.1"/></joint>
+</robot>"""
+"""The axis is that of `T_base_laser`, seen in a child that is turned; a gear drives it."""
+
+
+def test_positions_of_a_joint_of_the_robot_description_tilt_a_laser(tmp_path):
+    path = tilting_bag(tmp_path, urdf=URDF)
+
+    store = run(path, out=tmp_path / "frames")
+
+    sensor = store.rig.sensors[0]
+    assert (sensor.kind, sensor.head_topic) == ("profiler", "/robot_description")
+    assert len(points_of(store)) == SCANS * len(ANGLES)
+    assert off_walls_m(points_of(store)).max() < 2e-3
+    assert store.report["counts"]["joint_positions_invalid"] == SCANS * SCAN_NS // POSE_NS + 3
+    text = "\n".join(describe(path).lines())
+    assert "base_link -> axis turns by 80° (/joint_states" in text
+    again = run(path, out=tmp_path / "again", rig=store.rig)  # the rig file names the description
+    np.testing.assert_array_equal(points_of(again), points_of(store))
 
 
 def test_a_level_laser_beside_it_is_the_2_d_laser(tmp_path):

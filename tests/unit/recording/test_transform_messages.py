@@ -8,7 +8,7 @@ import pytest
 from recon4.errors import CorruptFile
 from recon4.recording import transform_messages
 from recon4.recording.formats.bags import Bag
-from recon4.recording.formats.urdf import fixed_joints
+from recon4.recording.formats.urdf import urdf_joints
 from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from recon4.recording.transform_messages import read_frames
@@ -125,6 +125,8 @@ def test_fixed_joints_of_a_description_are_read(tmp_path):
         URDF.replace("<robot", '<!DOCTYPE r [<!ENTITY a "b">]><robot', 1),
         URDF.replace("0.1 0 0.5", "0.1 0"),
         URDF.replace("0.1 0 0.5", "nan 0 0"),
+        URDF.replace("<parent", '<axis xyz="0 1"/><parent', 1),
+        URDF.replace("<parent", '<mimic joint="b" multiplier="x"/><parent', 1),
         URDF[:200],
         "<a>" * 100,
         "",
@@ -135,13 +137,60 @@ def test_a_description_that_is_not_plain_and_sound_is_refused(tmp_path, broken):
     with RobotBag(path, "db3") as bag:
         bag.description(broken)
     with pytest.raises(CorruptFile):
-        fixed_joints(broken)
+        urdf_joints(broken)
 
     frames, report = frames_of(path)
 
     assert len(frames) == 0
     assert report.counts["robot_descriptions_refused"] == 1
     assert "robot description is not read" in report.derived[0]
+
+
+def arm_at(folder, positions, *, urdf=URDF, more=()):
+    """Frames of a robot whose arm is at some positions [rad]."""
+    path = bag_path(folder, "db3")
+    with RobotBag(path, "db3") as bag:
+        bag.description(urdf)
+        for k, position in enumerate(positions):
+            bag.positions("/joint_states", T0_NS + k, {"b": position})
+        for k, transform in enumerate(more):
+            bag.tf(transform, topic="/tf", t_ns=T0_NS + k)
+    return frames_of(path, ("base_link", "arm"))
+
+
+def test_a_joint_that_is_held_in_one_position_is_a_mount(tmp_path):
+    frames, _ = arm_at(tmp_path, [0.5, 0.5004, 0.5])
+
+    assert_mount(frames.T_a_b("base_link", "arm"), mount(roll=np.rad2deg(0.5)))
+    assert frames.joints_above("arm") == []
+
+
+def test_a_joint_that_turns_about_a_level_axis_tilts_by_its_whole_range(tmp_path):
+    frames, _ = arm_at(tmp_path, [0.1, 0.5, -3.0])
+    (joint,) = frames.joints_above("arm")
+
+    assert frames.T_a_b("base_link", "arm") is None
+    assert joint.tilt_rad == pytest.approx(3.1, abs=0.03)
+    assert (joint.source, joint.named_by) == ("/joint_states", "/robot_description")
+
+
+def test_transforms_of_a_joint_count_before_its_positions(tmp_path):
+    moved = [("base_link", "arm", mount(roll=k)) for k in (0, 10, 20)]
+    (joint,) = arm_at(tmp_path, [0.0, 1.0], more=moved)[0].joints_above("arm")
+
+    assert (joint.source, joint.driven) == ("/tf", None)
+
+
+def test_a_joint_without_an_axis_or_positions_is_no_mount(tmp_path):
+    frames, report = arm_at(tmp_path, [np.inf, np.nan, 1e300])
+    assert frames.T_a_b("base_link", "arm") is None and frames.joints_above("arm") == []
+    assert report.counts["joint_positions_invalid"] == 3
+
+    (tmp_path / "axis").mkdir()
+    no_axis = URDF.replace('<child link="arm"/>', '<child link="arm"/><axis xyz="0 0 0"/>')
+    frames, report = arm_at(tmp_path / "axis", [0.0, 1.0], urdf=no_axis)
+    assert frames.joints_above("arm") == [] and report.counts["transforms_invalid"] == 1
+    assert "expected a name, an axis" in report.derived[0]
 
 
 NONSENSE = {
