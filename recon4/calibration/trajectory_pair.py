@@ -42,6 +42,8 @@ class TrajectoryPair:
     """Added to times of b at the middle of the walk to get times of a [s]."""
     rate: float
     """By how much the clock of b is slow: seconds to add a second."""
+    to_middle_s: float
+    """From the first pose of b to the middle of the walk [s]."""
     sd_rad: Array
     """Standard deviation of the rotation about the axes of a [rad], (3,)."""
     sd_m: Array
@@ -54,6 +56,16 @@ class TrajectoryPair:
     """Likewise the translation [m], (N,)."""
     used: Flags
     """Motions that agree with the rest, (N,)."""
+
+    @property
+    def clock(self) -> tuple[float, float]:
+        """Offset at the first pose of b [s] and rate [s/s] that a rig file has.
+
+        A rate that is not different from 0 is none: then the offset is that at the middle.
+        """
+        if abs(self.rate) <= TRAJECTORY_PAIR.rate_sigmas * self.sd_rate:
+            return self.offset_s, 0.0
+        return self.offset_s - self.rate * self.to_middle_s, self.rate
 
     @property
     def report_lines(self) -> tuple[str, ...]:
@@ -220,6 +232,7 @@ class _Problem:
             T_a_b=SE3(so3_exp(found.x[:3]), found.x[3:6]),
             offset_s=self._offset_s + float(found.x[6]),
             rate=float(found.x[7]) / self._half_s,
+            to_middle_s=(self._middle_ns - int(self._b.t_ns[0])) / 1e9,
             sd_rad=sd[:3],
             sd_m=sd[3:6],
             sd_offset_s=float(sd[6]),

@@ -216,6 +216,8 @@ class TrajectoryPairTuning(Struct, frozen=True, kw_only=True):
     """Steps of the least squares; trajectories of two walks never settle."""
     least_agreeing: float = 0.5
     """Ratio of motions that must agree."""
+    rate_sigmas: float = 3.0
+    """A rate of the clock within so many standard deviations of 0 is none."""
 
 
 TRAJECTORY_PAIR = TrajectoryPairTuning()

@@ -20,6 +20,8 @@ class RigLimits:
     sensors: int = 64
     head_deg_s: float = 3600.0
     """Rate of the head of a profiler."""
+    clock_ppm: float = 10_000.0
+    """Rate of a clock: quartzes are within 100, and what is beyond 1 % counts another unit."""
     baud: int = 10_000_000
     """Of a serial receiver."""
     time_terms: int = 3

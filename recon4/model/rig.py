@@ -34,11 +34,17 @@ DEFAULT_PORTS: dict[SensorKind, int] = {"profiler": PORTS.profiler, "laser2d": P
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "description", "kind", "head_topic",
-    "head_rate_deg_s", "beams", "fields",
+    "head_rate_deg_s", "beams", "fields", "clock_rate_ppm",
 }  # fmt: skip
 _IMU_KEYS = _MOUNTING_KEYS | {"topic", "sensor"}
 _GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial", "topic"}
 _SD_KEYS = ("sd_deg", "sd_mm", "sd_ms")
+_OF_LIDARS = {
+    "beams": "corrections of beams",
+    "fields": "columns of points",
+    "clock_rate_ppm": "a clock whose rate is corrected",
+}
+"""Keys of a sensor that only LiDARs have, and what they are."""
 _OPTIONAL_SD_KEYS = ("sd_beam_deg", "sd_beam_mm", "sd_antenna_mm", "sd_gnss_ms")
 
 
@@ -62,6 +68,8 @@ class Sensor:
     0 = the recording has the angles."""
     time_offset_s: float = 0.0
     """Added to the sensor's time stamps to get rig time [s]."""
+    clock_rate_ppm: float = 0.0
+    """LiDAR: how slow its clock is, added for each second since its first measurement [µs]."""
     address: str = ""
     """IP address its packets come from; empty = any."""
     port: int = 2368
@@ -276,6 +284,8 @@ def format_rig(rig: Rig) -> str:
         lines += _kind_lines(sensor)
         lines += _mounting_lines(sensor.T_body_sensor)
         lines += [f"time_offset_s = {sensor.time_offset_s!r}", f"port = {sensor.port}"]
+        rate_ppm = sensor.clock_rate_ppm
+        lines += [f"clock_rate_ppm = {rate_ppm!r}"] if rate_ppm else []
         lines += [f"address = {_quoted(sensor.address)}", f"topic = {_quoted(sensor.topic)}"]
         lines += [f"serial = {_quoted(sensor.serial)}"] if sensor.serial else []
         described = sensor.description
@@ -331,7 +341,7 @@ def _sensor(row: TomlTable) -> Sensor:
         )
     if kind != "profiler" and ("head_topic" in row or "head_rate_deg_s" in row):
         raise ConfigError(f"{row.where}: only a profiler has a head, this is a {kind}")
-    for key, what in (("beams", "corrections of beams"), ("fields", "columns of points")):
+    for key, what in _OF_LIDARS.items():
         if kind != "lidar" and key in row:
             raise ConfigError(f"{row.where}: only a lidar has {what}, this is a {kind}")
     name = row.text("name")
@@ -343,8 +353,9 @@ def _sensor(row: TomlTable) -> Sensor:
         T_body_sensor=_mounting(row),
         kind=kind,
         head_topic=row.text("head_topic"),
-        head_rate_rad_s=_head_rate(row),
+        head_rate_rad_s=float(np.deg2rad(_limited(row, "head_rate_deg_s", RIG_LIMITS.head_deg_s))),
         time_offset_s=row.number("time_offset_s"),
+        clock_rate_ppm=_limited(row, "clock_rate_ppm", RIG_LIMITS.clock_ppm),
         address=row.text("address"),
         port=row.port(lidar_model(model).port if kind == "lidar" else DEFAULT_PORTS[kind]),
         topic=row.text("topic"),
@@ -364,14 +375,11 @@ def _kind(row: TomlTable) -> SensorKind:
     raise ConfigError(f"{row.where}: kind must be one of {_KINDS}, got {found!r:.80}")
 
 
-def _head_rate(row: TomlTable) -> float:
-    rate_deg_s = row.number("head_rate_deg_s")
-    if abs(rate_deg_s) > RIG_LIMITS.head_deg_s:
-        raise ConfigError(
-            f"{row.where}: head_rate_deg_s must be within ±{RIG_LIMITS.head_deg_s:g}, "
-            f"got {rate_deg_s:g}"
-        )
-    return float(np.deg2rad(rate_deg_s))
+def _limited(row: TomlTable, key: str, most: float) -> float:
+    number = row.number(key)
+    if abs(number) > most:
+        raise ConfigError(f"{row.where}: {key} must be within ±{most:g}, got {number:g}")
+    return number
 
 
 def _mounting(row: TomlTable) -> SE3:

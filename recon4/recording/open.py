@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.recording.clock_rates import with_clock_rates
 from recon4.recording.kinds import PLANAR, RecordingKind, contents_of, recognize
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
 from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
@@ -65,7 +66,8 @@ def open_recording(request: OpenRequest, kinds: Kinds = KINDS) -> Recording:
     for opener in kinds[kind].openers:
         recording = opener(request)
         if recording is not None:
-            return replace(recording, kind=recording.kind or str(kind))
+            named = replace(recording, kind=recording.kind or str(kind))
+            return with_clock_rates(named, request.report)
     raise UnknownFormat(f"{paths[0].name}: {kind}: no reader knows the sensor that made it")
 
 

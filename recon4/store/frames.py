@@ -190,6 +190,8 @@ class FrameStore:
         rig = rig or recorded
         if [sensor.name for sensor in rig.sensors] != [s.name for s in recorded.sensors]:
             raise StoreError(f"{folder.name}: the calibrated rig has other sensors")
+        if [s.clock_rate_ppm for s in rig.sensors] != [s.clock_rate_ppm for s in recorded.sensors]:
+            raise StoreError(f"{folder.name}: the rates of clocks are applied when it is read")
         imu, gnss = folder / "imu.npz", folder / "gnss.npz"
         return FrameStore(
             folder,

@@ -318,10 +318,16 @@ def _trajectories(task: _Task) -> MethodResult:
             f"--sensors A,B), got {task.sensors!r:.80}"
         )
     first, second = (rig.sensors[rows[name]] for name in names)
-    found = align_trajectories(*(read_tum(file) for file in files))
+    of_first, of_second = (read_tum(file) for file in files)
+    found = align_trajectories(of_first, of_second)
     mounted = with_mount(rig, rows[second.name], first.T_body_sensor @ found.T_a_b)
+    offset_s, rate = found.clock
+    # What the first one's own clock is corrected by, where the second one's starts.
+    late_s = (int(of_second.t_ns[0]) - int(of_first.t_ns[0])) / 1e9 + offset_s
     clocked = replace(
-        mounted.sensors[rows[second.name]], time_offset_s=first.time_offset_s + found.offset_s
+        mounted.sensors[rows[second.name]],
+        time_offset_s=first.time_offset_s + offset_s + 1e-6 * first.clock_rate_ppm * late_s,
+        clock_rate_ppm=first.clock_rate_ppm + 1e6 * rate,
     )
     sensors = [clocked if sensor.name == second.name else sensor for sensor in mounted.sensors]
     outcome = f"mount and clock of {second.name!r} against {first.name!r} from their trajectories"

@@ -23,6 +23,7 @@ import { short } from "./rig_math.js";
 const CM = { factor: 100, digits: 4, unit: "cm" };
 const DEGREES = { factor: 1, digits: 6, unit: "°" };
 const MS = { factor: 1e3, digits: 6, unit: "ms" };
+const PPM = { factor: 1, digits: 3, unit: "ppm" };
 const PLAIN = { factor: 1, digits: 0, unit: "", whole: true };
 const DECIMALS = 9; // of a changed number in its unit of the file
 const KINDS = { lidar: "LiDAR", profiler: "Profiler", laser2d: "2-D laser" };
@@ -37,6 +38,7 @@ const NEW_SENSOR = {
   xyz_m: [0, 0, 0],
   rpy_deg: [0, 0, 0],
   time_offset_s: 0,
+  clock_rate_ppm: 0,
   address: "",
   port: 2368,
   topic: "",
@@ -185,6 +187,7 @@ export class RigForm extends HTMLElement {
    */
   #sensor(sensor, k) {
     const path = `sensors.${k}`;
+    const rate = { label: "Clock rate", path: `${path}.clock_rate_ppm`, ...PPM };
     const use = (/** @type {Event} */ event) => {
       sensor.enabled = targetOf(event).checked;
       this.#edited();
@@ -194,6 +197,7 @@ export class RigForm extends HTMLElement {
       this.#triple(sensor.xyz_m, { label: "Position", path: `${path}.xyz_m` }, XYZ),
       this.#triple(sensor.rpy_deg, { label: "Rotation", path: `${path}.rpy_deg` }, RPY),
       this.#numbers(sensor, path, [
+        sensor.kind === "lidar" ? this.#number(sensor, "clock_rate_ppm", rate) : nothing,
         this.#text(sensor, "address", { label: "Address", path: `${path}.address`, hint: "any" }),
         this.#text(sensor, "topic", { label: "Topic", path: `${path}.topic`, hint: "detected" }),
         this.#text(sensor, "serial", { label: "Serial number", path: `${path}.serial` }),

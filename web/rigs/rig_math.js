@@ -106,6 +106,7 @@ const PLAIN = [
   "topic",
   "head_topic",
   "head_rate_deg_s",
+  "clock_rate_ppm",
 ];
 /**
  * @param {Record<string, any>} before

@@ -1369,6 +1369,7 @@ export interface SensorContent {
   xyz_m?: [number, number, number];
   rpy_deg?: [number, number, number];
   time_offset_s?: number;
+  clock_rate_ppm?: number;
   address?: string;
   port?: number;
   topic?: string;

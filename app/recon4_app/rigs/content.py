@@ -13,6 +13,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, parse_beams
 from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
+from recon4.model.limits import RIG_LIMITS
 from recon4.model.point_recipes import PointRecipe, parse_fields_text
 from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
 from recon4.model.serial_device import parse_serial_device
@@ -174,6 +175,11 @@ def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[
             f"{where}.head_rate_deg_s",
             f"{label}: expected at most {RIG_CONTENT.largest_head_deg_s:g} °/s",
         )
+    if sensor.clock_rate_ppm and sensor.kind != "lidar":
+        yield f"{where}.clock_rate_ppm", f"{label}: only a lidar has a rate of its clock"
+    if abs(sensor.clock_rate_ppm) > RIG_LIMITS.clock_ppm:
+        text = f"{label}: expected at most {RIG_LIMITS.clock_ppm:g} ppm"
+        yield f"{where}.clock_rate_ppm", text
     yield from _beams_problems(sensor, f"{where}.beams", label)
     yield from _fields_problems(sensor, f"{where}.fields", label)
     if sensor.address and not _is_address(sensor.address):
@@ -251,6 +257,7 @@ def _sensor(content: SensorContent) -> Sensor:
         head_topic=content.head_topic.strip(),
         head_rate_rad_s=math.radians(content.head_rate_deg_s),
         time_offset_s=content.time_offset_s,
+        clock_rate_ppm=content.clock_rate_ppm,
         address=content.address,
         port=content.port,
         topic=content.topic.strip(),
@@ -280,6 +287,7 @@ def _sensor_content(sensor: Sensor) -> SensorContent:
         xyz_m=_triple(sensor.T_body_sensor.t),
         rpy_deg=rpy_deg(sensor.T_body_sensor.R),
         time_offset_s=sensor.time_offset_s,
+        clock_rate_ppm=sensor.clock_rate_ppm,
         address=visible(sensor.address),
         port=sensor.port,
         topic=visible(sensor.topic),

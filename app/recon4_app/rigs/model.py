@@ -48,6 +48,8 @@ class SensorContent(RigPart):
     """Roll, pitch, yaw in the body frame [deg]."""
     time_offset_s: Number = 0.0
     """Added to its timestamps [s]."""
+    clock_rate_ppm: Number = 0.0
+    """LiDAR: added for each second since its first measurement [µs]."""
     address: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """IPv4 address its packets come from; empty = any."""
     port: Port = 2368

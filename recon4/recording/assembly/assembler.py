@@ -13,6 +13,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, Sensor
+from recon4.model.trajectory import Times
 from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation_rate import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
@@ -322,8 +323,8 @@ def _runs(shots: Shots, gap_ns: int) -> list[Shots]:
     return [shots.take(slice(start, end)) for start, end in ends] if back else [shots]
 
 
-def moved(shots: Shots, shift_ns: int) -> Shots:
-    """The same shots at later times."""
+def moved(shots: Shots, shift_ns: int | Times) -> Shots:
+    """The same shots at later times; one shift [ns], or one of each, (N,)."""
     return Shots(
         shots.sensor,
         shots.t_ns + shift_ns,

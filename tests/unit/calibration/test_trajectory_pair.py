@@ -1,5 +1,7 @@
 """Mount and clock of a LiDAR from its trajectory and that of another one."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,6 +59,17 @@ def test_mount_offset_and_rate_of_a_clock_are_found():
     assert np.linalg.norm(shift) < 0.005
     assert found.offset_s == pytest.approx(OFFSET_S, abs=2e-3)
     assert found.rate == pytest.approx(RATE, abs=5e-5)
+
+
+def test_the_clock_of_a_rig_file_begins_with_the_first_pose():
+    a, b = trajectories()
+    found = align_trajectories(a, b)
+    offset_s, rate = found.clock
+
+    since_s = (b.t_ns - b.t_ns[0]) / 1e9
+    put_right_s = (b.t_ns - START_NS) / 1e9 + offset_s + rate * since_s
+    np.testing.assert_allclose(put_right_s, np.arange(2.0, 59.0, 0.05), atol=3e-3)
+    assert replace(found, sd_rate=abs(found.rate)).clock == (found.offset_s, 0.0)
 
 
 def test_the_stated_errors_are_those_that_are_made():
