@@ -225,6 +225,7 @@ _SCANS = {
     "lines_out_of_order": _lost("lines", apart=True),
     "lines_without_angle": _lost("lines", stated=True),
     "head_angles_invalid": _lost("messages"),
+    "joint_positions_invalid": _lost("messages", apart=True),
     "joint_poses_wrong_time": _lost("messages"),
     "joint_poses_repeated": _usual(),
     "joint_poses_beyond_limit": _lost("messages"),

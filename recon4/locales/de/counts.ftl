@@ -197,6 +197,7 @@ count-lines_missing = nie angekommen
 count-lines_out_of_order = früher als der vorherige, ausgelassen
 count-lines_without_angle = ohne Winkel oder Pose des Kopfes, ausgelassen
 count-head_angles_invalid = Winkel des Kopfes, die keine Zahlen sind, ausgelassen
+count-joint_positions_invalid = Stellungen von Gelenken, die keine Zahlen sind, ausgelassen
 count-joint_poses_wrong_time = Posen eines Gelenks einer anderen Zeit, ausgelassen
 count-joint_poses_repeated = von einer Zeit, die schon da war
     .noun = Posen eines Gelenks

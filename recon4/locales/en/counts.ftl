@@ -198,6 +198,7 @@ count-lines_missing = never arrived
 count-lines_out_of_order = earlier than the one before, left out
 count-lines_without_angle = without an angle or a pose of the head, left out
 count-head_angles_invalid = angles of the head that are no numbers, left out
+count-joint_positions_invalid = positions of joints that are no numbers, left out
 count-joint_poses_wrong_time = poses of a joint of another time, left out
 count-joint_poses_repeated = of a time that was there before
     .noun = poses of a joint
