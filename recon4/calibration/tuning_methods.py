@@ -217,7 +217,7 @@ class TrajectoryPairTuning(Struct, frozen=True, kw_only=True):
     least_agreeing: float = 0.5
     """Ratio of motions that must agree."""
     rate_sigmas: float = 3.0
-    """A rate of the clock within so many standard deviations of 0 is none."""
+    """A rate of the clock within this many standard deviations of 0 is none."""
 
 
 TRAJECTORY_PAIR = TrajectoryPairTuning()
