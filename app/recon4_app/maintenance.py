@@ -11,6 +11,7 @@ from recon4_app.jobs.model import JobState
 from recon4_app.jobs.store import JobStore
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.logs import rotate_grown
+from recon4_app.threads import in_thread
 from recon4_app.tuning import MAINTENANCE
 
 log = logging.getLogger(__name__)
@@ -21,7 +22,7 @@ async def maintain(tasks: Sequence[Callable[[], object]]) -> None:
     while True:
         for task in tasks:
             try:
-                await asyncio.to_thread(task)
+                await in_thread(task)
             except Exception:
                 log.exception("could not clean up or back up; trying again in an hour")
         await asyncio.sleep(MAINTENANCE.maintenance_interval_s)
@@ -31,9 +32,9 @@ async def rotate_logs(state: Path, jobs: JobStore, current_capture: CurrentCaptu
     """Rotate the logs that other processes append to, until cancelled."""
     while True:
         try:
-            paths = await asyncio.to_thread(lambda: list(active_logs(state, jobs, current_capture)))
+            paths = await in_thread(lambda: list(active_logs(state, jobs, current_capture)))
             for path in paths:
-                await asyncio.to_thread(rotate_grown, path)
+                await in_thread(rotate_grown, path)
         except Exception:
             log.exception("could not rotate the logs; trying again")
         await asyncio.sleep(MAINTENANCE.log_rotation_interval_s)

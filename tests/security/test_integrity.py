@@ -350,7 +350,8 @@ def test_changed_files_of_an_earlier_server_are_found_and_named(tmp_path, capsys
     with server_thread(tmp_path):
         pass
     state = tmp_path / ".recon4"
-    assert main(["verify", str(tmp_path)]) == 0
+    code = main(["verify", str(tmp_path)])
+    assert code == 0, capsys.readouterr()
     data = bytearray((state / "access.sqlite").read_bytes())
     data[-1] ^= 1
     (state / "access.sqlite").write_bytes(data)

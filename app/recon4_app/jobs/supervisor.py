@@ -30,6 +30,7 @@ from recon4_app.jobs.status import JobStatus, after
 from recon4_app.jobs.store import JobStore
 from recon4_app.jobs.tuning import SUPERVISOR_TIMES
 from recon4_app.settings import ServerSettings, worker_environment
+from recon4_app.threads import in_thread
 
 log = logging.getLogger(__name__)
 
@@ -151,7 +152,7 @@ class Supervisor:
             self._wake.clear()
             asked, self._asked = self._asked, set()
             try:
-                changed = await asyncio.to_thread(self.step)
+                changed = await in_thread(self.step)
             except Exception:
                 log.exception("the queue could not be processed; trying again")
                 changed = set()

@@ -20,6 +20,7 @@ from recon4_app.errors import AppError
 from recon4_app.jobs.model import Job
 from recon4_app.jobs.store import JobStore
 from recon4_app.settings import Network, ServerSettings
+from recon4_app.threads import in_thread
 from recon4_app.webhooks.addresses import NotReachable, target_of
 from recon4_app.webhooks.model import EventKind, Waiting, WebhookEvent
 from recon4_app.webhooks.post import post
@@ -60,9 +61,9 @@ class Webhooks:
             self._wake.clear()
             pause_s = WEBHOOKS.look_every_s
             try:
-                await asyncio.to_thread(self.collect)
+                await in_thread(self.collect)
                 await self.deliver()
-                next_s = await asyncio.to_thread(self.store.next_due_s)
+                next_s = await in_thread(self.store.next_due_s)
                 pause_s = pause_s if next_s is None else min(next_s, pause_s)
             except Exception:
                 log.exception("webhooks: trying again")
@@ -84,7 +85,7 @@ class Webhooks:
     async def deliver(self) -> None:
         """Post what is due; the receivers do not wait for each other."""
         by_webhook: dict[str, list[Waiting]] = defaultdict(list)
-        for one in await asyncio.to_thread(self.store.due):
+        for one in await in_thread(self.store.due):
             by_webhook[one.webhook].append(one)
         await asyncio.gather(
             *(self._deliver_all(waiting[: WEBHOOKS.batch]) for waiting in by_webhook.values())
@@ -116,7 +117,7 @@ class Webhooks:
             problem = "" if 200 <= status < 300 else _status_problem(status)
         except NotReachable as error:
             problem = str(error)
-        await asyncio.to_thread(self._note, one, problem)
+        await in_thread(self._note, one, problem)
 
     def _note(self, one: Waiting, problem: str) -> None:
         if problem:
