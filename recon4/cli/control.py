@@ -58,7 +58,8 @@ def control_points(
             raise ConfigError("SURVEY: expected a file with surveyed points")
         _make_again(project, SiteControl(targets=(), crs=""))
         return
-    trial = _try(project, _points(survey), picks, crs=crs)
+    points, crs = _points(survey, crs)
+    trial = _try(project, points, picks, crs=crs)
     write(trial_text(trial))
     if trial.unseen:
         write(f"not measured in the map: {', '.join(trial.unseen)}")
@@ -67,17 +68,21 @@ def control_points(
         _make_again(project, trial.control)
 
 
-def _points(survey: Path) -> tuple[ControlPoint, ...]:
+def _points(survey: Path, crs: str) -> tuple[tuple[ControlPoint, ...], str]:
+    """The points of a file, and their system: one is chosen for latitude and longitude."""
     from recon4.recording.tables.coordinates import raise_question
     from recon4.slices.control_points import read_control
     from recon4.slices.tuning_files import CONTROL_FILES
     from recon4.untrusted.bounded import read_bytes_limited
 
-    found = read_control(read_bytes_limited(survey, CONTROL_FILES.max_bytes), name=survey.name)
+    data = read_bytes_limited(survey, CONTROL_FILES.max_bytes)
+    found = read_control(data, name=survey.name, crs=crs)
     raise_question(found.table, survey.name)
     for line in found.skipped:
         write(f"{survey.name} {line}: left out")
-    return found.points
+    if found.crs:
+        write(f"{survey.name}: latitude and longitude, put into {found.crs}")
+    return found.points, found.crs or crs
 
 
 def _try(

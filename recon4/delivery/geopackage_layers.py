@@ -68,7 +68,7 @@ def write_layers(project: Path, path: Path, source: LayerSource, *, progress: Pr
 
 
 def _trajectory(walk: Trajectory) -> FeatureLayer:
-    columns = {"start_ns": int, "end_ns": int, "poses": int, "length_m": float}
+    columns: dict[str, type] = {"start_ns": int, "end_ns": int, "poses": int, "length_m": float}
     t_m = walk.T_a_b.t
     length_m = float(np.linalg.norm(np.diff(t_m, axis=0), axis=1).sum())
     ends = {"start_ns": int(walk.t_ns[0]), "end_ns": int(walk.t_ns[-1])} if len(walk) else {}
@@ -80,7 +80,7 @@ def _trajectory(walk: Trajectory) -> FeatureLayer:
 def _control(project: Path, level: Path) -> FeatureLayer:
     """Surveyed points that placed or judged this map, with their residuals."""
     names = ("east", "north", "up")
-    columns = {"id": str, "role": str} | {f"{name}_off_m": float for name in names}
+    columns: dict[str, type] = {"id": str, "role": str} | {f"{name}_off_m": float for name in names}
     columns |= {"sd_horizontal_m": float, "sd_height_m": float, "single_handed": int, "w": float}
     record = read_object(level / "georeference.json", max_bytes=LIMITS.findings_bytes)
     outcome, system = control_in(record), read_crs(level)
@@ -118,7 +118,7 @@ def _residual(target: SeenTarget, row: ControlRow) -> dict[str, Value]:
 def _findings(project: Path) -> tuple[FeatureLayer, FeatureLayer]:
     """Each finding at the middle of its stretch, if it has a place; and the stretches as lines."""
     texts = ("kind", "level", "title", "text", "remedy", "sensor", "direction", "values")
-    columns = dict.fromkeys(texts, str) | {"start_s": float, "end_s": float}
+    columns: dict[str, type] = dict.fromkeys(texts, str) | {"start_s": float, "end_s": float}
     found = [(line, _said(one)) for one, line in placed_findings(project)]
     places = [Feature(line[len(line) // 2 :][:1], about) for line, about in found]
     stretches = [
@@ -151,7 +151,7 @@ def _said(one: SaidFinding) -> dict[str, Value]:
 
 
 def _notes(project: Path) -> FeatureLayer:
-    columns = dict.fromkeys(("text", "status", "who", "time"), str)
+    columns: dict[str, type] = dict.fromkeys(("text", "status", "who", "time"), str)
     features = [
         Feature(
             np.array([one.p_map]),
@@ -164,7 +164,7 @@ def _notes(project: Path) -> FeatureLayer:
 
 def _double_walls(tiles: TileSet, progress: Progress) -> FeatureLayer:
     figures = ("separation_m", "limit_m", "sigma_m", "bimodality")
-    columns = dict.fromkeys(figures, float) | {"patches": int, "points": int}
+    columns: dict[str, type] = dict.fromkeys(figures, float) | {"patches": int, "points": int}
     features = []
     if {"normal", "t_ns", "frame_id"} <= set(tiles.fields):  # earlier maps have no normals
         found = find_double_walls(tiles, progress=progress)

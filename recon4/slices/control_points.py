@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
-from recon4.errors import ConfigError, CorruptFile
+import numpy as np
+
+from recon4.errors import CorruptFile
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin, to_enu
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
-from recon4.recording.tables.points import read_point_table
+from recon4.recording.tables.points import PointTable, TablePoint, read_point_table
 from recon4.slices.tuning_files import CONTROL_FILES
 
 Role = Literal["control", "check"]
@@ -36,35 +39,61 @@ class ControlPreview:
     """Its first rows, what the columns are taken for, and the question to the operator."""
     skipped: tuple[str, ...]
     """Skipped lines, with the reason."""
+    crs: str = ""
+    """System into which latitude and longitude were put; empty = the file has other columns."""
+
+
+def _projected(found: PointTable, crs: str) -> tuple[tuple[TablePoint, ...], str]:
+    """The rows with easting, northing and height in a system; others come back as they are."""
+    if "lat" not in found.preview.columns:
+        return found.points, ""
+    rows = [one for one in found.points if abs(one.xyz_m[1]) <= 90.0 and abs(one.xyz_m[0]) <= 360.0]
+    if len(rows) < len(found.points):
+        bad = next(one for one in found.points if one not in rows)
+        raise CorruptFile(
+            f"line {bad.line}: expected latitude and longitude in degrees, got "
+            f"{bad.xyz_m[1]:g}, {bad.xyz_m[0]:g}"
+        )
+    if not rows:
+        return (), ""
+    lon, lat, height = np.array([one.xyz_m for one in rows]).T
+    lat, lon = np.deg2rad(lat), np.deg2rad(lon)
+    place = CrsTransform(GeodeticOrigin(float(lat[0]), float(lon[0]), float(height[0])), crs)
+    xyz_m = place.to_crs(to_enu(place.origin, lat, lon, ellipsoidal_height_m=height))
+    return tuple(
+        replace(one, xyz_m=(x, y, z)) for one, (x, y, z) in zip(rows, xyz_m.tolist(), strict=True)
+    ), place.crs
 
 
 def read_control(
-    data: bytes, *, name: str = "file", choice: ColumnChoice = AS_THE_TABLE_SAYS
+    data: bytes,
+    *,
+    name: str = "file",
+    choice: ColumnChoice = AS_THE_TABLE_SAYS,
+    crs: str = "",
 ) -> ControlPreview:
     """Read a list of surveyed points, see `recon4.recording.tables`.
 
     Args:
         data: The file's bytes.
         name: For messages.
-        choice: What a person says of the columns; without it and without names of east and north
-            the preview has a question.
+        choice: What a person says of the columns; without it and names the preview has a question.
+        crs: System for latitude and longitude (WGS 84, ellipsoidal heights); empty = UTM.
 
     Raises:
         CorruptFile: If no line is a point.
         ConfigError: If the chosen columns name no place.
+        GeoreferenceError: If the system is not known, or a grid of its geoid is missing.
     """
     if len(data) > CONTROL_FILES.max_bytes:
         raise CorruptFile(
             f"{name}: expected at most {CONTROL_FILES.max_bytes} bytes, got {len(data)}"
         )
     found = read_point_table(data, name, choice=choice)
-    if "lat" in found.preview.columns:
-        raise ConfigError(
-            f"{name}: expected meters of a map projection, got latitude and longitude"
-        )
+    rows, crs = _projected(found, crs)
     points: dict[str, ControlPoint] = {}
     skipped = [*found.skipped]
-    for row in found.points:
+    for row in rows:
         if row.name in points:
             skipped.append(f"line {row.line}: point {row.name[:40]!r} is there already")
         elif row.role.lower() not in _ROLES:
@@ -83,5 +112,6 @@ def read_control(
     return ControlPreview(
         points=tuple(points.values()),
         table=found.preview,
+        crs=crs,
         skipped=(*skipped[: CONTROL_FILES.max_skipped], *[f"{more} more lines"] * (more > 0)),
     )

@@ -27,11 +27,15 @@ def test_control_points_are_looked_at_kept_and_judged(server):
     file = {"name": "p.csv", "base64": base64.b64encode(text.encode()).decode()}
 
     preview = sent(server, "/control/preview", file).json()
+    degrees = base64.b64encode(b"id,lat,lon,h\nA,49.2,16.6,250\n").decode()
+    given = {"name": "d.csv", "base64": degrees}
+    projected = sent(server, "/control/preview", given).json()
     state = {"points": preview["points"], "picks": {"A": [0, 5, 1.5], "B": [16, 5, 1.5]}}
     kept = httpx.put(f"{server.url}{BASE}/control", json=state, timeout=HANG_S)
     report = server.get(f"{BASE}/control/report").json()
     near = server.get(f"{BASE}/control/surface", params={"point": "A"}).json()
 
+    assert (preview["crs"], projected["crs"]) == ("", "EPSG:32633")
     assert preview["table"]["question"].startswith("is 0.02 the easting")
     assert kept.status_code == 200
     assert report["rows"][0]["east_m"] == pytest.approx(-0.02)

@@ -206,7 +206,11 @@ ONLY_HERE = {
         "recon4/slices/sheet.py",
         "app/recon4_app/viewer/cloud/palette.py",
     },
-    "ezdxf": {"recon4/slices/export.py", "recon4/products/drawing.py"},
+    "ezdxf": {
+        "recon4/slices/export.py",
+        "recon4/products/drawing.py",
+        "recon4/recording/tables/dxf_points.py",
+    },
     "shapely": {"recon4/products", "recon4/model/volumes.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},

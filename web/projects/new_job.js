@@ -128,7 +128,7 @@ export class NewJob extends HTMLElement {
         <details>
           <summary>IMU and GNSS files</summary>
           ${field("IMU, CSV", this.#text("imu"), "Empty: from the recording")}
-          ${field("GNSS: CSV, .pos, SBET, UBX, NMEA", this.#text("gnss"), "Empty: from the recording")}
+          ${field("GNSS: CSV, .pos, UBX …", this.#text("gnss"), "Empty: from the recording")}
         </details>
         <details class="settings" @toggle=${() => this.#showSettings()}>
           <summary>All settings</summary>

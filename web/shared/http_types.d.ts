@@ -247,6 +247,7 @@ export interface ControlPreview {
   points: Array<ControlPoint>;
   table: TablePreview;
   skipped: Array<string>;
+  crs: string;
 }
 
 export interface ControlReport {

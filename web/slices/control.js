@@ -41,6 +41,7 @@ import { siteSection } from "./site.js";
  */
 
 const MAX_ROWS = 300;
+const FILES = ".csv,.txt,.dxf";
 const MAX_NAMED = 10;
 const MOST_BYTES = 600_000;
 /** @type {Record<string, Columns[number]>} */
@@ -64,11 +65,12 @@ const named = (/** @type {string[]} */ ids) =>
   (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
 
 /** How many points were read, and where the first of them lies. */
-function firstPoint(/** @type {ControlPoint[]} */ points) {
+function firstPoint(/** @type {ControlPreview} */ { points, crs }) {
   const [one] = points;
   if (!one) return "";
+  const put = crs ? ` (degrees, put into ${crs}: its code for Try)` : "";
   const [x, y, z] = one.xyz_m.map((value) => value.toFixed(3));
-  return `${points.length} points; the first, ${one.id}: east ${x}, north ${y}, height ${z} m`;
+  return `${points.length} points; the first, ${one.id}: east ${x}, north ${y}, up ${z} m${put}`;
 }
 
 async function base64Of(/** @type {File} */ file) {
@@ -143,7 +145,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
     const columns = found.table.columns.map((one) => SWAPPED[one] ?? one);
     const some = found.points.length > 0;
     return html`${columnTable(found.table, again)}
-      <p>${firstPoint(found.points)}</p>
+      <p>${firstPoint(found)}</p>
       ${found.skipped.slice(0, 5).map((text) => html`<p class="error">${text}</p>`)}
       <div class="buttons">
         ${button("Swap east and north", () => look(file, columns, unit))}
@@ -300,10 +302,10 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
       if (file) attempt(message(), () => look(file));
     };
     const none = html`<p class="quiet">
-      No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma too.
+      No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma; lat, lon; DXF.
     </p>`;
     render(
-      html`<input type="file" accept=".csv,.txt" aria-label="Survey file" @change=${pickFile} />
+      html`<input type="file" accept=${FILES} aria-label="Survey file" @change=${pickFile} />
         <div>${preview ? previewed(preview) : nothing}</div>
         <p class="quiet status" role="status"></p>
         <p class="error problem" role="alert"></p>

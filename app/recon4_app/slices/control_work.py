@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.model.site_control import SITE_GRID
 from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_limits import ControlLimits
@@ -23,9 +25,20 @@ from recon4_app.slices.model import ControlState, ExportContext
 from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, stamp_text, tiles_of
 
 
-def preview_control(data: bytes, name: str, choice: ColumnChoice) -> ControlPreview:
+@dataclass(frozen=True, slots=True)
+class SurveyFile:
+    """A file of surveyed points as a person sent it."""
+
+    data: bytes
+    name: str
+    crs: str
+    """Of the map, into which latitude and longitude are put."""
+
+
+def preview_control(file: SurveyFile, choice: ColumnChoice) -> ControlPreview:
     """Points and open questions of a survey file."""
-    return read_control(data, name=name, choice=choice)
+    crs = "" if file.crs == SITE_GRID else file.crs
+    return read_control(file.data, name=file.name, choice=choice, crs=crs)
 
 
 def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:

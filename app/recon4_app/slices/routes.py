@@ -13,6 +13,7 @@ from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import ConfigError
+from recon4.review.state import read_summary
 from recon4.slices.compare import Comparison
 from recon4.slices.control_points import ControlPreview
 from recon4.slices.double_places import DoubleReport
@@ -258,16 +259,20 @@ async def export(
 async def preview_control(
     project_id: str, file: ControlFile, server: Server, *, caller: CalledBy
 ) -> ControlPreview:
-    """Points found in a CSV file, and the question to answer before they are stored."""
-    server.projects.folder(project_id)
+    """Points found in a table or DXF, and the question to answer before they are stored."""
+    folder = server.projects.folder(project_id)
     try:
         data = base64.b64decode(file.base64, validate=True)
     except (binascii.Error, ValueError) as error:
         raise BadRequest("the file must be sent as base64") from error
+    crs = str(((await run_in_threadpool(read_summary, folder)) or {}).get("crs") or "")
     terms = Terms(person=caller.name)
     return await caller.wait(
         server.slices.run_background(
-            terms, control_work.preview_control, data, file.name, file.choice
+            terms,
+            control_work.preview_control,
+            control_work.SurveyFile(data, file.name, crs),
+            file.choice,
         )
     )
 

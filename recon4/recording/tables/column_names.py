@@ -70,7 +70,7 @@ _HEIGHT = _words(
 _LAT = _words("lat latitude breite geographischebreite sirka zemepisnasirka latitud latitudine")
 _LON = _words("lon lng long longitude lange laenge delka zemepisnadelka longitud longitudine")
 _ID = _words(
-    "id name point pointid pointname pointno pointnumber ptid pt pid nr no num number punkt"
+    "id localid name point pointid pointname pointno pointnumber ptid pt pid nr no num number punkt"
     " punktnummer punktnr punktname punktid pktnr pkt pnr ptnr bod cislo cislobodu cb bodc nom"
     " nombre punto numero label station marker gcp target nazev oznaceni numerpunktu nrpunktu"
 )

@@ -16,6 +16,7 @@ from recon4.recording.tables.coordinates import (
     chosen_columns,
     preview_table,
 )
+from recon4.recording.tables.dxf_points import dxf_table, is_dxf
 from recon4.recording.tables.layout import (
     NOT_MEASURED,
     TableLayout,
@@ -62,7 +63,7 @@ def read_point_table(
     purpose: Purpose = "survey",
     partial: bool = False,
 ) -> PointTable:
-    """Read a list of points; columns by their names, or name, x, y, z and a radius.
+    """Read a list of points; columns by their names, or name, x, y, z and a radius; or a DXF.
 
     Args:
         data: The file's bytes.
@@ -75,7 +76,7 @@ def read_point_table(
         CorruptFile: If no line has a number, or a cell cannot be read.
         ConfigError: If the chosen columns name no place.
     """
-    text = unpacked(universal(decode_table(data, name)))
+    text = dxf_table(data, name) if is_dxf(data) else unpacked(universal(decode_table(data, name)))
     try:
         layout = TableLayout.of(text, name, fewest=1)
         preview = preview_table(layout, choice, purpose=purpose)

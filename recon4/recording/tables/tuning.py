@@ -23,6 +23,16 @@ class TableTuning(Struct, frozen=True, kw_only=True):
 TABLES = TableTuning()
 
 
+class DxfPointTuning(Struct, frozen=True, kw_only=True):
+    """Points of drawings (`dxf_points.py`)."""
+
+    most_pairs: int = 4_000_000
+    """Points times texts: in a larger drawing points are numbered."""
+
+
+DXF_POINTS = DxfPointTuning()
+
+
 class ShownTableTuning(Struct, frozen=True, kw_only=True):
     """What of a table is shown to who is asked what its columns mean."""
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from recon4.errors import CorruptFile
+from recon4.errors import CorruptFile, GeoreferenceError
 from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_limits import ControlLimits
@@ -270,3 +270,20 @@ def test_a_row_that_is_no_point_is_listed_before_the_first_that_is_one_too():
         "line 2: expected a number, got 'x'",
         "line 4: expected control or check, got 'boss'",
     )
+
+
+def test_latitude_and_longitude_become_utm_of_the_place_or_the_system_that_is_given():
+    text = b"\xef\xbb\xbflocal_id;lon;lat;height\nA;16,6;49,2;250,25\nB;16,601;49,2;251\n"
+    found = read_control(text)
+    given = read_control(text, crs="EPSG:5514")
+
+    assert (found.crs, given.crs) == ("EPSG:32633", "EPSG:5514")
+    assert found.table.question == ""
+    assert found.points[0].xyz_m == pytest.approx((616556.553, 5450921.330, 250.25), abs=1e-3)
+    east_m = found.points[1].xyz_m[0] - found.points[0].xyz_m[0]
+    assert east_m == pytest.approx(72.9, abs=0.1)
+    assert -7e5 < given.points[0].xyz_m[0] < -5e5
+    with pytest.raises(GeoreferenceError, match="needs the grid us_nga_egm08_25"):
+        read_control(text, crs="EPSG:32633+3855")
+    with pytest.raises(CorruptFile, match="line 2: expected latitude and longitude in degrees"):
+        read_control(b"id,lat,lon,height\nA,616546,5450898,250\n")
