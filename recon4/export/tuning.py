@@ -104,3 +104,19 @@ class ExpectedTuning(Struct, frozen=True, kw_only=True):
 
 
 EXPECTED = ExpectedTuning()
+
+
+class BcfTuning(Struct, frozen=True, kw_only=True):
+    """Notes as BCF."""
+
+    field_of_view_deg: float = 60.0
+    """Of the camera, from the lower to the upper rim [deg], as on the page *Map*."""
+    eye_m: tuple[float, float, float] = (0.0, -2.5, 2.0)
+    """Where the camera of a note without one is, from its place [m]."""
+    max_title: int = 80
+    """Letters of a title: the first line of a note."""
+    snapshot: str = "snapshot.jpg"
+    """Name of the photo of a note."""
+
+
+BCF = BcfTuning()

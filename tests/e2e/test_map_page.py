@@ -110,7 +110,9 @@ def test_a_measured_distance_is_that_of_the_walls(server, page):
 
 
 @looks("desktop light")
-def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(server, page, screenshot):
+def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(
+    server, page, screenshot, tmp_path
+):
     page.emulate_media(reduced_motion="reduce")  # flights take no time
     opened(page, server, f"?{TOP}&z=..")
     panel = page.locator("#panel")
@@ -119,9 +121,15 @@ def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(server, p
     page.keyboard.press("n")
     page.mouse.click(*at(page, 0.0, 2.5))
     panel.get_by_label("Note at").fill("crack over the door")
+    Image.new("RGB", (3000, 1500), "peru").save(tmp_path / "door.png")
+    panel.get_by_label("Photo").set_input_files(tmp_path / "door.png")
     panel.get_by_role("button", name="Keep the note").click()
     note = panel.locator(".notes li")
     expect(note).to_contain_text("crack over the door")
+    photo = note.get_by_role("img", name="Photo of: crack over the door")
+    expect(photo).to_have_js_property("naturalWidth", 2048)
+    photo.scroll_into_view_if_needed()
+    screenshot(page, "map-note")
     note.get_by_role("button", name="Mark as done").click()
     expect(note).to_contain_text("✓ Done · local")
     expect(page.locator("#overlay .pin.note.done")).to_have_count(1)

@@ -1,13 +1,17 @@
 """The points of the page *Map* over HTTP, on a real server with real child processes."""
 
+import base64
 import hashlib
+import io
 import json
 import re
+import zipfile
 from itertools import pairwise
 
 import httpx
 import numpy as np
 import pytest
+from PIL import Image
 
 from recon4.archive.verify import verify_project
 from recon4.mapping.tiles import TileSet
@@ -281,8 +285,23 @@ def test_a_note_is_kept_changed_listed_and_exported(server):
         late = client.patch(f"{notes}/{note['id']}", json=change | {"status": "open"})
         listed = client.get(notes).json()
         (feature,) = client.get(f"{notes}.geojson").json()["features"]
+        png = io.BytesIO()
+        Image.new("RGB", (30, 20), "red").save(png, "PNG")
+        sent = {"revision": 2, "base64": base64.b64encode(png.getvalue()).decode()}
+        pinned = client.put(f"{notes}/{note['id']}/photo", json=sent)
+        fake = {"revision": 3, "base64": base64.b64encode(b"<html>").decode()}
+        refused = client.put(f"{notes}/{note['id']}/photo", json=fake)
+        photo = client.get(f"{notes}/{note['id']}/photo")
+        bcf = client.get(f"{notes}.bcf")
         gone = [client.delete(f"{notes}/{note['id']}").status_code for _ in range(2)]
 
+    assert pinned.json()["revision"] == 3 and refused.status_code == 422
+    assert photo.headers["content-type"] == "image/jpeg"
+    assert photo.headers["x-content-type-options"] == "nosniff"
+    assert "sandbox" in photo.headers["content-security-policy"]
+    with zipfile.ZipFile(io.BytesIO(bcf.content)) as archive:
+        (shot,) = [name for name in archive.namelist() if name.endswith("snapshot.jpg")]
+        assert archive.read(shot) == photo.content
     assert listed == {"may_change": True, "notes": [done.json()]}
     assert late.status_code == 409 and "meanwhile" in late.json()["detail"]
     assert feature["geometry"] == {"type": "Point", "coordinates": place}

@@ -109,6 +109,8 @@ MAY_IMPORT = {
     "recon4/export/geopackage.py": STAGE | {"recon4.export", "recon4.georeference"},
     "recon4/export/geojson.py": STAGE | {"recon4.georeference"},
     "recon4/export/notes.py": STAGE | {"recon4.export", "recon4.georeference"},
+    "recon4/export/bcf.py": STAGE
+    | {"recon4.export", "recon4.georeference", "recon4.slices.map_crs"},
     "recon4/export/findings.py": STAGE
     | {
         "recon4.export",

@@ -195,7 +195,7 @@ const stage = {
 const { fly, seek } = flightOf(stage);
 const toggles = togglesOf(change);
 const marking = markingOf(stage);
-const notes = notesOf(draw);
+const notes = notesOf(draw, () => ({ camera: camera(), screen: screen() }));
 const saved = savedOf(draw);
 const profile = profileOf({ draw, dark: () => dark.matches, change: widened });
 

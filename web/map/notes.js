@@ -1,15 +1,32 @@
 // Notes pinned to places of the map: the section of the panel, and what people do there.
 
 import { idHere } from "../shared/address.js";
-import { addNote, changeNote, notesUrl, readNotes, removeNote } from "../shared/api.js";
+import {
+  addNote,
+  changeNote,
+  notesUrl,
+  photoUrl,
+  readNotes,
+  removeNote,
+  removePhoto,
+  setPhoto,
+} from "../shared/api.js";
 import { asError, byId, html, nothing, targetOf, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
+import { FIELD_OF_VIEW, axesOf, eyeOf } from "./camera.js";
 import { notePins, notesListed, page } from "./page.js";
+import { smallPhoto } from "./photo.js";
 
 /**
- * @import {HitPoint, MapNote} from "../shared/http_types"
+ * @import {HitPoint, MapNote, NoteView} from "../shared/http_types"
  * @import {Act} from "./bar.js"
- * @typedef {{id: string, revision: number, p: number[], text: string}} NoteDraft id "" = a new one
+ * @import {Camera, Screen} from "./camera.js"
+ * @typedef {object} NoteDraft
+ * @property {string} id "" = a new one
+ * @property {number} revision
+ * @property {number[]} p [m]
+ * @property {string} text
+ * @property {NoteView | null} view where its author looks from
  */
 
 const id = idHere();
@@ -18,8 +35,9 @@ const MOST_CHARACTERS = 500;
 /**
  * What is done with notes.
  * @param {() => void} draw the page
+ * @param {() => {camera: Camera, screen: Screen}} seen what the page shows
  */
-export function notesOf(draw) {
+export function notesOf(draw, seen) {
   const { notes } = page;
 
   async function read() {
@@ -46,13 +64,13 @@ export function notesOf(draw) {
     read,
     /** Begins a note where one clicked. */
     place(/** @type {HitPoint} */ { p_map }) {
-      notes.draft = { id: "", revision: 0, p: p_map, text: "" };
+      notes.draft = { id: "", revision: 0, p: p_map, text: "", view: viewOf(seen()) };
       Object.assign(page, { panel: true });
       draw();
       focus();
     },
     edit(/** @type {MapNote} */ { id: note, revision, p_map, text }) {
-      notes.draft = { id: note, revision, p: p_map, text };
+      notes.draft = { id: note, revision, p: p_map, text, view: null };
       draw();
       focus();
     },
@@ -60,25 +78,45 @@ export function notesOf(draw) {
       Object.assign(notes, { draft: null, problem: null });
       draw();
     },
-    keep: (/** @type {string} */ text) =>
+    keep: (/** @type {string} */ text, /** @type {File | undefined} */ file) =>
       attempt(async () => {
         const { draft } = notes;
         if (!draft) return;
         draft.text = text; // it stays if the server refuses it
         const [x, y, z] = draft.p;
-        if (draft.id) await changeNote(id, draft.id, { revision: draft.revision, text });
-        else await addNote(id, { p_map: [x, y, z], text, key: page.index?.key ?? "" });
+        const base64 = file ? await smallPhoto(file) : "";
+        const camera = draft.view;
+        const note = draft.id
+          ? await changeNote(id, draft.id, { revision: draft.revision, text })
+          : await addNote(id, { p_map: [x, y, z], text, key: page.index?.key ?? "", camera });
+        Object.assign(draft, { id: note.id, revision: note.revision }); // if the photo is refused
+        if (base64) await setPhoto(id, note.id, { revision: note.revision, base64 });
         notes.draft = null;
       }),
     mark: (/** @type {MapNote} */ { id: note, revision, status }) =>
       attempt(() =>
         changeNote(id, note, { revision, status: status === "open" ? "done" : "open" }),
       ),
+    removePhoto: (/** @type {MapNote} */ { id: note, revision }) =>
+      attempt(() => removePhoto(id, note, revision)),
     remove: (/** @type {MapNote} */ note) => attempt(() => removeNote(id, note.id)),
     filter(/** @type {string} */ status) {
       notes.filter = status;
       draw();
     },
+  };
+}
+
+/** A camera as a note keeps it. @returns {NoteView} */
+function viewOf(/** @type {{camera: Camera, screen: Screen}} */ { camera, screen }) {
+  const { up, ahead } = axesOf(camera);
+  return {
+    eye_m: eyeOf(camera),
+    ahead,
+    up,
+    parallel: camera.parallel,
+    height_m: 2 * camera.distance * Math.tan(FIELD_OF_VIEW / 2),
+    aspect: Math.min(100, Math.max(0.01, screen.width / screen.height)),
   };
 }
 
@@ -115,7 +153,8 @@ export function notesSection(/** @type {Act} */ act) {
       }
       ${
         all.length
-          ? html`<a class="button" href=${notesUrl(id)} download>Download GeoJSON</a>`
+          ? html`<a class="button" href=${notesUrl(id, "geojson")} download>Download GeoJSON</a
+              ><a class="button" href=${notesUrl(id, "bcf")} download>Download BCF</a>`
           : nothing
       }
     </div>
@@ -135,13 +174,15 @@ function form({ id: note, p, text }, act) {
   const submit = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const { value } = within(targetOf(event), "textarea", HTMLTextAreaElement);
-    if (value.trim()) act.notes.keep(value.trim());
+    const { files } = within(targetOf(event), "input", HTMLInputElement);
+    if (value.trim()) act.notes.keep(value.trim(), files?.[0]);
   };
   return html`<form @submit=${submit}>
     <label
       ><span>${note ? "Note" : `Note at ${p.map((x) => x.toFixed(2)).join(" ")} m`}</span
       ><textarea rows="3" maxlength=${MOST_CHARACTERS} required .value=${text}></textarea>
     </label>
+    <label><span>Photo (optional)</span><input type="file" accept="image/jpeg,image/png" /></label>
     <div class="buttons">
       <button>Keep the note</button
       ><button type="button" @click=${() => act.notes.cancel()}>Cancel</button>
@@ -169,6 +210,13 @@ function row(note, act) {
     >
       ${text}
     </button>
+    ${
+      note.photo
+        ? html`<a class="photo" href=${photoUrl(id, note)} target="_blank" rel="noopener"
+            ><img src=${photoUrl(id, note)} loading="lazy" alt="Photo of: ${text}"
+          /></a>`
+        : nothing
+    }
     <small>${status === "done" ? "✓ Done" : "Open"} · ${history}${earlier}</small>
     ${
       may
@@ -181,7 +229,17 @@ function row(note, act) {
               ${doneText(status)}</button
             ><button type="button" aria-label="Edit: ${text}" @click=${() => act.notes.edit(note)}>
               Edit</button
-            ><button
+            >${
+              note.photo
+                ? html`<button
+                    type="button"
+                    aria-label="Remove the photo: ${text}"
+                    @click=${() => act.notes.removePhoto(note)}
+                  >
+                    Remove photo
+                  </button>`
+                : nothing
+            }<button
               type="button"
               aria-label="Remove: ${text}"
               @click=${() => act.notes.remove(note)}

@@ -755,6 +755,8 @@ export interface MapNote {
   changed_by: string;
   changed: string;
   revision: number;
+  camera: NoteView | null;
+  photo: string;
 }
 
 export interface MapTile {
@@ -896,6 +898,7 @@ export interface NewNote {
   p_map: [number, number, number];
   text: string;
   key: string;
+  camera?: NoteView | null;
 }
 
 export interface NewPassword {
@@ -958,6 +961,20 @@ export interface NoteChange {
   revision: number;
   text?: string | null;
   status?: "open" | "done" | null;
+}
+
+export interface NotePhoto {
+  revision: number;
+  base64: string;
+}
+
+export interface NoteView {
+  eye_m: [number, number, number];
+  ahead: [number, number, number];
+  up: [number, number, number];
+  parallel?: boolean;
+  height_m?: number;
+  aspect?: number;
 }
 
 export interface NotesView {
@@ -1730,6 +1747,11 @@ export interface Operations {
     path: { project_id: string; note_id: string };
     response: string;
   };
+  "DELETE /api/projects/{project_id}/notes/{note_id}/photo": {
+    path: { project_id: string; note_id: string };
+    query: { revision: number };
+    response: MapNote;
+  };
   "DELETE /api/projects/{project_id}/review/classes/{correction}": {
     path: { project_id: string; correction: string };
     response: CorrectionsView;
@@ -1896,8 +1918,16 @@ export interface Operations {
     path: { project_id: string };
     response: NotesView;
   };
+  "GET /api/projects/{project_id}/notes.bcf": {
+    path: { project_id: string };
+    response: string;
+  };
   "GET /api/projects/{project_id}/notes.geojson": {
     path: { project_id: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/notes/{note_id}/photo": {
+    path: { project_id: string; note_id: string };
     response: string;
   };
   "GET /api/projects/{project_id}/report": {
@@ -2381,6 +2411,11 @@ export interface Operations {
   "POST /api/webhooks/{webhook_id}/test": {
     path: { webhook_id: string };
     response: Webhook;
+  };
+  "PUT /api/projects/{project_id}/notes/{note_id}/photo": {
+    path: { project_id: string; note_id: string };
+    body: NotePhoto;
+    response: MapNote;
   };
   "PUT /api/projects/{project_id}/slices/control": {
     path: { project_id: string };

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, Field
+from pydantic import BaseModel, Field, model_validator
 
 from recon4_app.annotations.tuning import ANNOTATIONS
 from recon4_app.names import Name, Note
@@ -25,6 +26,29 @@ ViewQuery = Annotated[
 """Query of the page's address."""
 
 
+class NoteView(Strict):
+    """Where the author of a note looked from."""
+
+    eye_m: Xyz
+    """In the map frame [m]."""
+    ahead: Xyz
+    """Direction of view, a unit vector."""
+    up: Xyz
+    """Direction of the upper rim, a unit vector."""
+    parallel: bool = False
+    height_m: float = Field(default=0.0, ge=0.0, le=1e6, allow_inf_nan=False)
+    """Height of the image in the world, of a parallel projection [m]."""
+    aspect: float = Field(default=1.0, ge=0.01, le=100.0, allow_inf_nan=False)
+    """Width of the image by its height."""
+
+    @model_validator(mode="after")
+    def _directions(self) -> NoteView:
+        for name in ("ahead", "up"):
+            if abs(math.hypot(*getattr(self, name)) - 1.0) > 1e-3:
+                raise ValueError(f"{name}: expected a unit vector")
+        return self
+
+
 class NewNote(Strict):
     """A note to pin to a place."""
 
@@ -33,6 +57,8 @@ class NewNote(Strict):
     text: Text
     key: MapKey
     """The map in which the place was picked."""
+    camera: NoteView | None = None
+    """None = not known."""
 
 
 class NoteChange(Strict):
@@ -62,6 +88,19 @@ class MapNote(Strict):
     changed: str
     """UTC, ISO 8601."""
     revision: Revision
+    camera: NoteView | None = None
+    """None = not known."""
+    photo: str = Field(default="", pattern=r"^([0-9a-f]{64})?$")
+    """SHA-256 of its photo; empty = it has none."""
+
+
+class NotePhoto(Strict):
+    """A photo for a note."""
+
+    revision: Revision
+    """The revision of the note that the person saw."""
+    base64: str = Field(min_length=1, max_length=ANNOTATIONS.max_sent_characters)
+    """A JPEG or PNG file; it is kept as JPEG of at most 2048 px, without its metadata."""
 
 
 class NotesView(BaseModel):

@@ -15,6 +15,16 @@ class AnnotationLimits(Struct, frozen=True, kw_only=True):
     max_notes: int = 5000
     """Notes of a project."""
     max_note_characters: int = 500
+    max_photos: int = 100
+    """Photos of a project: all of them go into one BCF file."""
+    max_sent_characters: int = 900_000
+    """Longest photo in a request, as base64."""
+    max_pixels: int = 50_000_000
+    """Of a photo before it is made smaller."""
+    photo_px: int = 2048
+    """Longer side of a kept photo [px]."""
+    photo_quality: int = 85
+    """Of its JPEG file, of 100."""
     max_views: int = 200
     """Saved views of a project."""
     max_query_characters: int = 8000

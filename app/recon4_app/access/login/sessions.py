@@ -187,7 +187,7 @@ class Sessions:
 
         Those of guests are listed with their links (`recon4_app.access.guests`).
         """
-        mine = SESSIONS.c.guest_link.is_(None)
+        mine: sa.ColumnElement[bool] = SESSIONS.c.guest_link.is_(None)
         if person is not None:
             mine &= SESSIONS.c.person == lookup_key(person)
         now_s = self._clock()
