@@ -11,6 +11,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.exports import DraftOption
 from recon4.cli.terminal import write
+from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
     from recon4.delivery.pdf_signature import Organization
@@ -48,6 +49,7 @@ def report(
     wanted = [path for path in (pdf, html) if path]
     if not wanted:
         raise typer.BadParameter("name the file to write: --pdf FILE or --html FILE")
+    spoken = of_terminal()
     signer = organization(certificate)
     confine_command(write=[path.parent for path in wanted])
     from recon4.delivery.report_files import ReportWish, server_key, write_html, write_pdf
@@ -56,7 +58,7 @@ def report(
         made = write_html(project, html, draft=draft)
         write(f"{html}\n{made.approval.text}")
     if pdf:
-        wish = ReportWish(draft=draft, key=signer or server_key(project))
+        wish = ReportWish(draft=draft, key=signer or server_key(project), language=spoken)
         made = write_pdf(project, pdf, wish)
         write(f"{pdf}, {'signed' if made.signed else 'not signed'}\n{made.approval.text}")
 
@@ -85,6 +87,7 @@ def deliver(
     `recon4 verify FILE.zip` checks it on any computer. A map that is not approved is packed as a
     draft, and not signed.
     """
+    spoken = of_terminal()
     signer = organization(Path(name) if (name := os.environ.get(CERTIFICATE)) else None)
     confine_command(write=[out.parent])
     from recon4.cli.terminal import watcher
@@ -98,6 +101,7 @@ def deliver(
         license=license_,
         key=server_key(project),
         certificate=signer,
+        language=spoken,
     )
     with watcher() as progress:
         made = pack(project, out, wish, progress=progress)

@@ -10,7 +10,7 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.terminal import write
-from recon4.locales.languages import LANGUAGE_HELP, of_terminal
+from recon4.locales.languages import of_terminal
 
 findings = typer.Typer()
 
@@ -40,11 +40,9 @@ def explain(
     code: Annotated[
         str, typer.Argument(help="Code of a finding, as GNSS-CLOCK; without it all are listed.")
     ] = "",
-    *,
-    language: Annotated[str, typer.Option(help=LANGUAGE_HELP)] = "",
 ) -> None:
     """Explain a finding: what it means, how it is detected, what to do."""
     from recon4.findings.explain import explained, listed
 
-    spoken = of_terminal(language)
+    spoken = of_terminal()
     write(explained(code, spoken) if code else listed(spoken))

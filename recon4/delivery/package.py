@@ -22,6 +22,7 @@ from recon4.delivery.pdf_signature import Organization
 from recon4.delivery.report_files import (
     ReportWish,
     checked_approval,
+    said_state,
     write_html,
     write_pdf,
 )
@@ -29,6 +30,7 @@ from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import ConfigError, StoreError
 from recon4.export.map_files import MapToExport, map_to_export
 from recon4.export.options import ExportOptions
+from recon4.locales.languages import ENGLISH
 from recon4.model.height_system import height_system
 from recon4.progress import Progress
 from recon4.report.client import Row
@@ -67,7 +69,7 @@ class DeliveryWish:
     """Ed25519 key that signs manifest and report of an approved map; None = not signed."""
     certificate: Organization | None = None
     """Signs the report in place of the key."""
-    language: str = "en"
+    language: str = ENGLISH
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +246,7 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
     kinds = {REPORT_PDF: "report_pdf", REPORT_HTML: "report_html", LICENSE: "license"}
     points = f"{len(map_.export.tiles):,}".replace(",", " ")
     lines = [texts("readme.title", title=visible(str(summary.get("name", "")))), ""]
-    lines.append(texts("readme.state", state=map_.state.text))
+    lines.append(texts("readme.state", state=said_state(map_.state, texts)))
     crs = wish.crs or str(summary.get("crs") or "") or texts("front.crs_local")
     lines.append(texts("readme.crs", crs=visible(crs)))
     lines.append(texts("readme.heights", heights=_heights(map_.project, wish, texts)))

@@ -22,15 +22,21 @@ def people_section(root: Path, words: Words) -> Section:
     most = CLIENT_REPORT.most_notes
     notes, measured = pinned_notes(root), saved_measurements(root)
     of_notes: list[tuple[str, ...]] = [
-        (shown(one.text), one.status, _place(one.p_map), shown(one.who), one.time[:10])
+        (
+            shown(one.text),
+            words.term(one.status),
+            _place(one.p_map, words),
+            shown(one.who),
+            one.time[:10],
+        )
         for one in notes[:most]
     ]
     of_measurements: list[tuple[str, ...]] = [
         (
             shown(one.name or one.view.name),
-            shown(one.kind),
-            one.text,
-            _place(one.points[0]),
+            words.term(shown(one.kind)),
+            words.decimal(one.text),
+            _place(one.points[0], words),
             shown(one.view.who),
             one.view.time[:10],
         )
@@ -54,5 +60,5 @@ def people_section(root: Path, words: Words) -> Section:
     return Section(title=words("section.people"), text=(words("text.people"), *more), tables=tables)
 
 
-def _place(p_map: Sequence[float]) -> str:
-    return ", ".join(f"{value:.2f}" for value in p_map)
+def _place(p_map: Sequence[float], words: Words) -> str:
+    return ", ".join(words.number(value) for value in p_map)

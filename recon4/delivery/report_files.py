@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,6 +11,7 @@ from pathlib import Path
 from recon4.delivery.pdf_signature import Organization, sign_pdf
 from recon4.delivery.people_section import people_section
 from recon4.errors import StoreError
+from recon4.locales.languages import ENGLISH
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Signature
 from recon4.report.client_report import ReportExtras, client_report
@@ -22,7 +24,7 @@ from recon4.review.acknowledgments import (
     seen_finding,
     seen_findings,
 )
-from recon4.review.approval_state import ApprovalState, latest_state
+from recon4.review.approval_state import ApprovalKind, ApprovalState, latest_state
 from recon4.review.approved import Approval, approval_of
 from recon4.review.decisions import DecisionKind
 from recon4.review.journal import JournalRow, read_rows
@@ -33,13 +35,14 @@ from recon4.store.project import read_artifacts
 from recon4.store.seal import check_sealed
 
 SUMMARY, HTML = "summary.json", "report.html"
+_NEWER = re.compile(r"; version (\d+) is newer$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReportWish:
     """How the report is written."""
 
-    language: str = "en"
+    language: str = ENGLISH
     draft: bool = False
     """Without an approval, whether or not there is one; never signed."""
     key: Path | Organization | None = None
@@ -149,8 +152,9 @@ def _signature(
     approval: Approval | None, state: ApprovalState, texts: Words, *, wish: ReportWish
 ) -> Signature:
     if approval is None:
-        row = Row(texts("signature.state"), state.text)
-        return Signature(approved=False, text=state.text, rows=(row,))
+        text = said_state(state, texts)
+        row = Row(texts("signature.state"), text)
+        return Signature(approved=False, text=text, rows=(row,))
     stamp = approval.stamp
     signed = "pdf_signed" if wish.key is not None else "pdf_unsigned"
     who = texts("signature.who_value", who=state.who, role=stamp.role)
@@ -158,13 +162,26 @@ def _signature(
         "who": who,
         "time": f"{stamp.time[:16].replace('T', ' ')} UTC",
         "version": str(stamp.version),
-        "verdict": stamp.verdict,
+        "verdict": texts.term(stamp.verdict),
         "why": state.why,
         "hash": " ".join(stamp.hash[k : k + 16] for k in range(0, len(stamp.hash), 16)),
         "pdf": texts(f"signature.{signed}"),
     }
     rows = tuple(Row(texts(f"signature.{key}"), text) for key, text in pairs.items() if text)
-    return Signature(approved=True, text=state.text, rows=rows)
+    return Signature(approved=True, text=said_state(state, texts), rows=rows)
+
+
+def said_state(state: ApprovalState, texts: Words) -> str:
+    """The line of an approval in the words of a language."""
+    if state.who == "" or state.version is None:
+        return texts.term(state.text)
+    version, day = str(state.version), state.time[:10]
+    parts = [texts("signature.approved", version=version, who=state.who, date=day)]
+    if newer := _NEWER.search(state.text):
+        parts.append(texts("signature.newer", version=newer[1]))
+    elif state.kind is ApprovalKind.CHANGED:
+        parts.append(texts("signature.changed"))
+    return "; ".join(parts)
 
 
 def _notes(

@@ -14,8 +14,6 @@ ENGLISH = "en"
 """The language of every text; a text that another language lacks is shown in it."""
 ENVIRONMENT = "RECON4_LANGUAGE"
 """Environment variable with the language of a terminal."""
-LANGUAGE_HELP = f"Language of the texts, as en or de; without it {ENVIRONMENT}, else English."
-"""Of the option of commands."""
 ROOT = Path(__file__).parent
 """Has a folder for each language."""
 _ASKED = re.compile(r"\s*([A-Za-z]{1,8})(?:[-_][\w-]*)?\s*(?:;\s*q\s*=\s*([\d.]+))?\s*")
@@ -41,14 +39,13 @@ def best_of(accept: str, *, among: Iterable[str] | None = None) -> str:
     return max(fitting, key=lambda pair: pair[0])[1] if fitting else ENGLISH
 
 
-def of_terminal(stated: str = "") -> str:
-    """The language of a command: as stated, else as in the environment, else English.
+def of_terminal() -> str:
+    """The language of a command: as in the environment, where ``--language`` puts it, else English.
 
     Raises:
         ConfigError: If there are no texts in the language that is stated.
     """
-    asked = stated or os.environ.get(ENVIRONMENT, "")
-    return checked(asked) if asked else ENGLISH
+    return checked(os.environ.get(ENVIRONMENT) or ENGLISH)
 
 
 def checked(language: str) -> str:

@@ -46,6 +46,8 @@ class FindingBox:
     code: str
     level: str
     """`recon4.model.finding.Level`."""
+    label: str
+    """It in words."""
     title: str
     text: str
     where: str = ""

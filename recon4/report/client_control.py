@@ -12,7 +12,6 @@ from recon4.evaluation.site_control import (
     control_in,
     statements,
 )
-from recon4.evaluation.table import number
 from recon4.model.site_control import SITE_GRID
 from recon4.report.client import Row, Section, Table
 from recon4.report.client_front import grouped, shown
@@ -31,7 +30,7 @@ def control_section(georeference: Mapping[str, object], words: Words) -> Section
     outcome = control_in(georeference)
     if outcome is None:
         return Section(title=title)
-    sd = "" if outcome.scale_sd is None else f" ± {number(1e6 * outcome.scale_sd, 0)}"
+    sd = "" if outcome.scale_sd is None else f" ± {words.number(1e6 * outcome.scale_sd, 0)}"
     scale = words("control.scale_value", ppm=f"{1e6 * (outcome.scale - 1.0):+.0f}", sd=sd)
     grid = outcome.crs == SITE_GRID
     rows = [
@@ -60,14 +59,16 @@ def _row(one: ControlRow, words: Words) -> tuple[str, ...]:
     least = (None, None) if test is None else (test.least_found_h_m, test.least_found_v_m)
     said = ""
     if test is not None and test.w > test.limit:
-        said = words("control.suspected", w=number(test.w, 1), limit=number(test.limit, 1))
+        said = words(
+            "control.suspected", w=words.number(test.w, 1), limit=words.number(test.limit, 1)
+        )
     elif test is not None and test.single_handed:
         said = words("control.single_handed")
     lengths = (_length(one.adjusted_m[:2]), _length(one.adjusted_m))
     return (
         shown(one.id),
         words(f"control.{one.role}"),
-        *(_cm(value) for value in (*one.adjusted_m, *lengths, *least)),
+        *(_cm(value, words) for value in (*one.adjusted_m, *lengths, *least)),
         said,
     )
 
@@ -80,7 +81,10 @@ def _roles(outcome: ControlOutcome, words: Words) -> Table:
         (
             words(f"control.{one.role}"),
             grouped(one.points),
-            *map(_cm, (one.rmse_h_m, one.rmse_v_m, one.rmse_3d_m, one.max_h_m, one.max_v_m)),
+            *(
+                _cm(value, words)
+                for value in (one.rmse_h_m, one.rmse_v_m, one.rmse_3d_m, one.max_h_m, one.max_v_m)
+            ),
         )
         for one in found
         if one.points
@@ -93,5 +97,5 @@ def _length(offset: Sequence[float | None]) -> float | None:
     return math.hypot(*known) if len(known) == len(offset) else None
 
 
-def _cm(value_m: float | None) -> str:
-    return "–" if value_m is None else number(value_m, 1, 100.0)
+def _cm(value_m: float | None, words: Words) -> str:
+    return "–" if value_m is None else words.number(value_m, 1, 100.0)

@@ -46,6 +46,7 @@ path{fill:none}.edge{fill:none;stroke:#bbb}.grid{stroke:#ddd;stroke-width:1}
 _VIEW_BOX = re.compile(r'viewBox="(\S+) (\S+) ([^" ]+) ([^" ]+)"')
 _CHARTS = ("findings", "loops", "uncertainty", "gnss", "ate", "er")
 """What a client can make use of; the HTML report has all."""
+_CHART_TEXT = re.compile(r">([^<>]+)</text>")
 _NAMESPACES = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
 
 
@@ -102,8 +103,8 @@ class MapDrawings:
             low, high = self.cut_m
             caption = words(
                 "caption.plan",
-                low=f"{low:.1f}",
-                high=f"{high:.1f}",
+                low=words.number(low, 1),
+                high=words.number(high, 1),
                 pixel=_pixel_cm(self.plan),
             )
             svg = plan_svg(ink_png(self.plan), ABOVE, self.plan.frame)
@@ -111,10 +112,14 @@ class MapDrawings:
         for raster in self.rasters:
             if raster.view is ABOVE:
                 png, (low, high) = height_png(raster)
-                caption = words("caption.height", low=f"{low:.1f}", high=f"{high:.1f}")
+                caption = words(
+                    "caption.height", low=words.number(low, 1), high=words.number(high, 1)
+                )
             else:
                 png = ink_png(raster)
-                caption = words("caption.side", view=raster.view.name, pixel=_pixel_cm(raster))
+                caption = words(
+                    "caption.side", view=words.term(raster.view.name), pixel=_pixel_cm(raster)
+                )
             svg = plan_svg(png, raster.view, raster.frame)
             out.append(_drawing(svg, caption))
         return out
@@ -159,13 +164,19 @@ class MapDrawings:
         )
 
 
-def charts_on_paper(charts: Sequence[tuple[str, str]]) -> tuple[Drawing, ...]:
-    """Charts of the HTML report, two beside each other."""
+def charts_on_paper(charts: Sequence[tuple[str, str]], words: Words) -> tuple[Drawing, ...]:
+    """Charts of the HTML report, two beside each other, with captions and axes in its words."""
     return tuple(
-        _drawing(svg, text, wide=False)
-        for svg, text in charts
-        if any(f'data-name="{name}"' in svg for name in _CHARTS)
+        _drawing(_worded(svg, words), words(f"chart.{name}"), wide=False)
+        for svg, _ in charts
+        for name in _CHARTS
+        if f'data-name="{name}"' in svg
     )
+
+
+def _worded(svg: str, words: Words) -> str:
+    """A chart with the names of its axes in the words of the report."""
+    return _CHART_TEXT.sub(lambda found: f">{words.value(found[1])}</text>", svg)
 
 
 def _drawing(svg: str, caption: str, *, wide: bool = True) -> Drawing:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from datetime import UTC, datetime
 
 from recon4.evaluation.site_control import accuracy_of, control_in
-from recon4.evaluation.table import number
 from recon4.findings.walk import path_length_m
 from recon4.findings.wording import headline, title_of
 from recon4.mapping.tiles import TileSet
@@ -33,9 +32,9 @@ def front_page(
     """Verdict, what, where, when, accuracy, limits and signature."""
     usability = assessed.verdict.usability
     return FrontPage(
-        verdict=headline(usability),
+        verdict=headline(usability, words.language),
         level=LEVELS[usability],
-        reasons=_reasons(assessed),
+        reasons=_reasons(assessed, words),
         what=tuple(_what(assessed, tiles, words)),
         where=tuple(_where(assessed, tiles, words)),
         when=tuple(_when(assessed, words)),
@@ -63,17 +62,19 @@ def accuracy_rows(assessed: Assessment, words: Words) -> list[Row]:
     stated = level.uncertainty if level else None
     if stated is not None:
         kind = "earth" if stated.on_earth else "start"
-        value = words(f"accuracy.position_{kind}", value=number(stated.largest_sd_m, 1, 100.0))
+        value = words(
+            f"accuracy.position_{kind}", value=words.number(stated.largest_sd_m, 1, 100.0)
+        )
         out.append(Row(words("accuracy.position"), value))
         if stated.shape_rms_m is not None:
-            value = words("accuracy.shape_value", value=number(stated.shape_rms_m, 1, 100.0))
+            value = words("accuracy.shape_value", value=words.number(stated.shape_rms_m, 1, 100.0))
             out.append(Row(words("accuracy.shape"), value))
     figures = assessed.results.map
     if figures is not None:
         out += _thickness("thickness", figures.thickness, words)
         out += _thickness("measured", figures.thickness_as_measured, words)
     if drift is not None:
-        value = words("accuracy.drift_value", value=number(drift.largest_m, 1, 100.0))
+        value = words("accuracy.drift_value", value=words.number(drift.largest_m, 1, 100.0))
         out.append(Row(words("accuracy.drift"), value))
     return out or [Row(words("accuracy.none"), "–")]
 
@@ -83,10 +84,10 @@ def _true_errors(assessed: Assessment, words: Words) -> list[Row]:
     if found is None:
         return []
     truth = shown(found.truth)
-    rmse = f"{number(found.aligned.position_m.rmse, 1, 100.0)} cm"
+    rmse = f"{words.number(found.aligned.position_m.rmse, 1, 100.0)} cm"
     out = [Row(words("accuracy.truth", truth=truth), rmse)]
     if found.relative is not None:
-        mean = number(found.relative.point_weighted.mean_m, 2, 100.0)
+        mean = words.number(found.relative.point_weighted.mean_m, 2, 100.0)
         out.append(Row(words("accuracy.relative"), f"{mean} cm"))
     return out
 
@@ -99,7 +100,7 @@ def _check_points(assessed: Assessment, words: Words) -> list[Row]:
     found = accuracy_of(outcome, "check")
     pairs = (("flat", found.rmse_h_m), ("height", found.rmse_v_m))
     known = [
-        words(f"accuracy.check_points_{key}", value=number(value_m, 1, 100.0))
+        words(f"accuracy.check_points_{key}", value=words.number(value_m, 1, 100.0))
         for key, value_m in pairs
         if value_m is not None
     ]
@@ -113,16 +114,16 @@ def _check_points(assessed: Assessment, words: Words) -> list[Row]:
 def _thickness(key: str, found: PlaneThickness | None, words: Words) -> list[Row]:
     if found is None or found.p50_m is None or found.p95_m is None:
         return []
-    median, most = number(found.p50_m, 2, 100.0), number(found.p95_m, 2, 100.0)
+    median, most = words.number(found.p50_m, 2, 100.0), words.number(found.p95_m, 2, 100.0)
     value = words("accuracy.thickness_value", median=median, most=most)
     return [Row(words(f"accuracy.{key}"), value)]
 
 
-def _reasons(assessed: Assessment) -> tuple[str, ...]:
+def _reasons(assessed: Assessment, words: Words) -> tuple[str, ...]:
     """Titles of the findings behind the verdict, each once."""
     if assessed.verdict.usability is Usability.GOOD:
         return ()
-    titles = [title_of(one.kind) for one in assessed.findings if one.is_reason]
+    titles = [title_of(one.kind, words.language) for one in assessed.findings if one.is_reason]
     return tuple(dict.fromkeys(titles))
 
 
@@ -131,8 +132,8 @@ def _what(assessed: Assessment, tiles: TileSet | None, words: Words) -> list[Row
     out = [Row(words("front.recording"), shown(facts.title))]
     walk = results.final or results.odometry
     if walk is not None and len(walk) > 1:
-        length = number(float(path_length_m(walk)[-1]), 1)
-        minutes = number((walk.t_ns[-1] - walk.t_ns[0]) / 60e9, 1)
+        length = words.number(float(path_length_m(walk)[-1]), 1)
+        minutes = words.number((walk.t_ns[-1] - walk.t_ns[0]) / 60e9, 1)
         text = words("front.walked_value", length=length, minutes=minutes)
         out.append(Row(words("front.walked"), text))
     if facts.rig:
@@ -154,7 +155,7 @@ def _where(assessed: Assessment, tiles: TileSet | None, words: Words) -> list[Ro
     out.append(Row(words("front.heights"), heights))
     if tiles is not None and len(tiles):
         low, high = tiles.bounds_m
-        x, y, z = (number(float(b - a), 1) for a, b in zip(low, high, strict=True))
+        x, y, z = (words.number(float(b - a), 1) for a, b in zip(low, high, strict=True))
         out.append(Row(words("front.extent"), words("front.extent_value", x=x, y=y, z=z)))
     return out
 
@@ -200,7 +201,7 @@ def _limits(
 def _unobserved(one: Unobserved, words: Words) -> str:
     return words(
         "limits.unobserved",
-        start=number(one.start_s, 0),
-        end=number(one.end_s, 0),
-        direction=one.direction or "–",
+        start=words.number(one.start_s, 0),
+        end=words.number(one.end_s, 0),
+        direction=words(f"direction.{one.direction}") if one.direction else "–",
     )

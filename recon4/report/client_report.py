@@ -62,7 +62,7 @@ def client_report(
         language=texts.language,
         front=front,
         sections=tuple(made),
-        words=texts.all("layout."),
+        words=texts.all("layout"),
     )
 
 

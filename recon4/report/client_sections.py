@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from recon4.evaluation.table import number
 from recon4.findings.wording import title_of, whole_text
 from recon4.model.classes import CLASSES
 from recon4.model.figures import ClassFigures
@@ -20,7 +19,7 @@ from recon4.report.client_drawings import MapDrawings, charts_on_paper
 from recon4.report.client_front import accuracy_rows, grouped, shown
 from recon4.report.client_words import Words
 from recon4.report.html import changed_settings
-from recon4.report.rig import origin_rows, rig_outcome, rig_rows
+from recon4.report.rig import RigRow, origin_rows, rig_outcome, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
 from recon4.report.tuning import CLIENT_REPORT
 from recon4.store.stage import read_figures
@@ -64,15 +63,15 @@ def _sensors(assessed: Assessment, words: Words) -> Section:
     """The rig with its serial numbers and calibration, and what the recording says of it."""
     facts, results = assessed.facts, assessed.results
     rows = [Row(words("row.rig"), shown(facts.rig))] if facts.rig else []
-    rows += _rows(origin_rows(facts.rig_origin))
+    rows += _rows(origin_rows(facts.rig_origin), words)
     recorded = imported_rows({"sensors": results.imported.get("sensors", [])})
-    rows += _rows(recorded)
+    rows += _rows(recorded, words)
     tables: tuple[Table, ...] = ()
     if found := rig_rows(results.calibration):
         head = (words("row.sensor"), "", "")
-        cells = tuple((shown(one.name), one.change, one.status) for one in found)
+        cells = tuple(_rig_cells(one, words) for one in found)
         tables = (Table(head=head, rows=cells, texts=(2,)),)
-    outcome = rig_outcome(results.calibration)
+    outcome = rig_outcome(results.calibration, words.language)
     return Section(
         title=words("section.sensors"),
         text=(outcome,) if outcome else (),
@@ -86,8 +85,9 @@ def _coordinates(assessed: Assessment, words: Words) -> Section:
     results = assessed.results
     rows = [Row(words("front.crs"), shown(assessed.facts.crs))] if assessed.facts.crs else []
     # The points have a section of their own.
-    rows += _rows(placed_rows({k: v for k, v in results.georeference.items() if k != "control"}))
-    drawn = charts_on_paper(charts.gnss_charts(results.placement.gnss))
+    shared = {k: v for k, v in results.georeference.items() if k != "control"}
+    rows += _rows(placed_rows(shared, words.language), words)
+    drawn = charts_on_paper(charts.gnss_charts(results.placement.gnss), words)
     return Section(title=words("section.coordinates"), rows=tuple(rows), drawings=drawn)
 
 
@@ -107,9 +107,10 @@ def _findings(
             FindingBox(
                 code=str(finding.kind),
                 level=str(finding.level),
-                title=title_of(finding.kind),
-                text=shown(whole_text(finding)),
-                where=_where(finding),
+                label=words.term(finding.level),
+                title=title_of(finding.kind, words.language),
+                text=shown(whole_text(finding, words.language)),
+                where=_where(finding, words),
                 acknowledged=tuple(shown(text) for text in notes.get(place, ())),
                 drawing=drawing,
             )
@@ -121,13 +122,13 @@ def _findings(
     return Section(title=words("section.findings"), text=tuple(text), findings=tuple(boxes))
 
 
-def _where(finding: Finding) -> str:
+def _where(finding: Finding, words: Words) -> str:
     """Stretch and place of a finding."""
     parts = []
     if finding.span_s is not None:
-        parts.append(f"{finding.span_s[0]:.1f} s – {finding.span_s[1]:.1f} s")
+        parts.append(words.decimal(f"{finding.span_s[0]:.1f} s – {finding.span_s[1]:.1f} s"))
     if finding.place_m is not None:
-        x, y, z = (number(value, 1) for value in finding.place_m[0])
+        x, y, z = (words.number(value, 1) for value in finding.place_m[0])
         parts.append(f"x {x} m, y {y} m, z {z} m")
     if finding.sensor:
         parts.append(shown(finding.sensor))
@@ -141,7 +142,7 @@ def _loops(assessed: Assessment, drawings: MapDrawings, words: Words) -> Section
     weakest = weakest_loops(graph)
     head = tuple(words(f"table.{name}") for name in ("pair", "at", "overlap", "error", "limit"))
     head += (words("table.discrepancy"), words("table.chi2"))
-    rows = tuple(_loop_row(graph, edge) for edge in weakest[: CLIENT_REPORT.most_loops])
+    rows = tuple(_loop_row(graph, edge, words) for edge in weakest[: CLIENT_REPORT.most_loops])
     drawing = drawings.loops(graph)
     return Section(
         title=words("section.loops"),
@@ -161,18 +162,18 @@ def weakest_loops(graph: PoseGraph) -> list[Edge]:
     return sorted(loops, key=lambda one: -one.chi2 if np.isfinite(one.chi2) else np.inf)
 
 
-def _loop_row(graph: PoseGraph, edge: Edge) -> tuple[str, ...]:
+def _loop_row(graph: PoseGraph, edge: Edge, words: Words) -> tuple[str, ...]:
     start = graph.t_ns[0]
-    at = " / ".join(number((graph.t_ns[k] - start) / 1e9, 1) for k in (edge.i, edge.j))
+    at = " / ".join(words.number((graph.t_ns[k] - start) / 1e9, 1) for k in (edge.i, edge.j))
     frames = f"{graph.frame_ids[edge.i]}–{graph.frame_ids[edge.j]}"
     return (
         frames,
         at,
-        number(edge.overlap, 0, 100.0),
-        number(edge.error_m, 1, 100.0),
-        number(edge.limit_m, 1, 100.0),
-        number(edge.verification_m, 1, 100.0),
-        number(edge.chi2, 1),
+        words.number(edge.overlap, 0, 100.0),
+        words.number(edge.error_m, 1, 100.0),
+        words.number(edge.limit_m, 1, 100.0),
+        words.number(edge.verification_m, 1, 100.0),
+        words.number(edge.chi2, 1),
     )
 
 
@@ -182,7 +183,7 @@ def _verdicts(graph: PoseGraph, words: Words) -> Table:
     for verdict in Verdict:
         of_it = [one for one in graph.edges if one.verdict is verdict]
         odometry = sum(one.kind is EdgeKind.ODOMETRY for one in of_it)
-        rows.append((str(verdict), grouped(len(of_it) - odometry), grouped(odometry)))
+        rows.append((words.term(verdict), grouped(len(of_it) - odometry), grouped(odometry)))
     head = tuple(words(f"table.{name}") for name in ("verdict", "loops", "odometry"))
     return Table(head=head, rows=tuple(rows))
 
@@ -192,38 +193,38 @@ def _precision(assessed: Assessment, words: Words) -> Section:
     rows = accuracy_rows(assessed, words)
     stated = results.level.uncertainty if results.level else None
     if stated is not None:
-        x, y = (number(value, 1) for value in stated.at_m[:2])
-        at = words("row.at", at=number(stated.at_s, 0), x=x, y=y)
+        x, y = (words.number(value, 1) for value in stated.at_m[:2])
+        at = words("row.at", at=words.number(stated.at_s, 0), x=x, y=y)
         rows.append(Row(words("row.largest_sd"), at))
         help_ = words(
             "row.help_value",
-            start=number(stated.point_from_s, 0),
-            end=number(stated.point_to_s, 0),
-            sd=number(stated.point_sd_m, 1, 100.0),
+            start=words.number(stated.point_from_s, 0),
+            end=words.number(stated.point_to_s, 0),
+            sd=words.number(stated.point_sd_m, 1, 100.0),
         )
         rows.append(Row(words("row.help"), help_))
     thickness = results.map.thickness if results.map else None
     tables: tuple[Table, ...] = ()
     if thickness is not None and thickness.planar_coverage is not None:
-        covered = f"{number(thickness.planar_coverage, 0, 100.0)} %"
+        covered = f"{words.number(thickness.planar_coverage, 0, 100.0)} %"
         rows.append(Row(words("row.coverage"), covered))
     if thickness is not None and thickness.thickest:
         head = tuple(words(f"table.{name}") for name in ("x", "y", "z", "median", "coverage"))
         cells = tuple(
             (
-                *(number(value, 1) for value in one.middle_m),
-                number(one.p50_m, 2, 100.0),
-                number(one.planar_coverage, 0, 100.0),
+                *(words.number(value, 1) for value in one.middle_m),
+                words.number(one.p50_m, 2, 100.0),
+                words.number(one.planar_coverage, 0, 100.0),
             )
             for one in thickness.thickest
         )
         tables = (Table(head=head, rows=cells, title=words("text.thickest")),)
-    drawn = _walk_charts(assessed)
+    drawn = _walk_charts(assessed, words)
     title = words("section.precision")
     return Section(title=title, rows=tuple(rows), tables=tables, drawings=drawn)
 
 
-def _walk_charts(assessed: Assessment) -> tuple[Drawing, ...]:
+def _walk_charts(assessed: Assessment, words: Words) -> tuple[Drawing, ...]:
     """Charts along the walk: findings, drift, uncertainty, height, tracking."""
     results = assessed.results
     final = results.final or results.odometry
@@ -236,7 +237,7 @@ def _walk_charts(assessed: Assessment) -> tuple[Drawing, ...]:
         uncertainty=results.uncertainty,
         findings=assessed.findings,
     )
-    return charts_on_paper(drawn)
+    return charts_on_paper(drawn, words)
 
 
 def _classes(assessed: Assessment, words: Words) -> Section:
@@ -250,9 +251,9 @@ def _classes(assessed: Assessment, words: Words) -> Section:
     total = max(figures.points, 1)
     rows = tuple(
         (
-            shown(title),
+            words.term(shown(title)),
             grouped(count),
-            number(count / total, 2, 100.0),
+            words.number(count / total, 2, 100.0),
             words("table.yes" if delivered.get(title, True) else "table.no"),
         )
         for title, count in sorted(
@@ -270,7 +271,13 @@ def _corrected(assessed: Assessment, words: Words) -> tuple[Table, ...]:
     found = assessed.results.map.corrections if assessed.results.map else ()
     names = ("class", "points", "who", "date", "why")
     rows = tuple(
-        (shown(one.to), grouped(one.points), shown(one.who), shown(one.time[:10]), shown(one.why))
+        (
+            words.term(shown(one.to)),
+            grouped(one.points),
+            shown(one.who),
+            shown(one.time[:10]),
+            shown(one.why),
+        )
         for one in found
     )
     head = tuple(words(f"table.{name}") for name in names)
@@ -282,24 +289,28 @@ def _comparison(assessed: Assessment, words: Words) -> Section:
     title = words("section.comparison")
     if found is None:
         return Section(title=title)
-    rows = [
-        Row(words("comparison.ate"), f"{number(found.aligned.position_m.rmse, 1, 100.0)} cm"),
-        Row(words("comparison.ate_raw"), f"{number(found.unaligned.position_m.rmse, 1, 100.0)} cm"),
-        Row(words("comparison.coverage"), f"{number(found.coverage_ratio, 1, 100.0)} %"),
+    figures = [
+        ("ate", found.aligned.position_m.rmse, 1, "cm"),
+        ("ate_raw", found.unaligned.position_m.rmse, 1, "cm"),
+        ("coverage", found.coverage_ratio, 1, "%"),
     ]
     if found.relative is not None:
         of = found.relative.point_weighted
-        rows.append(Row(words("comparison.er"), f"{number(of.mean_m, 2, 100.0)} cm"))
-        rows.append(Row(words("comparison.within2"), f"{number(of.ratio_within_2cm, 1, 100.0)} %"))
-        rows.append(Row(words("comparison.within5"), f"{number(of.ratio_within_5cm, 1, 100.0)} %"))
-    drawn = charts_on_paper(charts.accuracy_charts(found))
+        figures.append(("er", of.mean_m, 2, "cm"))
+        figures.append(("within2", of.ratio_within_2cm, 1, "%"))
+        figures.append(("within5", of.ratio_within_5cm, 1, "%"))
+    rows = [
+        Row(words(f"comparison.{key}"), f"{words.number(value, digits, 100.0)} {unit}")
+        for key, value, digits, unit in figures
+    ]
+    drawn = charts_on_paper(charts.accuracy_charts(found), words)
     return Section(title=title, rows=tuple(rows), drawings=drawn)
 
 
 def _making(assessed: Assessment, words: Words) -> Section:
     """Settings, versions, inputs."""
     facts = assessed.facts
-    minutes = number(sum(stage.seconds for stage in facts.stages) / 60.0, 1)
+    minutes = words.number(sum(stage.seconds for stage in facts.stages) / 60.0, 1)
     rows = [
         Row(words("row.preset"), shown(facts.preset)),
         *(Row(shown(name), shown(text)) for name, text in sorted(facts.versions.items())),
@@ -320,5 +331,11 @@ def _making(assessed: Assessment, words: Words) -> Section:
     )
 
 
-def _rows(pairs: Sequence[tuple[str, str]]) -> list[Row]:
-    return [Row(shown(name), shown(text)) for name, text in pairs]
+def _rig_cells(one: RigRow, words: Words) -> tuple[str, ...]:
+    sensor, *rest = shown(one.name).split(" ")
+    name = " ".join([sensor, *map(words.term, rest)])
+    return name, words.decimal(one.change), words.term(one.status)
+
+
+def _rows(pairs: Sequence[tuple[str, str]], words: Words) -> list[Row]:
+    return [Row(words.label(shown(name)), words.value(shown(text))) for name, text in pairs]

@@ -1,52 +1,79 @@
-"""Texts of the report for the client: one catalog, a file for each language."""
+"""Texts of the report for the client: ``report.ftl`` of a language."""
 
 from __future__ import annotations
 
-import tomllib
+import re
 from functools import cache
-from importlib import resources
 
-from recon4.errors import ConfigError
+from recon4.evaluation.table import number
+from recon4.locales.languages import ENGLISH, checked
+from recon4.locales.numbers import localized
+from recon4.locales.texts import Texts, texts
 
-LANGUAGES = ("en",)
-"""Languages that have a catalog, ``client_<language>.toml``."""
+_NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?![\d.])")
+"""A decimal number; an address or a version has more points."""
 
 
 class Words:
-    """The texts of one language."""
+    """The texts of a language; the key of a text is its message and its part, ``limits.draft``."""
 
-    def __init__(self, language: str, texts: dict[str, str]) -> None:
+    def __init__(self, language: str, found: Texts) -> None:
         self.language = language
-        self._texts = texts
+        self._texts = found
 
     def __call__(self, key: str, /, **values: str) -> str:
         """A text with the values that it quotes filled in; the values are taken as they are."""
-        return self._texts[key].format(**values)
+        message, _, part = key.partition(".")
+        return self._texts.part(message, part, values)
 
-    def all(self, prefix: str) -> dict[str, str]:
-        """Texts whose key begins with the prefix, by the rest of the key."""
-        found = self._texts.items()
-        return {k.removeprefix(prefix): text for k, text in found if k.startswith(prefix)}
+    def all(self, message: str) -> dict[str, str]:
+        """All texts of a message, by their parts."""
+        return {part: self._texts.part(message, part, {}) for part in self._texts.parts(message)}
+
+    def number(self, value: float, digits: int = 2, scale: float = 1.0) -> str:
+        """A number for a cell; a dash where it is not finite."""
+        return self.decimal(number(value, digits, scale))
+
+    def decimal(self, text: str) -> str:
+        """A text with its decimal numbers as the language writes them."""
+        return _NUMBER.sub(lambda found: localized(found[0], self.language), text)
+
+    def term(self, text: str) -> str:
+        """A word of a record, or the name of an axis; one without a translation as it is."""
+        name = re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")
+        if self.language == ENGLISH or name not in self._texts.parts("term"):
+            return text
+        return self(f"term.{name}")
+
+    def label(self, text: str) -> str:
+        """The name of a row: a term, or one before the name that people gave something."""
+        if (whole := self.term(text)) != text:
+            return whole
+        kind, _, name = text.partition(" ")
+        return f"{self.term(kind)} {name}" if name else text
+
+    def value(self, text: str) -> str:
+        """The value of a row: parts between commas that are, begin or end with a term."""
+        if self.language == ENGLISH:
+            return text
+        return self.decimal(", ".join(map(self._part, text.split(", "))))
+
+    def _part(self, text: str) -> str:
+        if (whole := self.term(text)) != text:
+            return whole
+        split = text.split(" ")
+        for k in range(len(split) - 1, 0, -1):
+            head, tail = " ".join(split[:k]), " ".join(split[k:])
+            if self.term(head) != head or self.term(tail) != tail:
+                return f"{self.term(head)} {self.term(tail)}"
+        return text
 
 
 @cache
-def words(language: str = "en") -> Words:
-    """The catalog of a language.
+def words(language: str = ENGLISH) -> Words:
+    """The texts of a language.
 
     Raises:
         ConfigError: If there is none.
     """
-    if language not in LANGUAGES:
-        raise ConfigError(f"language {language[:20]!r}: expected one of {', '.join(LANGUAGES)}")
-    text = resources.files("recon4.report").joinpath(f"client_{language}.toml").read_text("utf-8")
-    return Words(language, dict(_flat(tomllib.loads(text))))
-
-
-def _flat(table: dict[str, object], prefix: str = "") -> list[tuple[str, str]]:
-    out: list[tuple[str, str]] = []
-    for name, value in table.items():
-        if isinstance(value, dict):
-            out += _flat(value, f"{prefix}{name}.")
-        else:
-            out.append((f"{prefix}{name}", str(value)))
-    return out
+    return Words(checked(language), texts(language, "report"))

@@ -10,6 +10,7 @@ import numpy as np
 from recon4.evaluation.table import number
 from recon4.findings.witnesses.rig import agreement
 from recon4.findings.wording import text_of
+from recon4.locales.languages import ENGLISH
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
@@ -37,9 +38,9 @@ def rig_rows(found: CalibrationFigures | None) -> list[RigRow]:
     return [_row(one) for one in found.parameters] if found else []
 
 
-def rig_outcome(found: CalibrationFigures | None) -> str:
+def rig_outcome(found: CalibrationFigures | None, language: str = ENGLISH) -> str:
     """What came of comparing and calibrating the rig, in words."""
-    return text_of(agreement(found.outcome, found.statuses)) if found else ""
+    return text_of(agreement(found.outcome, found.statuses), language) if found else ""
 
 
 def origin_rows(origin: RigOrigin | None) -> list[tuple[str, str]]:

@@ -9,6 +9,7 @@ from typing import Any
 from recon4.evaluation.site_control import control_in, statements
 from recon4.evaluation.table import number
 from recon4.findings.wording import word_of
+from recon4.locales.languages import ENGLISH
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import count_label
 
@@ -23,7 +24,7 @@ _NO_ROW = {"t_ns", "used", "residual_enu_m", "wkt", "warnings", "derived", "outc
 """Shown as charts or separate lists, or too long for a row."""
 
 
-def placed_rows(georeference: Mapping[str, Any]) -> Rows:
+def placed_rows(georeference: Mapping[str, Any], language: str = ENGLISH) -> Rows:
     """Rows of ``georeference.json``: leveling and georeference."""
     level = dict(georeference.get("levelling", {}))
     out: Rows = []
@@ -35,7 +36,7 @@ def placed_rows(georeference: Mapping[str, Any]) -> Rows:
     stated = georeference.get("georeference", {})
     inner = {name: value for name, value in stated.items() if value is not None}
     if "reason" in inner:
-        inner["reason"] = word_of(FindingKind.GNSS_NOT_USED, inner["reason"])
+        inner["reason"] = word_of(FindingKind.GNSS_NOT_USED, inner["reason"], language)
     if "georeferenced" in inner:
         by_points = "no: control points alone placed it" if georeference.get("crs") else "no"
         out.append(("georeferenced", "yes" if inner.pop("georeferenced") else by_points))

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from fluent.syntax import FluentParser, ast
 
+from recon4.cli.main import main
 from recon4.errors import ConfigError
 from recon4.locales import languages as module
 from recon4.locales.languages import ENGLISH, ROOT, best_of, languages, of_terminal
@@ -89,10 +90,12 @@ def test_a_browser_gets_the_best_language_that_there_is():
     assert best_of("de;q=0,en;q=nan") == best_of("de;q=1.2.3") == "en"
 
 
-def test_a_terminal_is_asked_by_option_and_environment(monkeypatch):
+def test_a_terminal_is_asked_by_option_and_environment(monkeypatch, capsys):
     monkeypatch.setenv(module.ENVIRONMENT, "de")
 
-    assert of_terminal() == "de" and of_terminal("en") == "en"
+    assert of_terminal() == "de"
+    assert main(["--language", "en", "explain", "MIRROR"]) == 0
+    assert of_terminal() == "en" and "Detected:" in capsys.readouterr().out
     monkeypatch.setenv(module.ENVIRONMENT, "xx")
     with pytest.raises(ConfigError, match="'xx': expected one of en, de"):
         of_terminal()

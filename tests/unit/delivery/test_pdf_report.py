@@ -16,14 +16,14 @@ from cryptography.hazmat.primitives.serialization import BestAvailableEncryption
 from cryptography.x509.oid import NameOID
 
 from recon4.delivery.pdf_signature import Organization, sign_pdf, signatures_in
-from recon4.delivery.report_files import ReportWish, report_of, server_key, write_pdf
+from recon4.delivery.report_files import ReportWish, report_of, said_state, server_key, write_pdf
 from recon4.errors import ConfigError, StoreError
 from recon4.model.pose_graph import Verdict
 from recon4.report import pdf
 from recon4.report.client import Row
 from recon4.report.client_words import words
 from recon4.report.pdf import pages_of, pdf_of
-from recon4.review.approval_state import NOT_APPROVED
+from recon4.review.approval_state import NOT_APPROVED, ApprovalKind, ApprovalState
 from recon4.review.signature import public_key_of
 from recon4.review.trusted_keys import ensure_own_key
 from recon4.store.checked import Altered
@@ -291,3 +291,34 @@ def test_delivered_files_are_listed_with_their_hashes(room):
 def test_a_language_without_catalog_is_refused(room):
     with pytest.raises(ConfigError, match="expected one of en"):
         report_of(room, None, NOT_APPROVED, wish=ReportWish(language="xx"))
+
+
+def test_a_german_report_has_german_words_and_commas_but_names_as_given(room):
+    report = report_of(room, None, NOT_APPROVED, wish=ReportWish(language="de"))
+    english = report_of(room, None, NOT_APPROVED, wish=ReportWish())
+    front, say = report.front, words("de")
+
+    assert (report.language, report.words["draft"]) == ("de", "ENTWURF")
+    assert _value(front.what, say("front.walked")).startswith(
+        _value(english.front.what, words()("front.walked")).split(" m ")[0].replace(".", ",")
+    )
+    assert front.signature.text == "Entwurf: nicht freigegeben"
+    assert say.value("VLP-16, topic /a.b/points, port 2368, 10.02 Hz") == (
+        "VLP-16, Topic /a.b/points, Port 2368, 10,02 Hz"
+    )
+    assert say.decimal("192.168.1.201, 0.2.0, -0.5 m") == "192.168.1.201, 0.2.0, -0,5 m"
+    assert say.label("sensor moving") == "Sensor moving"
+    state = ApprovalState(
+        kind=ApprovalKind.EARLIER,
+        text="Approved v1 · Ann · 2026-11-27; version 3 is newer",
+        version=1,
+        who="Ann",
+        time="2026-11-27T10:00",
+    )
+    assert said_state(state, say) == "Freigegeben v1 · Ann · 2026-11-27; Version 3 ist neuer"
+    assert said_state(state, words()) == state.text
+    assert [one.code for one in _findings(report)] == [one.code for one in _findings(english)]
+
+
+def _findings(report):
+    return [one for section in report.sections for one in section.findings]
