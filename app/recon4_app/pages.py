@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from html import escape
 from pathlib import Path
 
 from fastapi import Request
 from fastapi.responses import HTMLResponse
+from starlette.requests import HTTPConnection
 
+from recon4.locales.languages import best_of, languages
+from recon4.locales.texts import texts
 from recon4_app.network.behind import prefix_of
 
 
@@ -23,6 +27,11 @@ HEAD_HERE = "<!-- shared/head.html -->"
 """Stands in each page where the common elements of the heads belong."""
 _ADDRESS = re.compile(r"""(?<=\s)((?:href|src|action)=")(?=/)""")
 """In front of each address of this server in a page; all of them begin with a slash."""
+_TEXTS = re.compile(r'<html [^>]*data-texts="([a-z-]+)"')
+"""File of texts of a page that is translated; the others are English in every language."""
+_TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
+LANGUAGE_COOKIE = "recon4_language"
+"""The choice on a page; `web/shared/texts.js` sets it."""
 
 
 def html_of(file: str, prefix: str = "") -> str:
@@ -48,4 +57,25 @@ def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) ->
     page = html_of(file, prefix_of(request.scope))
     for place, content in fills.items():
         page = page.replace(f"{{{place}}}", content)
-    return HTMLResponse(page)
+    named = _TEXTS.search(page)
+    if named is None:
+        return HTMLResponse(page)
+    language = language_of(request)
+    headers = {"Content-Language": language, "Vary": "Accept-Language, Cookie"}
+    return HTMLResponse(_translated(page, named[1], language), headers=headers)
+
+
+def language_of(connection: HTTPConnection) -> str:
+    """The language that a person reads: as chosen on a page, else as the browser asks for."""
+    chosen = connection.cookies.get(LANGUAGE_COOKIE, "")
+    if chosen in languages():
+        return chosen
+    return best_of(connection.headers.get("accept-language", ""))
+
+
+def _translated(page: str, file: str, language: str) -> str:
+    """A page with its texts, ``{{ name }}``, in a language."""
+    say = texts(language, file)
+    attributes = f'lang="{language}" data-languages="{" ".join(languages())}"'
+    page = page.replace('lang="en"', attributes, 1)
+    return _TEXT.sub(lambda found: escape(say(found[1])), page)

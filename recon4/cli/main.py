@@ -36,7 +36,7 @@ from recon4.cli.slices import slices
 from recon4.cli.storage import space
 from recon4.cli.terminal import write
 from recon4.errors import Cancelled, Recon4Error
-from recon4.locales.languages import ENVIRONMENT, checked
+from recon4.locales.languages import ENVIRONMENT, LANGUAGE_HELP, checked
 from recon4.system.stopping import StopSignals
 from recon4_app.cli.keys import keys
 from recon4_app.cli.mcp import assistant
@@ -284,9 +284,7 @@ def _every_command(
         bool,
         typer.Option("--version", callback=_version, is_eager=True, help="Show the version."),
     ] = False,
-    language: Annotated[
-        str, typer.Option(help=f"Of reports and findings, as de; default: {ENVIRONMENT}, else en.")
-    ] = "",
+    language: Annotated[str, typer.Option(help=LANGUAGE_HELP)] = "",
 ) -> None:
     if language:
         os.environ[ENVIRONMENT] = checked(language)

@@ -11,6 +11,8 @@ from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
 from recon4.live.session import loopback_address
 from recon4.live.tuning import CAPTURE_WARNINGS
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Texts, texts
 from recon4.model.import_counts import ratio_text
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
@@ -33,26 +35,36 @@ class CaptureFinding:
     text: str
 
 
-def findings(rig: Rig, newest: Newest, problem: str) -> list[CaptureFinding]:
+def capture_texts(language: str) -> Texts:
+    """The texts of these warnings."""
+    return texts(language, "capture")
+
+
+def findings(
+    rig: Rig, newest: Newest, problem: str, *, language: str = ENGLISH
+) -> list[CaptureFinding]:
     """Derive the warnings from the newest messages of recorder and mapper.
 
     Args:
         rig: The sensors that should send.
         newest: Newest messages of recorder and mapper.
         problem: What is wrong with the capture itself; empty = nothing.
+        language: Of the texts.
     """
+    say = capture_texts(language)
     found = [CaptureFinding("error", problem)] if problem else []
     status = newest.status
     if status is not None:
-        found += [*_disk(status), *_sensors(rig, status), *_samples(rig, status)]
-        found += [*_strangers(rig, status), *_drops(status)]
-    found += _too_slow(status, newest.pose)
+        found += [*_disk(status, say), *_sensors(rig, status, say), *_samples(rig, status, say)]
+        found += [*_strangers(rig, status, say), *_drops(status, say)]
+    found += _too_slow(status, newest.pose, say)
     if newest.pose is not None:
-        found += _tracking(newest.pose)
+        found += _tracking(newest.pose, say)
     if newest.notes is not None:
-        found += _reader(newest.notes, lost_here=status is not None and status.kernel_drops > 0)
+        lost_here = status is not None and status.kernel_drops > 0
+        found += _reader(newest.notes, say, lost_here=lost_here)
     if newest.fix is not None:
-        found += _position(newest.fix)
+        found += _position(newest.fix, say)
     order: dict[Level, int] = {"error": 0, "warning": 1, "info": 2}
     return sorted(found, key=lambda finding: order[finding.level])
 
@@ -102,72 +114,64 @@ def _rate(sensor: Sensor, sender: Sender) -> float:
     return sender.data_per_s if sensor.kind == "lidar" else sender.per_s
 
 
-def _disk(status: Status) -> list[CaptureFinding]:
+def _disk(status: Status, say: Texts) -> list[CaptureFinding]:
     found = []
     file, left_s = status.file, status.disk.left_s
     if file.problem:
-        found.append(CaptureFinding("error", f"Nothing is recorded: {file.problem}"))
+        found.append(CaptureFinding("error", say("nothing-recorded", problem=file.problem)))
     if left_s is not None and left_s < CAPTURE_WARNINGS.low_disk_s:
-        found.append(CaptureFinding("error", f"Disk full in {max(left_s, 0) // 60} min"))
+        found.append(CaptureFinding("error", say("disk-full", minutes=str(max(left_s, 0) // 60))))
     if status.notes:
-        found.append(CaptureFinding("error", f"A mark could not be saved: {status.notes}"))
+        found.append(CaptureFinding("error", say("mark-unsaved", problem=status.notes)))
     if status.paused:
-        found.append(CaptureFinding("info", "Paused: nothing is recorded"))
+        found.append(CaptureFinding("info", say("paused")))
     return found
 
 
-def _sensors(rig: Rig, status: Status) -> list[CaptureFinding]:
+def _sensors(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
     silent_s = {s.name: _silent_s(_mine(s, status.senders), status) for s in rig.sensors}
     silent = {
         name: seconds for name, seconds in silent_s.items() if seconds >= CAPTURE_WARNINGS.silent_s
     }
     if silent and len(silent) == len(silent_s):
         shortest = min(silent.values())
-        arrives = _arriving(rig, status)
-        what = "LiDAR" if all(sensor.kind == "lidar" for sensor in rig.sensors) else "scanner"
+        arrives = _arriving(rig, status, say)
+        only_lidars = all(sensor.kind == "lidar" for sensor in rig.sensors)
+        what = say("what-lidar" if only_lidars else "what-scanner")
         if arrives:
-            return [CaptureFinding("error", f"No {what} of the rig sends: {arrives}")]
-        text = f"No {what} sends anything for {_seconds(shortest)}: check power and cables"
+            return [CaptureFinding("error", say("none-sends", what=what, arrives=arrives))]
+        text = say("none-sends-anything", what=what, time=_seconds(shortest, say))
         return [CaptureFinding("error", text)]
     return [
-        CaptureFinding("error", f"{_title(sensor)} silent for {_seconds(silent[sensor.name])}")
+        CaptureFinding("error", say("sensor-silent", sensor=_title(sensor, say), time=time))
         for sensor in rig.sensors
-        if sensor.name in silent
+        if sensor.name in silent and (time := _seconds(silent[sensor.name], say))
     ]
 
 
-def _title(sensor: Sensor) -> str:
+def _title(sensor: Sensor, say: Texts) -> str:
     """A sensor on the screen; there is only one of the kinds without a name."""
-    titles = {"laser2d": "2-D laser", "profiler": "Profiler"}
-    return titles.get(sensor.kind, f"{sensor.name} LiDAR")
+    titles = {"laser2d": "title-laser2d", "profiler": "title-profiler"}
+    return say(titles.get(sensor.kind, "title-lidar"), name=sensor.name)
 
 
-def _arriving(rig: Rig, status: Status) -> str:
+def _arriving(rig: Rig, status: Status, say: Texts) -> str:
     """Datagrams on the LiDARs' ports although no LiDAR of the rig sends; empty = none."""
     for sensor in rig.sensors:
         there = [one for one in status.senders if one.port == sensor.port]
+        known = {"sensor": sensor.name, "address": sensor.address, "port": str(sensor.port)}
+        others = [one for one in there if one.source not in _addresses(sensor)]
         if sensor.kind != "lidar":
-            other = [one for one in there if one.per_s > 0 and one.source not in _addresses(sensor)]
+            other = [one for one in others if one.per_s > 0]
             if sensor.address and other:
-                return (
-                    f"{sensor.name} is expected from {sensor.address}, but datagrams for port "
-                    f"{sensor.port} come from {_sources(other)}: correct the address in the rig or "
-                    "in the sender"
-                )
+                return say("datagrams-elsewhere", **known, sources=_sources(other))
             continue
-        data = [one for one in there if one.data_per_s > 0 and one.source not in _addresses(sensor)]
+        data = [one for one in others if one.data_per_s > 0]
         if sensor.address and data:
-            return (
-                f"{sensor.name} is expected from {sensor.address}, but data packets for port "
-                f"{sensor.port} come from {_sources(data)}: correct the address in the rig or in "
-                "the sensor"
-            )
+            return say("packets-elsewhere", **known, sources=_sources(data))
         other = [one for one in there if one.per_s > 0]
         if other:
-            return (
-                f"datagrams for port {sensor.port} ({sensor.name}) come from {_sources(other)}, "
-                "but they are not LiDAR data packets"
-            )
+            return say("no-data-packets", **known, sources=_sources(other))
     return ""
 
 
@@ -184,16 +188,17 @@ def _silent_s(senders: list[Sender], status: Status) -> float:
     return status.seconds if status.seconds >= CAPTURE_WARNINGS.grace_s else 0.0
 
 
-def _samples(rig: Rig, status: Status) -> list[CaptureFinding]:
+def _samples(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
     found = []
     imu = _imu_senders(rig, status.senders)
     silent_s = _silent_s(imu, status)
     if imu and silent_s >= CAPTURE_WARNINGS.silent_s:
-        found.append(CaptureFinding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
+        text = say("imu-silent", time=_seconds(silent_s, say))
+        found.append(CaptureFinding("warning", text))
     elif silent_s >= CAPTURE_WARNINGS.silent_s and _needs_imu(rig) and not _with_imu(rig):
-        found.append(CaptureFinding("warning", "No IMU: walk and turn slowly"))
+        found.append(CaptureFinding("warning", say("imu-none")))
     if status.serial:
-        found.append(CaptureFinding("warning", f"GNSS receiver: {status.serial}"))
+        found.append(CaptureFinding("warning", say("gnss-receiver", problem=status.serial)))
     return found
 
 
@@ -202,7 +207,7 @@ def _needs_imu(rig: Rig) -> bool:
     return any(sensor.kind != "laser2d" for sensor in rig.sensors)
 
 
-def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
+def _strangers(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
     """Foreign senders to a LiDAR's port, and datagrams there that are not data packets."""
     ports: dict[int, list[Sensor]] = {}
     for sensor in rig.sensors:
@@ -218,68 +223,72 @@ def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
         mixed = [one for one in there if one.per_s - one.data_per_s > 0]
         if strangers:
             some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")
-            found.append(CaptureFinding("info", f"Foreign traffic on port {port} from {some}"))
+            text = say("foreign-traffic", port=str(port), sources=some)
+            found.append(CaptureFinding("info", text))
         elif mixed and sensors[0].kind == "lidar":
-            source = mixed[0].source
-            text = f"Packets on port {port} that are not LiDAR data packets, from {source}"
+            text = say("packets-not-lidar", port=str(port), source=mixed[0].source)
             found.append(CaptureFinding("info", text))
     return found
 
 
-def _drops(status: Status) -> list[CaptureFinding]:
+def _drops(status: Status, say: Texts) -> list[CaptureFinding]:
     count = status.file.dropped
-    text = f"{count} packets are not in the recording: the disk was full or too slow"
+    text = say("packets-not-recorded", count=count)
     return [CaptureFinding("error", text)] if count else []
 
 
-def _tracking(pose: Pose) -> list[CaptureFinding]:
+def _tracking(pose: Pose, say: Texts) -> list[CaptureFinding]:
     found = []
     if pose.lost:
-        found.append(CaptureFinding("error", "Tracking lost: stop, then go back a few steps"))
+        found.append(CaptureFinding("error", say("tracking-lost")))
     elif (pose.turn_rad_s or 0.0) > CAPTURE_WARNINGS.turn_rad_s:
-        found.append(CaptureFinding("warning", "Turn slower"))
-    elif unobserved_text(pose):
-        found.append(CaptureFinding("warning", unobserved_text(pose)))
+        found.append(CaptureFinding("warning", say("turn-slower")))
+    elif unobserved := unobserved_text(pose, say):
+        found.append(CaptureFinding("warning", unobserved))
     elif _degraded(pose) and not _behind(pose):
-        found.append(
-            CaptureFinding("warning", "Tracking is degraded: walk slower, look at more walls")
-        )
+        found.append(CaptureFinding("warning", say("tracking-degraded")))
     if pose.remark:
-        found.append(CaptureFinding("warning", f"{pose.remark[0].upper()}{pose.remark[1:]}"))
+        found.append(CaptureFinding("warning", _remark(pose.remark, say)))
     return found
 
 
-def _too_slow(status: Status | None, pose: Pose | None) -> list[CaptureFinding]:
+def _remark(remark: str, say: Texts) -> str:
+    """A remark of the mapper in words: its code, and what it is about."""
+    code, _, why = remark.partition(" ")
+    if f"remark-{code}" not in say:
+        return remark
+    return say(f"remark-{code}", why=say(f"why-{why}") if why else "")
+
+
+def _too_slow(status: Status | None, pose: Pose | None, say: Texts) -> list[CaptureFinding]:
     """One finding for all that a computer without enough time does.
 
     Frames are left out of the preview, never of the recording; packets that the kernel drops are
     in neither.
     """
     lost = status.kernel_drops if status is not None else 0
-    late = _late(pose) if pose is not None else ""
+    late = _late(pose, say) if pose is not None else ""
     if lost:
-        behind = f"; {late[0].lower()}{late[1:]}" if late else ""
-        text = f"{lost} packets were lost: this computer is too busy{behind}"
+        late = late[:1].lower() + late[1:]  # within a sentence
+        text = say("packets-lost-late" if late else "packets-lost", count=lost, late=late)
         return [CaptureFinding("error", text)]
     level: Level = "warning" if pose is not None and _behind(pose) else "info"
-    return [CaptureFinding(level, f"{late}; the recording is complete")] if late else []
+    return [CaptureFinding(level, say("preview-late", late=late))] if late else []
 
 
 def _behind(pose: Pose) -> bool:
     return pose.age_s > CAPTURE_WARNINGS.late_s
 
 
-def _late(pose: Pose) -> str:
+def _late(pose: Pose, say: Texts) -> str:
     """Latency of the preview in words; empty = there is none."""
-    recent = pose.lately
-    behind = f"The preview is {pose.age_s:.0f} s behind" if _behind(pose) else ""
-    left_out = (
-        f"{recent.thinned} of the last {recent.frames} frames are left out of the preview "
-        f"({pose.thinned} in all)"
-        if recent.thinned
-        else ""
-    )
-    return ": ".join(part for part in (behind, left_out) if part)
+    recent, parts = pose.lately, []
+    if _behind(pose):
+        parts.append(say("preview-behind", seconds=pose.age_s))
+    if recent.thinned:
+        counts = {"thinned": recent.thinned, "frames": recent.frames, "all": pose.thinned}
+        parts.append(say("frames-left-out", **counts))
+    return ": ".join(parts)
 
 
 def _degraded(pose: Pose) -> bool:
@@ -298,34 +307,36 @@ def _degraded(pose: Pose) -> bool:
     )
 
 
-def _reader(notes: Notes, *, lost_here: bool) -> list[CaptureFinding]:
+def _reader(notes: Notes, say: Texts, *, lost_here: bool) -> list[CaptureFinding]:
     """What the reader repairs; packets that this computer lost are no fault of the cable."""
-    found = [CaptureFinding("warning", whole_text(one)) for one in notes.findings[-3:]]
-    found += [CaptureFinding("warning", text) for text in scan_remarks(notes)]
+    language = say.language
+    found = [CaptureFinding("warning", whole_text(one, language)) for one in notes.findings[-3:]]
+    found += [CaptureFinding("warning", text) for text in scan_remarks(notes, say)]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
     if packets > 1000 and missing > CAPTURE_WARNINGS.max_lost * packets and not lost_here:
-        text = ratio_text("packets_missing", missing / (packets + missing))
+        text = ratio_text("packets_missing", missing / (packets + missing), language)
         found.append(CaptureFinding("warning", text))
     for name in _BAD_PACKETS:
         if packets > 1000 and recent.get(name, 0) > CAPTURE_WARNINGS.max_lost * packets:
-            text = ratio_text(name, recent[name] / packets)
+            text = ratio_text(name, recent[name] / packets, language)
             found.append(CaptureFinding("info", text))
     return found
 
 
-def _position(fix: Fix) -> list[CaptureFinding]:
+def _position(fix: Fix, say: Texts) -> list[CaptureFinding]:
     if fix.jumped_m:
-        text = f"GNSS jumped by {fix.jumped_m:.0f} m: the map does not use it"
-        return [CaptureFinding("warning", text)]
-    sd_m = fix.sd_m
-    within = f", ±{max(sd_m[:2]):.2g} m" if sd_m else ""
+        return [CaptureFinding("warning", say("gnss-jumped", m=fix.jumped_m))]
     if fix.quality == 0:
-        return [CaptureFinding("info", "GNSS has no position")]
-    return (
-        [] if fix.quality in (4, 5) else [CaptureFinding("info", f"GNSS without RTK fix{within}")]
-    )
+        return [CaptureFinding("info", say("gnss-none"))]
+    if fix.quality in (4, 5):
+        return []
+    known = fix.sd_m
+    text = say("gnss-no-rtk-within", m=max(known[:2])) if known else say("gnss-no-rtk")
+    return [CaptureFinding("info", text)]
 
 
-def _seconds(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 120 else f"{seconds / 60:.0f} min"
+def _seconds(seconds: float, say: Texts) -> str:
+    if seconds < 120:
+        return say("seconds", value=seconds)
+    return say("minutes", value=seconds / 60)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from recon4.findings.verdict import verdict_of
 from recon4.findings.wording import text_of
-from recon4.live.findings import CaptureFinding
+from recon4.live.findings import CaptureFinding, capture_texts
 from recon4.live.findings import Level as Urgency
 from recon4.live.protocol import Pose
 from recon4.live.stretches import Stretches
 from recon4.live.tuning import SO_FAR
+from recon4.locales.languages import ENGLISH
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.tuning import OBSERVATION
@@ -89,11 +90,12 @@ class WalkSoFar:
             )
         return found
 
-    def findings(self, *, records: bool) -> list[CaptureFinding]:
+    def findings(self, *, records: bool, language: str = ENGLISH) -> list[CaptureFinding]:
         """One line with the verdict so far; none if nothing is known to be wrong.
 
         Args:
             records: Whether the walk goes on; what the operator can still change is more urgent.
+            language: Of the texts.
         """
         found = self.problems()
         if not found:
@@ -101,5 +103,7 @@ class WalkSoFar:
         usability = verdict_of(found).usability
         urgent = usability is Usability.DO_NOT_USE and not records
         level: Urgency = "error" if urgent else "warning"
-        texts = " ".join(text_of(one) for one in found)
-        return [CaptureFinding(level, f"Map so far: {usability}. {texts}")]
+        said = " ".join(text_of(one, language) for one in found)
+        bad = usability is Usability.DO_NOT_USE
+        text = capture_texts(language)("so-far-do-not-use" if bad else "so-far-check", text=said)
+        return [CaptureFinding(level, text)]

@@ -164,7 +164,7 @@ class Pose(msgspec.Struct, tag_field="kind", tag="pose", kw_only=True):
     imu: bool
     """Whether the odometry uses the IMU."""
     remark: str
-    """Warning about the IMU or the map; empty = none."""
+    """Code of a warning about the IMU or the map, and why; empty = none."""
     unobserved: str = ""
     """Direction that a 2-D laser does not observe now: ``along`` or ``across`` the heading; empty =
     it observes all, or there are LiDARs."""

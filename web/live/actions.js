@@ -9,6 +9,7 @@ import {
   steerCapture,
 } from "../shared/api.js";
 import { attempt, byId, fields, html, nothing, render, say, within } from "../shared/dom.js";
+import { hasText, t } from "../shared/texts.js";
 
 /**
  * @import {NewCapture, RigChoice} from "../shared/http_types"
@@ -43,7 +44,7 @@ function dialog(id, act) {
     if (submitter?.value === "cancel") return;
     event.preventDefault();
     const text = submitter?.textContent ?? "";
-    if (submitter) [submitter.disabled, submitter.textContent] = [true, "One moment…"];
+    if (submitter) [submitter.disabled, submitter.textContent] = [true, t("one-moment")];
     const done = await attempt(message, () => act(fields(form)));
     if (submitter) [submitter.disabled, submitter.textContent] = [false, text];
     if (done !== undefined) element.close();
@@ -98,12 +99,15 @@ async function begin() {
   offer(
     preset,
     choices.presets.map(
-      (name) => html`<option value=${name}>${name}: ${choices.preset_texts[name]}</option>`,
+      (name) =>
+        html`<option value=${name}>
+          ${name}: ${hasText(`preset-${name}`) ? t(`preset-${name}`) : choices.preset_texts[name]}
+        </option>`,
     ),
     lastChosen().preset,
   );
   const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
-  place.value = `Walk ${now.slice(0, 16).replace("T", " ")}`;
+  place.value = t("walk-name", { time: now.slice(0, 16).replace("T", " ") });
   showStart();
 }
 
@@ -139,19 +143,17 @@ export function drawActions(
     </button>`;
   const steer = (/** @type {"pause" | "resume"} */ what) => () =>
     attempt(byId("message"), () => steerCapture(what));
-  const atStart = () =>
-    loop()?.closed
-      ? "The loop is closed."
-      : "The loop is not closed yet: the map is better if you return to the start first.";
-  const end = button("Stop", "stop", () => stop(atStart()));
+  const atStart = () => t(loop()?.closed ? "loop-is-closed" : "loop-is-open");
+  const end = button(t("stop"), "stop", () => stop(atStart()));
   /** @type {Record<string, () => Template>} */
   const rows = {
-    none: () => html`${button("Start…", "primary", begin)}`,
-    recording: () => html`${button("Mark", "", mark)}${button("Pause", "", steer("pause"))}${end}`,
-    paused: () => html`${button("Resume", "primary", steer("resume"))}${end}`,
+    none: () => html`${button(t("start"), "primary", begin)}`,
+    recording: () =>
+      html`${button(t("mark"), "", mark)}${button(t("pause"), "", steer("pause"))}${end}`,
+    paused: () => html`${button(t("resume"), "primary", steer("resume"))}${end}`,
     ready: () =>
-      html`<a class="button" href=${projectUrl(project)}>Project</a>
-        ${button("Make the map", "primary", makeMap)}${button("New…", "", begin)}`,
+      html`<a class="button" href=${projectUrl(project)}>${t("project")}</a>
+        ${button(t("make-map"), "primary", makeMap)}${button(t("new"), "", begin)}`,
   };
   render(mayCapture ? (rows[state]?.() ?? nothing) : nothing, byId("actions"));
 }

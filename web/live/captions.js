@@ -3,18 +3,19 @@
 /** @import {Battery, Fix, Gaps, Lidar, Message, Phone} from "./messages" */
 /** @typedef {{text: string, error?: boolean, silent?: string}} Chip */
 
-/** @type {Record<string, string>} */
-const STATES = {
-  none: "Nothing is recorded",
-  recording: "Recording",
-  paused: "Paused",
-  finishing: "Finishing",
-  ready: "Ready",
-};
+import { hasText, t } from "../shared/texts.js";
+
 /** @type {Record<number, string>} */
-const FIXES = { 1: "single", 2: "DGNSS", 4: "RTK fixed", 5: "RTK float" };
-/** @type {Record<string, string>} */
-const CLOCKS = { "own, shifted": "own clock", jumped: "clock jumped" };
+const FIXES = { 1: "fix-single", 2: "fix-dgnss", 4: "fix-rtk-fixed", 5: "fix-rtk-float" };
+/**
+ * Messages of the states of a clock.
+ * @type {Record<string, string>}
+ */
+const CLOCKS = {
+  "in step": "clock-in-step",
+  "own, shifted": "clock-shifted",
+  jumped: "clock-jumped",
+};
 const NEAR_START_M = 4;
 const LOOP_WALKED_M = 20; // shortest path of a loop
 const LOW_DISK_S = 600;
@@ -39,8 +40,13 @@ export function clock(/** @type {number} */ seconds) {
  * @param {boolean} linked
  */
 export function stateText(state, linked) {
-  if (!linked) return { text: state ? "No link" : "Connecting", className: state ? "error" : "" };
-  return { text: STATES[state] ?? "Connecting", className: state === "recording" ? "on" : "" };
+  if (!linked)
+    return { text: t(state ? "no-link" : "connecting"), className: state ? "error" : "" };
+  const message = `state-${state}`;
+  return {
+    text: t(hasText(message) ? message : "connecting"),
+    className: state === "recording" ? "on" : "",
+  };
 }
 
 /**
@@ -51,9 +57,7 @@ export function stateText(state, linked) {
  */
 export const linkLost = (state, seconds) => ({
   level: "error",
-  text:
-    `No link for ${seconds} s, trying again.` +
-    (isCapturing(state) ? " The recording continues" : ""),
+  text: t(isCapturing(state) ? "link-lost-recording" : "link-lost", { seconds: String(seconds) }),
 });
 
 /**
@@ -76,15 +80,16 @@ export function chips({ lidars = [], rates = {}, fix, status, battery }, state, 
   const found = sensors.map((chip) => (fresh && chip.silent ? { text: `${chip.silent} …` } : chip));
   if (fix) found.push({ text: fixText(fix), error: !(fix.quality > 0) });
   const left = status.disk.left_s;
-  if (left !== null) found.push({ text: `disk ${duration(left)}`, error: left < LOW_DISK_S });
+  if (left !== null)
+    found.push({ text: t("disk-brief", { left: duration(left) }), error: left < LOW_DISK_S });
   if (battery)
     found.push({
-      text: `laptop ${charge(battery)}`,
+      text: t("laptop-brief", { charge: charge(battery) }),
       error: battery.charge < LOW_BATTERY && !battery.mains,
     });
   if (phone)
     found.push({
-      text: `phone ${percent(phone.level)}`,
+      text: t("phone-brief", { charge: percent(phone.level) }),
       error: phone.level < LOW_BATTERY && !phone.charging,
     });
   return found.map(({ text, error }) => ({
@@ -96,9 +101,9 @@ export function chips({ lidars = [], rates = {}, fix, status, battery }, state, 
 /** @returns {Chip} */
 function lidarChip(/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps }) {
   if (lost !== null && lost > HIGH_LOSS)
-    return { text: `${name} ${percent(lost)} lost`, error: true };
+    return { text: t("lost-brief", { name, ratio: percent(lost) }), error: true };
   if (rate >= 1 && keeps && keeps !== "in step")
-    return { text: `${name} ${Math.round(rate)}/s, ${CLOCKS[keeps] ?? keeps}` };
+    return { text: `${name} ${Math.round(rate)}/s, ${t(`${CLOCKS[keeps] ?? keeps}-brief`)}` };
   return rateChip(name, rate);
 }
 
@@ -109,7 +114,7 @@ function lidarChip(/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps 
  */
 const rateChip = (name, rate) =>
   rate < 1
-    ? { text: `${name} silent`, error: true, silent: name }
+    ? { text: t("silent-brief", { name }), error: true, silent: name }
     : { text: `${name} ${Math.round(rate)}/s` };
 
 /**
@@ -123,46 +128,56 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
   const { free_bytes: free, left_s: left } = status.disk;
   const lost = status.kernel_drops + status.file.dropped;
   return [
-    ["IMU", rates.IMU >= 1 ? `${Math.round(rates.IMU)}/s` : "silent"],
+    [t("imu"), rates.IMU >= 1 ? `${Math.round(rates.IMU)}/s` : t("silent")],
+    [t("gnss-name"), positionText(fix, rates.GNSS ?? 0)],
     [
-      "GNSS",
-      fix
-        ? fixText(fix).replace("GNSS ", "")
-        : rates.GNSS > 0
-          ? `${Math.round(rates.GNSS)}/s, no position yet`
-          : "none",
+      t("disk"),
+      left === null
+        ? t("disk-free", { gigabytes: free / 1e9 })
+        : t("disk-free-for", { gigabytes: free / 1e9, left: duration(left) }),
     ],
     [
-      "Disk",
-      `${(free / 1e9).toFixed(0)} GB free` +
-        (left === null ? "" : `, for ${duration(left)} at this rate`),
+      t("recorded"),
+      t(lost ? "recorded-lost" : "recorded-whole", {
+        megabytes: status.file.written_bytes / 1e6,
+        lost: String(lost),
+      }),
     ],
-    [
-      "Recorded",
-      `${(status.file.written_bytes / 1e6).toFixed(0)} MB, ` +
-        (lost ? `${lost} packets lost` : "nothing lost"),
-    ],
-    [
-      "Computer",
-      battery ? `${charge(battery)}${battery.mains ? ", on mains" : ""}` : "no battery, or unknown",
-    ],
-    [
-      "Phone",
-      phone ? `${percent(phone.level)}${phone.charging ? ", charging" : ""}` : "battery unknown",
-    ],
+    [t("computer"), battery ? poweredText(battery) : t("no-battery")],
+    [t("phone"), phone ? chargingText(phone) : t("battery-unknown")],
     ...(notes?.counts.clock_jumps ? [clocksRow(notes.counts.clock_jumps)] : []),
   ];
 }
 
 /** @returns {[string, string]} */
-const clocksRow = (/** @type {number} */ jumps) => ["Clocks", `jumped ${jumps} times, corrected`];
+const clocksRow = (/** @type {number} */ jumps) => [
+  t("clocks"),
+  t("clocks-jumped", { jumps: String(jumps) }),
+];
+
+/** @param {Battery} battery */
+const poweredText = (battery) =>
+  battery.mains ? t("on-mains", { charge: charge(battery) }) : charge(battery);
+
+/** @param {Phone} phone */
+const chargingText = ({ level, charging }) =>
+  charging ? t("charging", { charge: percent(level) }) : percent(level);
+
+/**
+ * @param {Fix | null | undefined} fix
+ * @param {number} rate
+ */
+function positionText(fix, rate) {
+  if (fix) return fixText(fix).replace("GNSS ", "");
+  return rate > 0 ? t("no-position-yet", { rate: String(Math.round(rate)) }) : t("none");
+}
 
 /** A row of the table of LiDARs: [name, rate, lost, clock]. */
 export const lidarRow = (/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps }) => [
   name,
-  rate < 1 ? "silent" : `${Math.round(rate)}/s`,
-  lost === null ? "–" : `${(100 * lost).toFixed(1)} %`,
-  keeps || "–",
+  rate < 1 ? t("silent") : `${Math.round(rate)}/s`,
+  lost === null ? "–" : t("ratio", { ratio: lost }),
+  keeps ? t(CLOCKS[keeps] ?? keeps) : "–",
 ];
 
 const percent = (/** @type {number} */ ratio) => `${Math.round(100 * ratio)} %`;
@@ -170,15 +185,18 @@ const charge = (/** @type {Battery} */ { charge: ratio, left_s: left }) =>
   `${percent(ratio)}${left === null ? "" : `, ${duration(left)}`}`;
 
 function fixText(/** @type {Fix} */ { quality, sd_m: sd }) {
-  const name = FIXES[quality] ?? "no fix";
+  const name = t(FIXES[quality] ?? "fix-none");
   const within = sd && quality > 0 ? Math.max(sd[0], sd[1]) : null;
-  return within === null
-    ? `GNSS ${name}`
-    : `GNSS ${name} ±${within < 1 ? `${Math.round(100 * within)} cm` : `${within.toFixed(1)} m`}`;
+  if (within === null) return t("gnss", { fix: name });
+  return within < 1
+    ? t("gnss-within-cm", { fix: name, cm: 100 * within })
+    : t("gnss-within-m", { fix: name, m: within });
 }
 
 const duration = (/** @type {number} */ s) =>
-  s > 7200 ? `${Math.floor(s / 3600)} h` : `${Math.max(0, Math.floor(s / 60))} min`;
+  s > 7200
+    ? t("hours", { hours: String(Math.floor(s / 3600)) })
+    : t("minutes", { minutes: String(Math.max(0, Math.floor(s / 60))) });
 
 /**
  * What the operator should do next.
@@ -187,25 +205,18 @@ const duration = (/** @type {number} */ s) =>
  * @param {{mayCapture: boolean | null, mapped: boolean}} page
  */
 export function hint(state, { loop }, { mayCapture, mapped }) {
-  if (state === "none")
-    return mayCapture
-      ? "Put the backpack on, stand still, then start"
-      : "View only. Nothing is recorded yet";
-  if (state === "finishing") return "The recording is safe; the map is being completed";
-  if (state === "ready")
-    return mayCapture
-      ? "Everything is stored. Now make the map"
-      : "The walk is over; everything is stored";
-  if (state === "paused") return "Stay here: resume where the pause began";
-  if (!mapped) return "Stand still: the map starts in a few seconds";
-  if (!loop || !((loop.walked_m ?? 0) > LOOP_WALKED_M))
-    return "Open all rooms and walk slowly through each";
+  if (state === "none") return t(mayCapture ? "hint-start" : "hint-view");
+  if (state === "finishing") return t("hint-finishing");
+  if (state === "ready") return t(mayCapture ? "hint-make" : "hint-over");
+  if (state === "paused") return t("hint-paused");
+  if (!mapped) return t("hint-still");
+  if (!loop || !((loop.walked_m ?? 0) > LOOP_WALKED_M)) return t("hint-walk");
   if (loop.closed)
     return loop.drift_m == null
-      ? "✓ Loop closed"
-      : `✓ Loop closed, drift ${Math.round(100 * loop.drift_m)} cm`;
-  if (loop.start_m < NEAR_START_M) return "At the start, loop not closed yet";
-  return `Loop open: return to the start, ${Math.round(loop.start_m)} m`;
+      ? t("hint-closed")
+      : t("hint-closed-drift", { cm: String(Math.round(100 * loop.drift_m)) });
+  if (loop.start_m < NEAR_START_M) return t("hint-at-start");
+  return t("hint-open", { m: String(Math.round(loop.start_m)) });
 }
 
 /**
@@ -223,16 +234,11 @@ export function coverageTexts(gaps, chosen) {
     ? `${chosen + 1}/${count} ›`
     : count
       ? `${count} ›`
-      : elsewhere
-        ? "none here"
-        : "none";
-  const others = elsewhere ? `, ${elsewhere} on other floors` : "";
-  const all = count
-    ? `${count} ${count === 1 ? "place" : "places"} not seen${others}, show the next`
-    : `No gaps near your path${others}`;
+      : t(elsewhere ? "gaps-none-here" : "gaps-none");
+  const others = elsewhere ? t("gaps-elsewhere", { count: String(elsewhere) }) : "";
+  const all = t(count ? "gaps-next" : "gaps-no", { count, elsewhere: others });
   const one = gap
-    ? `Not seen: ${gap.width_m.toFixed(1)} m wide, ` +
-      `${gap.away_m.toFixed(0)} m from your path${others}`
+    ? t("gap-chosen", { width: gap.width_m, away: gap.away_m, elsewhere: others })
     : "";
   return {
     well: ratio(gaps?.well),

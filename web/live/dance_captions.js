@@ -1,5 +1,7 @@
 // The calibration dance as texts: what to do next, and which axes the walk has shown. No elements.
 
+import { t } from "../shared/texts.js";
+
 /** @import {Loop, Motion} from "./messages" */
 
 const STILL_S = 3;
@@ -21,46 +23,50 @@ export function steps(motion, loop) {
   const away = loop?.start_m ?? 0;
   return [
     {
-      name: "Still",
-      text: `Stand still for ${STILL_S} s`,
+      name: t("dance-still"),
+      text: t("dance-still-text", { seconds: String(STILL_S) }),
       done: still >= STILL_S,
-      now: `${still.toFixed(0)} s`,
+      now: t("dance-seconds", { seconds: still.toFixed(0) }),
     },
     {
-      name: "Tilt",
-      text: "Bend forward and back, then to both sides",
+      name: t("dance-tilt"),
+      text: t("dance-tilt-text"),
       done: Math.min(...tilt) >= TILT_DEG,
-      now: `${degrees(tilt)} of ${TILT_DEG}°`,
+      now: degrees(tilt, TILT_DEG),
     },
     {
-      name: "Turn",
-      text: "Turn around once to the left and once to the right",
+      name: t("dance-turn"),
+      text: t("dance-turn-text"),
       done: Math.min(...turned) >= TURN_DEG,
-      now: `${degrees(turned)} of ${TURN_DEG}°`,
+      now: degrees(turned, TURN_DEG),
     },
     {
-      name: "Loop",
-      text: `Walk a loop of ${LOOP_M} m and come back`,
+      name: t("dance-loop"),
+      text: t("dance-loop-text", { m: String(LOOP_M) }),
       done: walked >= LOOP_M && away <= BACK_M,
-      now: `${walked.toFixed(0)} m, ${away.toFixed(0)} m from the start`,
+      now: t("dance-loop-now", { walked: walked.toFixed(0), away: away.toFixed(0) }),
     },
   ];
 }
 
-const degrees = (/** @type {number[]} */ values) =>
-  values.map((value) => `${value.toFixed(0)}°`).join(" and ");
+/**
+ * @param {number[]} values of both sides
+ * @param {number} most
+ */
+const degrees = ([one = 0, other = 0], most) =>
+  t("dance-degrees", { one: one.toFixed(0), other: other.toFixed(0), most: String(most) });
 
 /** Rows of the table: [quantity, …texts of x, y, z]; a clock has one text. */
 export function axisRows(/** @type {Motion | null | undefined} */ motion) {
   const axes = motion?.axes ?? [];
   return QUANTITIES.map((quantity) => [
-    quantity,
+    t(`dance-${quantity}`),
     ...axes.filter((one) => one.quantity === quantity).map(({ shown }) => shownText(shown)),
   ]).filter((row) => row.length > 1);
 }
 
 const shownText = (/** @type {number} */ ratio) =>
-  ratio >= 1 ? "✓ observed" : `${Math.floor(100 * ratio)} %`;
+  ratio >= 1 ? t("dance-observed") : `${Math.floor(100 * ratio)} %`;
 
 /**
  * What to do next, in a sentence.
@@ -68,10 +74,10 @@ const shownText = (/** @type {number} */ ratio) =>
  * @param {Loop | null | undefined} loop
  */
 export function next(motion, loop) {
-  if (!motion) return "Stand still: the map starts in a few seconds";
+  if (!motion) return t("hint-still");
   const open = steps(motion, loop).find((one) => !one.done);
   if (open) return open.text;
   const missing = motion.axes.filter(({ shown }) => shown < 1);
-  if (!missing.length) return "✓ Every axis is observed: stop now";
-  return "Bend and turn again, faster: some axes are not observed yet";
+  if (!missing.length) return t("dance-all");
+  return t("dance-again");
 }

@@ -1,6 +1,7 @@
 // Sensors, disk, batteries and warnings: in brief on the page, all values in a sheet.
 
 import { byId, html, nothing, render } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { chips, lidarRow, linkLost, supplies } from "./captions.js";
 
 /**
@@ -8,14 +9,12 @@ import { chips, lidarRow, linkLost, supplies } from "./captions.js";
  * @import {LiveScene} from "./scene.js"
  */
 
-/** @type {Warning} */
-const NO_POINTS = {
-  level: "info",
-  text: "This browser cannot draw points (no WebGL 2); plan, path and warnings work",
-};
 const SHORT_PX = 700;
 /** Kinds of the errors that are shown: their texts without numbers. */
 const shown = { errors: /** @type {Set<string>} */ (new Set()) };
+
+/** @returns {Warning} */
+const noPoints = () => ({ level: "info", text: t("no-webgl") });
 
 const kindOf = (/** @type {Warning} */ { text }) => text.replace(/\d+/g, "#");
 
@@ -33,7 +32,7 @@ export function drawHealth({ scene, linked, battery, drawsPoints }) {
     byId("sensors"),
   );
   const warnings = linked
-    ? [...(newest.findings ?? []), ...(drawsPoints ? [] : [NO_POINTS])]
+    ? [...(newest.findings ?? []), ...(drawsPoints ? [] : [noPoints()])]
     : [linkLost(state, scene.silentS)];
   drawWarnings(warnings);
   if (byId("health", HTMLDialogElement).open) drawSheet(newest, warnings, battery);
@@ -46,7 +45,9 @@ function drawWarnings(/** @type {Warning[]} */ warnings) {
   const most = innerHeight < SHORT_PX ? 2 : 3;
   const more = warnings.length - most;
   const others = html`<li class="more">
-    <button type="button" @click=${() => byId("sensors").click()}>and ${more} more</button>
+    <button type="button" @click=${() => byId("sensors").click()}>
+      ${t("more-warnings", { count: String(more) })}
+    </button>
   </li>`;
   render([lines(warnings.slice(0, most)), more > 0 ? others : nothing], byId("findings"));
   vibrateOnNew(warnings.filter(({ level }) => level === "error"));

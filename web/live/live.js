@@ -3,7 +3,8 @@
 import { keep, kept } from "../shared/address.js";
 import { readCurrentUser } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
-import { attempt, byId, say, targetOf, within } from "../shared/dom.js";
+import { attempt, byId, html, render, say, targetOf, within } from "../shared/dom.js";
+import { chooseLanguage, language, languages, loadTexts, t } from "../shared/texts.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
 import { Camera, moveByPointer } from "./camera.js";
 import { drawDance, showDance } from "./dance.js";
@@ -18,6 +19,8 @@ import { clock, coverageTexts, hint, isCapturing, stateText } from "./captions.j
  * @import {Area, Styles} from "./overlay.js"
  * @typedef {(...values: number[]) => number} Best
  */
+
+await loadTexts();
 
 const HEAD_M = 0.5;
 const MIN_FREE_PX = 80;
@@ -274,9 +277,9 @@ function showAll(/** @type {boolean} */ yes) {
 }
 
 function help() {
-  const who = page.me?.login ? `Signed in as ${page.me.name}, ${page.me.role}. ` : "";
-  const points = `${scene.total.toLocaleString("en")} points on this phone.`;
-  byId("about").textContent = page.me ? who + points : "";
+  const points = t("points-here", { points: scene.total });
+  const who = page.me?.login ? { name: page.me.name, role: page.me.role } : null;
+  byId("about").textContent = page.me ? (who ? t("signed-in", { ...who, points }) : points) : "";
   byId("name-it").hidden = !page.me?.may.includes("capture") || !isCapturing(scene.state);
   byId("dance-it").hidden = !isCapturing(scene.state) || !scene.newest.motion;
   byId("more", HTMLDialogElement).showModal();
@@ -288,6 +291,13 @@ byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);
 byId("name-it").addEventListener("click", nameThePlace);
 byId("dance-it").addEventListener("click", () => showDance(scene.newest));
+render(
+  languages().map(
+    ([code, name]) => html`<option value=${code} ?selected=${code === language()}>${name}</option>`,
+  ),
+  byId("language"),
+);
+byId("language").addEventListener("change", (event) => chooseLanguage(targetOf(event).value));
 byId("ceiling").addEventListener("change", (event) => showAll(targetOf(event).checked));
 
 /** @type {Record<string, () => unknown>} */

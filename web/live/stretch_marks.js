@@ -1,5 +1,6 @@
 // The stretches of the walk that findings are about, over the path.
 
+import { t } from "../shared/texts.js";
 import { circle, label } from "./shapes.js";
 
 /**
@@ -10,12 +11,12 @@ import { circle, label } from "./shapes.js";
  */
 
 /**
- * Color, dashes and caption of each kind: no meaning rests on the color alone.
+ * Color, dashes and message of the caption of each kind: no meaning rests on the color alone.
  * @type {Record<MarkedStretch["kind"], {color: "bad" | "poor", dash: number[], text: string}>}
  */
 export const LOOKS = {
-  "TRACKING-LOST": { color: "bad", dash: [3, 9], text: "tracking lost" },
-  "WEAK-DIRECTION": { color: "poor", dash: [], text: "hardly observable" },
+  "TRACKING-LOST": { color: "bad", dash: [3, 9], text: "stretch-lost" },
+  "WEAK-DIRECTION": { color: "poor", dash: [], text: "stretch-weak" },
 };
 const WIDTH_PX = 8;
 const CAPTION_PX = 70; // half the width of the longest caption
@@ -46,7 +47,7 @@ export function drawStretches(context, camera, stretches, { inside, styles }) {
     if (!long && stretches.length > 1) continue;
     const [x, y] = places[places.length >> 1] ?? first;
     const middle = Math.min(Math.max(x, inside.left + CAPTION_PX), inside.right - CAPTION_PX);
-    label(context, text, middle, y - 16, styles[color], styles.sky);
+    label(context, t(text), middle, y - 16, styles[color], styles.sky);
   }
   context.lineCap = "butt";
 }

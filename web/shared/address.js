@@ -38,6 +38,18 @@ export const kept = (/** @type {string} */ name) => localStorage.getItem(keyOf(n
  */
 export const keep = (name, text) => localStorage.setItem(keyOf(name), text);
 
+const YEAR_S = 31_536_000;
+
+/**
+ * Keeps a choice where the server reads it with each page, too.
+ * @param {string} name
+ * @param {string} text
+ */
+export function keepForServer(name, text) {
+  const safe = location.protocol === "https:" ? "; secure" : "";
+  document.cookie = `${name}=${text}; path=${BASE}; max-age=${YEAR_S}; samesite=lax${safe}`;
+}
+
 const BY_VIEWER = "viser-user:"; // viser keeps what the viewer chose by names without our path
 
 const BY_DOCS = `${BASE}docs/`; // the documentation keeps its colors by the whole path

@@ -12,6 +12,7 @@ from fastapi import WebSocket
 from recon4 import __version__
 from recon4.live.findings import findings, rates
 from recon4.live.newest_messages import Newest
+from recon4.locales.languages import ENGLISH
 from recon4_app.live.capture import Capture, State
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.health import lidars
@@ -33,8 +34,9 @@ class Greeting(msgspec.Struct, frozen=True):
 class Phone:
     """A WebSocket of a page, and the state the page has received."""
 
-    def __init__(self, socket: WebSocket, current_capture: CurrentCapture) -> None:
+    def __init__(self, socket: WebSocket, current_capture: CurrentCapture, language: str) -> None:
         self._socket, self._current_capture = socket, current_capture
+        self._language = language
         self._disconnected: asyncio.Task[None] | None = None
         self._state: CaptureState | None = None
         self._allowance = float(PHONE_STREAM.bytes_at_first)
@@ -94,7 +96,7 @@ class Phone:
             most = max(0, int(self._allowance) // STREAM.bytes_a_point)
             message, points = stream.lacking(cursor, most=most)
             self._allowance -= len(points)
-            state = state_of(self._current_capture, capture)
+            state = state_of(self._current_capture, capture, self._language)
             message.add_changes(self._state, state)
             self._state = state
             await self._send(message)
@@ -133,14 +135,17 @@ def cursor_of(have: Any, capture: Capture) -> Cursor:
     return cursor
 
 
-def state_of(current_capture: CurrentCapture, capture: Capture) -> CaptureState:
+def state_of(
+    current_capture: CurrentCapture, capture: Capture, language: str = ENGLISH
+) -> CaptureState:
     """State of the capture; rates and warnings of the sensors only while it records."""
     records = capture.state in (State.RECORDING, State.PAUSED)
     newest = capture.stream.newest if records else Newest()
     battery = current_capture.power.battery
-    found = findings(current_capture.rig, newest, capture.problem)
-    found += capture.stream.so_far.findings(records=records)
-    found = sorted([*found, *battery_findings(battery)], key=lambda one: URGENCY.index(one.level))
+    found = findings(current_capture.rig, newest, capture.problem, language=language)
+    found += capture.stream.so_far.findings(records=records, language=language)
+    found += battery_findings(battery, language)
+    found = sorted(found, key=lambda one: URGENCY.index(one.level))
     return CaptureState(
         project=capture.project,
         state=capture.state,

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.live.findings import CaptureFinding
+from recon4.live.findings import CaptureFinding, capture_texts
+from recon4.locales.languages import ENGLISH
 from recon4_app.live.tuning import POWER
 
 SUPPLIES = Path("/sys/class/power_supply")
@@ -55,7 +56,7 @@ def read_battery(supplies: Path = SUPPLIES) -> Battery | None:
     return Battery(min(max(now / full, 0.0), 1.0), left_s, mains)
 
 
-def battery_findings(battery: Battery | None) -> list[CaptureFinding]:
+def battery_findings(battery: Battery | None, language: str = ENGLISH) -> list[CaptureFinding]:
     """Warnings about the battery for the operator."""
     if battery is None or battery.mains:
         return []
@@ -63,8 +64,11 @@ def battery_findings(battery: Battery | None) -> list[CaptureFinding]:
     if left_s >= POWER.low_s and battery.charge >= POWER.low_charge:
         return []
     critical = left_s < POWER.critical_s or battery.charge < POWER.critical_charge
-    left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
-    text = f"The computer's battery has {100 * battery.charge:.0f} %{left} left"
+    say = capture_texts(language)
+    if battery.left_s is None:
+        text = say("battery", charge=battery.charge)
+    else:
+        text = say("battery-minutes", charge=battery.charge, minutes=left_s / 60)
     return [CaptureFinding("error" if critical else "warning", text)]
 
 

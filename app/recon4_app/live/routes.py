@@ -27,7 +27,7 @@ from recon4_app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
 from recon4_app.names import Name, Note
 from recon4_app.network.close_codes import CloseCode
 from recon4_app.network.request_caller import CalledBy
-from recon4_app.pages import page_response
+from recon4_app.pages import language_of, page_response
 from recon4_app.rig_files import check_rig_file
 
 LOOK = [Depends(needs(Permission.LOOK))]
@@ -213,7 +213,7 @@ async def stream(socket: WebSocket) -> None:
     await socket.accept()  # a page receives the close code and reason of an accepted socket only
     try:
         with current_capture.streams.place(socket):
-            await Phone(socket, current_capture).serve()
+            await Phone(socket, current_capture, language_of(socket)).serve()
     except TooMany as error:
         await socket.close(CloseCode.TOO_MANY, str(error)[:120])
     except (WebSocketDisconnect, TimeoutError, RuntimeError):

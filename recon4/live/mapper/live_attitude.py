@@ -14,9 +14,8 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.samples.measured_channels import feels_gravity
 from recon4.registration.motion import imu_in_body, level_rotation
 
-IMU_WRONG = "is it mounted as in the rig file (upside down?)"
-NOT_UPRIGHT = f"the IMU does not measure gravity upward and is not used: {IMU_WRONG}"
-NO_FORCES = "the IMU has no accelerometer and is not used"
+NOT_UPRIGHT, NO_FORCES = "not-upright", "no-forces"
+"""Remarks: `recon4.live.findings` has their words."""
 
 
 def is_upright(up_body: Array) -> bool:
@@ -40,7 +39,7 @@ class LiveAttitude:
         self._silent = 0
         """Number of samples without accelerations."""
         self.remark = ""
-        """Why the IMU is not used; empty = it is."""
+        """Code of why the IMU is not used; empty = it is."""
 
     def extend(self, imu: ImuSamples) -> None:
         """Add samples; those that are not later than the ones before are left out."""

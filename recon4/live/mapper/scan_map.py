@@ -35,7 +35,7 @@ from recon4.settings import Settings
 from recon4.settings.tuning import tuned
 from recon4.slam2d.tuning import Slam2dTuning
 
-_RESTARTED = "the local map started again: go back to a place seen before, until the loop closes"
+_RESTARTED = "restarted"
 
 
 class ScanMap:

@@ -9,7 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.live.mapper.last_known import LastKnown
-from recon4.live.mapper.live_attitude import IMU_WRONG, NOT_UPRIGHT, is_upright
+from recon4.live.mapper.live_attitude import NOT_UPRIGHT, is_upright
 from recon4.live.mapper.tuning import LIVE_TRACKER
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -24,9 +24,6 @@ from recon4.registration.tuning import OdometryTuning
 from recon4.settings import Settings
 from recon4.settings.reads import OdometryReads, part_of
 from recon4.settings.tuning import tuned
-
-_WHY_NOT = f"{IMU_WRONG}, its clock the same?"
-_UNIT = "is its unit m/s²?"
 
 
 class Tracker:
@@ -68,7 +65,7 @@ class Tracker:
         self._turn_rate_changes = False
         """Whether its gyroscope measures: one that does not is not left to be seen by chance."""
         self.remark = ""
-        """Warning about the IMU; empty = none."""
+        """Code of a warning about the IMU, and why; empty = none."""
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Add IMU samples."""
@@ -135,7 +132,7 @@ class Tracker:
             imu = self._measured(imu)
             self._imu = deque([imu], maxlen=self._imu.maxlen)
             if channels.no_accelerometer:
-                self.remark = f"the IMU has no accelerometer ({channels.no_accelerometer.text})"
+                self.remark = f"no-accelerometer {channels.no_accelerometer.why}"
         self.with_imu = imu is not None and len(imu) > 1
         if self.with_imu and imu is not None and not _upright(imu, self._rig):
             self.with_imu, imu = False, None
@@ -194,14 +191,13 @@ class Tracker:
         match imu.choice.outcome:
             case "bias removed":
                 self._bias_rad_s += np.array(imu.choice.bias_rad_s)
-                self.remark = "the gyroscope has a bias at rest, which is subtracted"
+                self.remark = "gyroscope-bias"
             case "accelerometer not used":
                 self._with_forces = False
-                self.remark = f"the accelerometer contradicts the LiDARs and is not used: {_UNIT}"
+                self.remark = "accelerometer-contradicts"
             case _:
                 fault = imu_channels(recorded).no_gyroscope if recorded else None
-                why = f"its gyroscope does not measure ({fault.text})" if fault else _WHY_NOT
-                self.remark = f"the IMU contradicts the LiDARs and is not used: {why}"
+                self.remark = f"no-gyroscope {fault.why}" if fault else "imu-contradicts"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

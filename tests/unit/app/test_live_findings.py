@@ -176,7 +176,11 @@ def test_status_of_the_recorder_gives_findings(message, level, text):
         ),
         ({"weak_sd_m": 0.5}, "warning", "Tracking is degraded: walk slower, look at more walls"),
         ({"error_m": 0.2}, "warning", "Tracking is degraded: walk slower, look at more walls"),
-        ({"remark": "the IMU lies"}, "warning", "The IMU lies"),
+        (
+            {"remark": "no-accelerometer zero"},
+            "warning",
+            "The IMU has no accelerometer (all its values are 0)",
+        ),
         ({"age_s": 3.0}, "warning", "The preview is 3 s behind; the recording is complete"),
         (
             {"age_s": 3.0, "thinned": 80, "lately": RecentFrames(99, 40)},

@@ -78,7 +78,7 @@ def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
     message = [follower.push(row) for row in range(60)]
 
     assert not any(pose.imu or pose.lost for pose, _ in message)
-    assert "upside down" in message[0][0].remark
+    assert message[0][0].remark == "not-upright"
     assert max(error for _, error in message) < 0.15
 
 
@@ -106,7 +106,7 @@ def test_accelerations_of_zero_are_said_and_mapping_goes_on_with_the_gyroscope(w
     message = [follower.push(row) for row in range(60)]
 
     assert all(pose.imu and not pose.lost for pose, _ in message)
-    assert "no accelerometer (all its values are 0)" in message[0][0].remark
+    assert message[0][0].remark == "no-accelerometer zero"
     assert max(error for _, error in message) < 0.15
 
 
@@ -123,7 +123,7 @@ def test_accelerations_that_fail_on_the_way_do_not_end_the_map(followed):
 
 @pytest.mark.parametrize(
     ("rate", "said"),
-    [(0.0, "all its values are 0"), (0.03, "its values along x, y, z never change")],
+    [(0.0, "zero"), (0.03, "constant")],
 )
 def test_a_gyroscope_whose_values_never_change_is_found_out_and_said(walk, rate, said):
     follower = Follower(walk, gyro_axes=[0.0, 0.0, 0.0])
@@ -132,7 +132,7 @@ def test_a_gyroscope_whose_values_never_change_is_found_out_and_said(walk, rate,
     message = [follower.push(row)[0] for row in range(25)]
 
     assert message[0].imu and not message[-1].imu
-    assert f"its gyroscope does not measure ({said}" in message[-1].remark
+    assert message[-1].remark == f"no-gyroscope {said}"
 
 
 def test_a_long_path_keeps_its_start(walk):

@@ -304,7 +304,7 @@ def test_an_imu_without_accelerometer_is_not_used_and_said(room, accel):
     _, poses, _ = mapped(room.scans, imu=lambda k: still(k, accel=accel, start_ns=start_ns))
 
     assert not any(pose.imu for pose in poses)
-    assert poses[-1].remark == "the IMU has no accelerometer and is not used"
+    assert poses[-1].remark == "no-forces"
 
 
 def test_an_imu_upside_down_is_not_used_and_said(room):
@@ -314,4 +314,4 @@ def test_an_imu_upside_down_is_not_used_and_said(room):
     _, poses, _ = mapped(room.scans, imu=lambda k: still(k, accel=upside_down, start_ns=start_ns))
 
     assert not any(pose.imu for pose in poses)
-    assert "upside down" in poses[-1].remark
+    assert poses[-1].remark == "not-upright"
