@@ -54,7 +54,10 @@ export async function loadTexts() {
   const { lang, dataset } = document.documentElement;
   const languages = [...new Set([lang || ENGLISH, ENGLISH])];
   const sources = await Promise.all(
-    languages.map(async (one) => (await fetch(at(`/texts/${one}/${dataset.texts}.ftl`))).text()),
+    languages.map(async (one) => {
+      const response = await fetch(at(`/texts/${one}/${dataset.texts}.ftl`));
+      return response.ok ? response.text() : "";
+    }),
   );
   languages.forEach((one, k) => addTexts(one, sources[k] ?? ""));
 }

@@ -1,0 +1,35 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { addTexts, hasText, language, t } from "../../web/shared/texts.js";
+
+addTexts(
+  "de",
+  `width = { DECIMAL($m, digits: 1) } m
+part = { PERCENT($ratio, digits: 1) }
+points = { COUNT($points) } Punkte
+gaps = { $count ->
+    [one] eine Lücke
+   *[other] { $count } Lücken
+}
+`,
+);
+addTexts("en", "width = { DECIMAL($m, digits: 1) } m wide\nonly = English { $count }");
+
+test("numbers are written as the language does, with the digits that the text asks for", () => {
+  assert.equal(language(), "de");
+  assert.equal(t("width", { m: 12.34 }), "12,3 m");
+  assert.equal(t("part", { ratio: 0.051 }), "5,1 %");
+  assert.equal(t("points", { points: 1234567 }), "1\u202f234\u202f567 Punkte");
+});
+
+test("a text selects by number", () => {
+  assert.equal(t("gaps", { count: 1 }), "eine Lücke");
+  assert.equal(t("gaps", { count: 3 }), "3 Lücken");
+});
+
+test("what a language lacks is English, and what nobody has is its name", () => {
+  assert.equal(t("only", { count: "12345" }), "English 12345");
+  assert.ok(hasText("only") && !hasText("nothing"));
+  assert.equal(t("nothing"), "nothing");
+});
