@@ -269,6 +269,15 @@ direction =
 
 # Worte aus Datensätzen und Diagrammen.
 term =
+    .open = offen
+    .done = erledigt
+    .distance = Strecke
+    .height = Höhe
+    .angle = Winkel
+    .area = Fläche
+    .volume = Volumen
+    .profile = Profil
+    .point = Punkt
     .good = gut
     .note = Hinweis
     .check = prüfen

@@ -268,6 +268,15 @@ direction =
 
 # Words of records and charts that a report of another language shows in its own.
 term =
+    .open = open
+    .done = done
+    .distance = distance
+    .height = height
+    .angle = angle
+    .area = area
+    .volume = volume
+    .profile = profile
+    .point = point
     .good = good
     .note = note
     .check = check
