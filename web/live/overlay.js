@@ -1,6 +1,7 @@
 // Draws over the points: coverage plan, path with the stretches of findings, gaps, marks, position.
 
 import { drawScaleBar } from "../shared/scale_bar.js";
+import { t } from "../shared/texts.js";
 import { circle, label, polygon } from "./shapes.js";
 import { drawStretches } from "./stretch_marks.js";
 
@@ -220,7 +221,7 @@ function drawStart(context, camera, place, inside, styles) {
   ];
   if (Math.hypot(at[0] - x, at[1] - y) < 20) {
     circle(context, x, y, 6, styles.sky, styles.path);
-    label(context, "start", x, y + 18, styles.path, styles.sky);
+    label(context, t("start-here"), x, y + 18, styles.path, styles.sky);
     return;
   }
   context.save();
@@ -237,7 +238,7 @@ function drawStart(context, camera, place, inside, styles) {
     styles.sky,
   );
   context.restore();
-  label(context, "start", ...at, styles.path, styles.sky);
+  label(context, t("start-here"), ...at, styles.path, styles.sky);
 }
 
 /**

@@ -211,3 +211,4 @@ dance-again = Noch einmal beugen und drehen, schneller: manche Achsen sind noch 
 
 stretch-lost = Tracking verloren
 stretch-weak = kaum beobachtbar
+start-here = Start

@@ -211,3 +211,4 @@ dance-again = Bend and turn again, faster: some axes are not observed yet
 
 stretch-lost = tracking lost
 stretch-weak = hardly observable
+start-here = start
