@@ -193,7 +193,7 @@ def _plain(value: Value) -> Value:
 
 def _count(path: Path, layers: Sequence[FeatureLayer]) -> int:
     """How many features a file has; 0 if it is damaged."""
-    with closing(sqlite3.connect(f"file:{path}?mode=ro", uri=True)) as file:
+    with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True)) as file:
         if file.execute("PRAGMA integrity_check").fetchone() != ("ok",):
             return 0
         tables = (f'SELECT count(*) FROM "{layer.name}"' for layer in layers)

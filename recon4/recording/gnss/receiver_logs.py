@@ -160,13 +160,13 @@ def _collected(data: bytes, report: ImportReport, *, head: bool = False) -> _Mix
         CorruptFile: If most of it is damaged.
     """
     log = _MixedLog(UbxMessages(report), NovatelLogs(report), _Nmea(report))
-    at = 0
+    at, most = 0, GNSS_FILES.most_damaged_head if head else GNSS_FILES.most_damaged
     while match := _BEGIN.search(data, at):
         begin, text = match.start(), match[0]
-        if report.counts["gnss_messages_damaged"] > GNSS_FILES.most_damaged:
+        if report.counts["gnss_messages_damaged"] > most:
             raise CorruptFile(
-                f"expected messages of a receiver, got {GNSS_FILES.most_damaged} with a wrong "
-                f"checksum up to byte {begin}"
+                f"expected messages of a receiver, got {most} with a wrong checksum up to byte "
+                f"{begin}"
             )
         if head and log.messages >= GNSS_FILES.least_messages:
             break

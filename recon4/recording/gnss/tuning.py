@@ -16,8 +16,12 @@ class GnssFileTuning(Struct, frozen=True, kw_only=True):
     """Of the log of a receiver, with raw measurements."""
     sbet_bytes: int = 1 << 30
     """Of a trajectory with 17 numbers a row: ten hours at 200 Hz."""
-    most_damaged: int = 100_000
+    most_damaged: int = 20_000
     """Messages of a log with a wrong checksum: it is something else then."""
+    most_damaged_head: int = 500
+    """The same where a file is recognized."""
+    longest_message: int = 8192
+    """Of a UBX message [bytes]: raw measurements of 120 signals have half of it."""
     least_messages: int = 2
     """Whole messages that tell a log."""
     week_s: int = 604_800

@@ -48,7 +48,7 @@ class UbxMessages:
         """Read a message at its sync bytes; where the next one may begin."""
         length = int.from_bytes(data[at + 4 : at + 6], "little")
         end = at + 8 + length
-        if end > len(data):
+        if end > len(data) or length > GNSS_FILES.longest_message:
             return at + 2
         body = data[at + 2 : end - 2]
         if _checksum(body) != data[end - 2 : end]:

@@ -44,7 +44,7 @@ def _layer(*places, kind="POINT", name="spots"):
 
 
 def _write(tmp_path, place, *places, kind="POINT"):
-    path = tmp_path / "a.gpkg"
+    path = tmp_path / "50% a#b?.gpkg"  # no name is an address
     write_geopackage(path, [_layer(*places, kind=kind)], place, changed="2026-01-02T03:04:05Z")
     return path
 

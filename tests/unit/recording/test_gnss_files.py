@@ -9,6 +9,7 @@ from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.model.gps_time import GPS_EPOCH_NS, utc_of_gps_ns
 from recon4.model.samples import GnssQuality
 from recon4.recording.gnss.files import is_gnss_file, read_gnss
+from recon4.recording.gnss.receiver_logs import read_receiver_log
 from recon4.recording.gnss.records import Dating
 from recon4.recording.info import describe
 from recon4.recording.kinds import RecordingKind, recognize
@@ -148,6 +149,14 @@ def test_a_damaged_message_is_counted_and_those_around_it_are_read(tmp_path):
     found = read(tmp_path, logs.nav_pvt(0) + bytes(bad) + logs.nav_pvt(2), report=report)
     assert len(found.samples) == 2
     assert report.counts["gnss_messages_damaged"] == 1
+
+
+def test_a_file_of_damaged_messages_is_refused_in_bounded_time(tmp_path):
+    path = tmp_path / "a.ubx"
+    path.write_bytes(b"\xb5\x62\x01\x07\x5c\x00" * 25_000)
+    assert not is_gnss_file(path)
+    with pytest.raises(CorruptFile, match=r"a\.ubx: expected messages.*20000 with a wrong"):
+        read_receiver_log(path, ImportReport())
 
 
 @pytest.mark.parametrize("log", [logs.bestpos, logs.bestposa, logs.inspvax])
