@@ -213,6 +213,7 @@ def test_the_first_admin_is_created_in_the_browser(tmp_path, page, look, screens
         page.goto("about:blank")  # else its event stream is cut by the end of the server
 
 
+@pytest.mark.study
 @looks("desktop light")
 def test_a_guest_opens_a_link_and_sees_one_map_until_it_is_revoked(
     server, page, browser, look, screenshot

@@ -1,5 +1,7 @@
 """Who looks at which pair now."""
 
+from msgspec import structs
+
 from recon4_app.review.presence import Presence
 from recon4_app.review.tuning import PRESENCE
 
@@ -19,9 +21,11 @@ def test_pages_of_a_project_see_each_other_until_they_are_silent(clock):
     assert presence.look("office", "Eva", page="a", pair=None) == []  # Jan is gone
 
 
-def test_a_flood_of_pages_is_forgotten(clock):
+def test_a_flood_of_pages_is_forgotten(clock, monkeypatch):
+    few = structs.replace(PRESENCE, max_pages=5)
+    monkeypatch.setattr("recon4_app.review.presence.PRESENCE", few)
     presence = Presence(clock)
-    for number in range(PRESENCE.max_pages + 5):
+    for number in range(9):
         presence.look("office", "Eva", page=str(number), pair=None)
 
-    assert len(presence.look("office", "Jan", page="x", pair=None)) == PRESENCE.max_pages - 1
+    assert len(presence.look("office", "Jan", page="x", pair=None)) == 4
