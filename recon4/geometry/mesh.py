@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
+from enum import IntEnum
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +22,18 @@ _BOX_TRIANGLES = np.array(
 )  # fmt: skip
 
 
+class SurfaceKind(IntEnum):
+    """What a surface of a simulated world is of: the truth for classes of points."""
+
+    THING = 0
+    """Furniture, cars, poles, wires: all that is none of the others."""
+    GROUND = 1
+    """Earth, streets, floors, steps and landings, whatever side of them."""
+    BUILDING = 2
+    """Walls with what is in their openings, ceilings, roofs."""
+    VEGETATION = 3
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class WorldMesh:
     """Triangle mesh of a simulated world."""
@@ -31,6 +46,8 @@ class WorldMesh:
     """Diffuse reflectivity 0..1 of each triangle, (T,). Above 1: retro-reflective.
     Below `SURFACES.glass`: a pane that reflects only at nearly perpendicular incidence. Up to
     `SURFACES.clear`: a pane that one sees through; up to `SURFACES.mirror`: a mirror."""
+    kind: NDArray[np.uint8]
+    """`SurfaceKind` of each triangle, (T,)."""
 
 
 @dataclass(slots=True)
@@ -40,13 +57,25 @@ class MeshBuilder:
     _vertices: list[Array] = field(default_factory=list)
     _triangles: list[NDArray[np.int64]] = field(default_factory=list)
     _reflectivity: list[Array] = field(default_factory=list)
+    _kinds: list[NDArray[np.uint8]] = field(default_factory=list)
+    _kind: SurfaceKind = SurfaceKind.THING
     _count: int = 0
+
+    @contextmanager
+    def of(self, kind: SurfaceKind) -> Iterator[None]:
+        """All shapes that are added meanwhile are of a kind."""
+        before, self._kind = self._kind, kind
+        try:
+            yield
+        finally:
+            self._kind = before
 
     def add(self, vertices_m: Array, triangles: NDArray[np.int64], reflectivity: ArrayLike) -> None:
         """Add triangles, (V, 3) and (T, 3), with one reflectivity or (T,)."""
         self._vertices.append(np.asarray(vertices_m, dtype=np.float64))
         self._triangles.append(np.asarray(triangles, dtype=np.int64) + self._count)
         self._reflectivity.append(np.broadcast_to(np.asarray(reflectivity, float), len(triangles)))
+        self._kinds.append(np.full(len(triangles), self._kind, np.uint8))
         self._count += len(vertices_m)
 
     def place(self, other: MeshBuilder, shift_m: ArrayLike) -> None:
@@ -54,6 +83,7 @@ class MeshBuilder:
         mesh = other.mesh()
         moved = mesh.vertices_m.astype(np.float64) + np.asarray(shift_m, dtype=np.float64)
         self.add(moved, mesh.triangles.astype(np.int64), mesh.reflectivity)
+        self._kinds[-1] = mesh.kind
 
     def mesh(self) -> WorldMesh:
         """Everything added so far."""
@@ -61,6 +91,7 @@ class MeshBuilder:
             np.concatenate(self._vertices).astype(np.float32),
             np.concatenate(self._triangles).astype(np.uint32),
             np.concatenate(self._reflectivity).astype(np.float32),
+            np.concatenate(self._kinds),
         )
 
     def quad(self, corner: ArrayLike, u: ArrayLike, v: ArrayLike, *, reflectivity: float) -> None:

@@ -68,6 +68,18 @@ class Scene:
             normal[rows] = answer["primitive_normals"].numpy()
         return foot, normal
 
+    def nearest_triangle(self, points: Array) -> NDArray[np.uint32]:
+        """Row of the nearest triangle of each point, (N, 3) -> (N,)."""
+        import open3d as o3d
+
+        out = np.empty(len(points), np.uint32)
+        for start in range(0, len(points), RAYCASTING.nearest_batch):
+            rows = slice(start, start + RAYCASTING.nearest_batch)
+            part = np.ascontiguousarray(points[rows], dtype=np.float32)
+            answer = self._scene.compute_closest_points(o3d.core.Tensor.from_numpy(part))
+            out[rows] = answer["primitive_ids"].numpy()
+        return out
+
 
 def distance_to_mesh(mesh: WorldMesh, points: Array) -> Array:
     """Distance of points in the map to the nearest triangle [m], (N, 3) -> (N,)."""

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.geometry.se3 import Array
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World, WorldMarker, distance_to_leg
@@ -78,7 +78,8 @@ def _ground(builder: MeshBuilder, rng: np.random.Generator) -> None:
     # Tufts: far corners of the mesh are a little off the smooth ground.
     z = height(grid_x, grid_y) + 0.012 * rng.standard_normal(grid_x.shape)
     strips = np.where((grid_y[1:, 1:] // 16) % 2 == 0, MATERIAL.grass, 0.7 * MATERIAL.grass)
-    builder.terrain(x, y, z, reflectivity=strips)
+    with builder.of(SurfaceKind.GROUND):
+        builder.terrain(x, y, z, reflectivity=strips)
 
 
 def _power_line(builder: MeshBuilder) -> None:
@@ -138,8 +139,9 @@ def _village_line(builder: MeshBuilder) -> None:
 
 def _barn(builder: MeshBuilder, x: float, y: float) -> None:
     z = float(height(x, y))
-    builder.block([x, y, z - 0.6], [11.0, 7.0, 4.0], MATERIAL.wood, yaw_rad=0.35)
-    builder.block([x, y, z + 3.4], [12.0, 8.0, 0.25], MATERIAL.steel, yaw_rad=0.35)
+    with builder.of(SurfaceKind.BUILDING):
+        builder.block([x, y, z - 0.6], [11.0, 7.0, 4.0], MATERIAL.wood, yaw_rad=0.35)
+        builder.block([x, y, z + 3.4], [12.0, 8.0, 0.25], MATERIAL.steel, yaw_rad=0.35)
     builder.block([x + 9.0, y + 4.0, z - 0.2], [1.5, 1.5, 1.4], MATERIAL.concrete, yaw_rad=0.7)
 
 

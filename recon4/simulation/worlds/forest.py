@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.geometry.se3 import Array
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World
@@ -45,7 +45,8 @@ def build(variant: int = 0) -> World:
     y = np.arange(-plan.half_width_m, plan.half_width_m + 0.1, 1.25)
     grid_x, grid_y = np.meshgrid(x, y)
     z = ground(grid_x, grid_y) + 0.015 * rng.standard_normal(grid_x.shape)
-    builder.terrain(x, y, z, reflectivity=MATERIAL.grass)
+    with builder.of(SurfaceKind.GROUND):
+        builder.terrain(x, y, z, reflectivity=MATERIAL.grass)
     for grow, count in ((tree, plan.trees), (bush, plan.trees // 3)):
         for place_x, place_y in _places(plan, rng, count):
             grow(builder, place_x, place_y, ground=ground, rng=rng)

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World, WorldMarker
 from recon4.simulation.worlds.furniture import corridor_things, furnish, lamp
@@ -83,17 +83,17 @@ def _shell(builder: MeshBuilder) -> None:
     """Floor, ceilings and walls."""
     room_m, corridor_m, length_m = OFFICE.room_m, OFFICE.corridor_m, OFFICE.length_m
     south_m, north_m = OFFICE.south_m, OFFICE.north_m
-    builder.quad(
-        [0, south_m, 0], [length_m, 0, 0], [0, north_m - south_m, 0], reflectivity=MATERIAL.linoleum
-    )
+    floor = [0, south_m, 0], [length_m, 0, 0], [0, north_m - south_m, 0]
+    with builder.of(SurfaceKind.GROUND):
+        builder.quad(*floor, reflectivity=MATERIAL.linoleum)
     for low, high, z in [
         (south_m, 0.0, OFFICE.height_m),
         (0.0, corridor_m, OFFICE.corridor_height_m),
         (corridor_m, north_m, OFFICE.height_m),
     ]:
-        builder.quad(
-            [0, low, z], [length_m, 0, 0], [0, high - low, 0], reflectivity=MATERIAL.ceiling
-        )
+        ceiling = [0, low, z], [length_m, 0, 0], [0, high - low, 0]
+        with builder.of(SurfaceKind.BUILDING):
+            builder.quad(*ceiling, reflectivity=MATERIAL.ceiling)
     doors = [door(column * room_m + OFFICE.door_at_m) for column in range(OFFICE.rooms)]
     south_doors = [door((column + 1) * room_m - OFFICE.door_at_m) for column in range(OFFICE.rooms)]
     wall(builder, (0, corridor_m + 0.06), (length_m, corridor_m + 0.06), openings=doors)

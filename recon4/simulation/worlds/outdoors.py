@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.geometry.se3 import Array
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, WorldMarker
@@ -21,31 +21,35 @@ def tree(
     builder: MeshBuilder, x: float, y: float, *, ground: Ground, rng: np.random.Generator
 ) -> None:
     """A trunk, two boughs and a bumpy crown."""
-    z = float(ground(x, y))
-    crown = rng.uniform(1.3, 2.3)
-    height = rng.uniform(2.3, 3.2) + 0.5 * crown
-    top = np.array([x + rng.uniform(-0.2, 0.2), y + rng.uniform(-0.2, 0.2), z + height])
-    builder.tube([x, y, z - 0.3], top, (0.16, 0.1), reflectivity=MATERIAL.wood, sides=8)
-    for _ in range(2):
-        angle = rng.uniform(0.0, 2.0 * np.pi)
-        bough = top + np.array([np.cos(angle), np.sin(angle), 1.2])
-        builder.tube(top - [0, 0, 0.4], bough, (0.07, 0.03), reflectivity=MATERIAL.wood, sides=5)
-    bumps = rng.uniform(0.75, 1.15, (7, 12))
-    builder.ball(
-        top + np.array([0, 0, 0.8 * crown]),
-        [crown, crown, 1.1 * crown],
-        MATERIAL.leaves,
-        bumps=bumps,
-    )
+    with builder.of(SurfaceKind.VEGETATION):
+        z = float(ground(x, y))
+        crown = rng.uniform(1.3, 2.3)
+        height = rng.uniform(2.3, 3.2) + 0.5 * crown
+        top = np.array([x + rng.uniform(-0.2, 0.2), y + rng.uniform(-0.2, 0.2), z + height])
+        builder.tube([x, y, z - 0.3], top, (0.16, 0.1), reflectivity=MATERIAL.wood, sides=8)
+        for _ in range(2):
+            angle = rng.uniform(0.0, 2.0 * np.pi)
+            bough = top + np.array([np.cos(angle), np.sin(angle), 1.2])
+            builder.tube(
+                top - [0, 0, 0.4], bough, (0.07, 0.03), reflectivity=MATERIAL.wood, sides=5
+            )
+        bumps = rng.uniform(0.75, 1.15, (7, 12))
+        builder.ball(
+            top + np.array([0, 0, 0.8 * crown]),
+            [crown, crown, 1.1 * crown],
+            MATERIAL.leaves,
+            bumps=bumps,
+        )
 
 
 def bush(
     builder: MeshBuilder, x: float, y: float, *, ground: Ground, rng: np.random.Generator
 ) -> None:
     """A low crown on the ground."""
-    size = rng.uniform(0.5, 1.1, 3)
-    place = [x, y, float(ground(x, y)) + 0.4 * size[2]]
-    builder.ball(place, size, MATERIAL.leaves, bumps=rng.uniform(0.7, 1.2, (7, 12)))
+    with builder.of(SurfaceKind.VEGETATION):
+        size = rng.uniform(0.5, 1.1, 3)
+        place = [x, y, float(ground(x, y)) + 0.4 * size[2]]
+        builder.ball(place, size, MATERIAL.leaves, bumps=rng.uniform(0.7, 1.2, (7, 12)))
 
 
 def pole(builder: MeshBuilder, x: float, y: float, *, ground: Ground, arm: ArrayLike) -> None:
@@ -111,7 +115,8 @@ def ground_marker(
     """A level plate with retro-reflective paint; the marker is the middle of its top."""
     x, y = place
     top = float(ground(x, y)) + 0.04
-    builder.block([x, y, top - 0.15], [size_m, size_m, 0.15], MATERIAL.retro)
+    with builder.of(SurfaceKind.GROUND):
+        builder.block([x, y, top - 0.15], [size_m, size_m, 0.15], MATERIAL.retro)
     return WorldMarker(name, x, y, top)
 
 

@@ -18,7 +18,7 @@ from functools import partial
 
 import numpy as np
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World
 from recon4.simulation.worlds.furniture import chair, desk, lamp, radiator, shelf
@@ -87,7 +87,9 @@ def stack(name: str, plan: StaircasePlan) -> World:
     _well(builder, plan)
     for floor in range(floors):
         z = floor * plan.storey_m
-        builder.box([0, 0, z - plan.slab_m], [plan.landing_m, plan.width_m, z], MATERIAL.linoleum)
+        with builder.of(SurfaceKind.GROUND):
+            low, high = [0, 0, z - plan.slab_m], [plan.landing_m, plan.width_m, z]
+            builder.box(low, high, MATERIAL.linoleum)
         rise = plan.storey_m if floor + 1 < floors else plan.hall_height_m
         _hall(builder, plan, floor, rise_m=rise)
         look = 0 if plan.alike else floor
@@ -105,7 +107,8 @@ def stack(name: str, plan: StaircasePlan) -> World:
 
 def _half_landing(builder: MeshBuilder, plan: StaircasePlan, z: float) -> None:
     low = [plan.length_m - plan.landing_m, 0, z - plan.slab_m]
-    builder.box(low, [plan.length_m, plan.width_m, z], MATERIAL.linoleum)
+    with builder.of(SurfaceKind.GROUND):
+        builder.box(low, [plan.length_m, plan.width_m, z], MATERIAL.linoleum)
 
 
 def _well(builder: MeshBuilder, plan: StaircasePlan) -> None:
@@ -131,13 +134,11 @@ def _well(builder: MeshBuilder, plan: StaircasePlan) -> None:
             shape=WallShape(bottom_m=span[0], height_m=span[1], thickness_m=0.3),
             openings=[view],
         )
-    builder.quad(
-        [landing_m, 0, 0],
-        [length_m - landing_m, 0, 0],
-        [0, width_m, 0],
-        reflectivity=MATERIAL.linoleum,
-    )
-    builder.quad([0, 0, top], [length_m, 0, 0], [0, width_m, 0], reflectivity=MATERIAL.ceiling)
+    floor = [landing_m, 0, 0], [length_m - landing_m, 0, 0], [0, width_m, 0]
+    with builder.of(SurfaceKind.GROUND):
+        builder.quad(*floor, reflectivity=MATERIAL.linoleum)
+    with builder.of(SurfaceKind.BUILDING):
+        builder.quad([0, 0, top], [length_m, 0, 0], [0, width_m, 0], reflectivity=MATERIAL.ceiling)
     lamp(builder, 3.0, width_m / 2, ceiling_m=top)
 
 
@@ -151,20 +152,15 @@ def _flight(builder: MeshBuilder, plan: StaircasePlan, z: float, *, up: bool) ->
     north = south + flight_width_m
     for k in range(plan.risers - 1):
         a, b = sorted([start + sign * k * tread_m, start + sign * (k + 1) * tread_m])
-        builder.box(
-            [a, south, z + k * riser_m], [b, north, z + (k + 1) * riser_m], MATERIAL.linoleum
-        )
+        low, high = [a, south, z + k * riser_m], [b, north, z + (k + 1) * riser_m]
+        with builder.of(SurfaceKind.GROUND):
+            builder.box(low, high, MATERIAL.linoleum)
     run, rise = sign * flight_m, (plan.risers - 1) * riser_m
-    builder.quad(
-        [start, south, z - 0.15],
-        [run, 0, rise],
-        [0, flight_width_m, 0],
-        reflectivity=MATERIAL.plaster,
-    )
     inner = north if up else south
-    builder.quad(
-        [start, inner, z - 0.15], [run, 0, rise], [0, 0, 0.2], reflectivity=MATERIAL.plaster
-    )
+    along, across = [run, 0, rise], [0, flight_width_m, 0]
+    with builder.of(SurfaceKind.BUILDING):
+        builder.quad([start, south, z - 0.15], along, across, reflectivity=MATERIAL.plaster)
+        builder.quad([start, inner, z - 0.15], along, [0, 0, 0.2], reflectivity=MATERIAL.plaster)
     _rail(builder, [start, inner, z + riser_m], [start + run, inner, z + riser_m + rise])
 
 
@@ -193,15 +189,11 @@ def _hall(builder: MeshBuilder, plan: StaircasePlan, floor: int, *, rise_m: floa
     """The walls of a hall west of the stairs, open towards them by a door."""
     z, height = floor * plan.storey_m, plan.hall_height_m
     west, south, north = plan.hall_west_m, plan.hall_south_m, plan.hall_north_m
-    builder.quad(
-        [west, south, z], [-west, 0, 0], [0, north - south, 0], reflectivity=MATERIAL.linoleum
-    )
-    builder.quad(
-        [west, south, z + height],
-        [-west, 0, 0],
-        [0, north - south, 0],
-        reflectivity=MATERIAL.ceiling,
-    )
+    span = [-west, 0, 0], [0, north - south, 0]
+    with builder.of(SurfaceKind.GROUND):
+        builder.quad([west, south, z], *span, reflectivity=MATERIAL.linoleum)
+    with builder.of(SurfaceKind.BUILDING):
+        builder.quad([west, south, z + height], *span, reflectivity=MATERIAL.ceiling)
     wall(
         builder,
         (-0.06, south),

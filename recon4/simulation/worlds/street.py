@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.geometry.se3 import Array
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World, WorldMarker
@@ -94,12 +94,9 @@ def _ground(builder: MeshBuilder) -> None:
         np.maximum(-middle_y, middle_y - STREET.width_m),
     )
     road = (out > STREET.kerb_m) & (out < STREET.far_kerb_m)
-    builder.terrain(
-        x,
-        y,
-        height(grid_x, grid_y),
-        reflectivity=np.where(road, MATERIAL.asphalt, MATERIAL.concrete),
-    )
+    surface = np.where(road, MATERIAL.asphalt, MATERIAL.concrete)
+    with builder.of(SurfaceKind.GROUND):
+        builder.terrain(x, y, height(grid_x, grid_y), reflectivity=surface)
 
 
 def _row(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.mesh import MeshBuilder, SurfaceKind
 from recon4.simulation.materials import MATERIAL
 
 
@@ -123,7 +123,8 @@ def slab(builder: MeshBuilder, extent: SlabExtent, *, along: int, reflectivity: 
     corners[:, along] = extent.span
     corners[:, 1 - along] = sorted(extent.reach)
     corners[:, 2] = extent.level
-    builder.box(corners[0], corners[1], reflectivity)
+    with builder.of(SurfaceKind.BUILDING):
+        builder.box(corners[0], corners[1], reflectivity)
 
 
 def _glaze(bricks: _Bricks, left: float, right: float, *, hole: Opening) -> None:
