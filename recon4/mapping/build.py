@@ -21,13 +21,16 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs, MapNotes
 from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.structure import StructureCells
+from recon4.mapping.structure_tuning import STRUCTURE
 from recon4.mapping.threads import in_order
 from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
 from recon4.mapping.tile_memory import Scratch, TileMeans
 from recon4.mapping.tile_writer import PackedTile, TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import BUCKETS, MAP_BUILD, TILE_SURFACES
-from recon4.mapping.undistort import place_with_origins
+from recon4.mapping.undistort import Placed, place_with_origins
+from recon4.model.classes import PointClass
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
@@ -61,7 +64,8 @@ class MapInputs:
     covariances: PoseCovariances | None = None
     """Of the multiframes; None = the map has no deviations of its points."""
     classes: PointClasses | None = None
-    """Of the measured points; None = nothing is known to move, to be the carrier or reflected."""
+    """Of the measured points; None = nothing is known to move, to be the carrier or reflected, and
+    ground, buildings and vegetation are not looked for."""
     corrections: ClassVolumes | None = None
     """Of classes by people; None = there are none."""
 
@@ -96,9 +100,11 @@ def build_map(
     noise_m = settings.range_noise_m or surface_noise_m(rig)
     with TemporaryDirectory(dir=out, prefix="buckets-") as folder:
         buckets = TileBuckets(Path(folder), grid, burst=burst)
-        starts = _distribute(inputs, buckets, settings=settings, progress=progress)
+        cells = StructureCells()
+        starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
+        structure = cells.structure(inputs.trajectory.T_a_b.t)
         paths = SensorPaths.of(starts, inputs.trajectory, rig)
-        parts = inputs.covariances, inputs.corrections
+        parts = inputs.covariances, inputs.corrections, structure
         recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, *parts)
         with TileWriter(out, _fields(recipe), tile_m=grid.tile_m, paths=paths) as writer:
             done = _finish_tiles(buckets, recipe, writer, progress=progress)
@@ -107,6 +113,7 @@ def build_map(
                 crs=inputs.crs,
                 sensors=tuple(sensor.name for sensor in rig.sensors),
                 removed=dict(done.removed),
+                classes=dict(done.classes),
                 corrected=_counts(inputs.corrections, done.corrected),
             )
     made = TileSet.open(out)
@@ -130,29 +137,52 @@ def _fields(recipe: Recipe) -> list[str]:
 
 
 def _distribute(
-    inputs: MapInputs, buckets: TileBuckets, *, settings: MapSettings, progress: Progress
+    inputs: MapInputs,
+    buckets: TileBuckets,
+    cells: StructureCells,
+    *,
+    settings: MapSettings,
+    progress: Progress,
 ) -> Times:
-    """Put every point into the buckets of its tiles; the start of each multiframe [ns]."""
+    """Put every point into the buckets of its tiles, and count it in the cells of what stands.
+
+    Returns:
+        The start of each multiframe [ns].
+    """
     frames = inputs.frames
     grid, rig = Grid.of(settings), frames.rig
     enabled = np.array([sensor.enabled for sensor in rig.sensors])
     chosen = ChosenPoints(enabled, settings.max_range_m)
     starts = np.zeros(len(frames), np.int64)
 
-    def split(k: int) -> dict[Tile, Records]:
+    def split(k: int) -> tuple[dict[Tile, Records], _Counted | None]:
         frame = frames[k]
         starts[k] = frame.t_ns
         placed = place_with_origins(frame, inputs.trajectory, rig)
         classes = inputs.classes.of(k, len(frame)) if inputs.classes else None
-        return split_into_tiles(frame, placed, grid, chosen=chosen, classes=classes)
+        parts = split_into_tiles(frame, placed, grid, chosen=chosen, classes=classes)
+        if classes is None:
+            return parts, None
+        stands = enabled[frame.sensor] & (classes == PointClass.UNCLASSIFIED)
+        return parts, (placed, stands, frame.echo)
 
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
         parts = in_order(pool, split, range(len(frames)))
-        for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
+        counted = track(parts, progress, what="place points", unit="frames", total=len(frames))
+        last_ns: int | None = None
+        for k, (part, returns) in enumerate(counted):
             buckets.add(part, pool)
+            t_ns = int(starts[k])
+            if returns and (last_ns is None or t_ns - last_ns >= STRUCTURE.every_ns):
+                cells.add(*returns)
+                last_ns = t_ns
         buckets.flush(pool)
     return_freed_memory()
     return starts
+
+
+_Counted = tuple[Placed, NDArray[np.bool_], NDArray[np.uint8]]
+"""Arguments of `StructureCells.add`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -162,6 +192,8 @@ class _Done:
     removed: Counter[str]
     corrected: Counter[int]
     """Number of a correction of classes -> how many points it changed."""
+    classes: Counter[int]
+    """Code of a class -> how many points have it."""
 
 
 def _finish_tile(
@@ -170,7 +202,7 @@ def _finish_tile(
     """Make a tile and compress it."""
     made = make_tile(records, tile, recipe, means=means)
     packed = writer.pack(tile, made.blocks, points=made.points, strays=made.strays, each=means.each)
-    return packed, _Done(made.removed, made.corrected)
+    return packed, _Done(made.removed, made.corrected, made.classes)
 
 
 def _finish_tiles(
@@ -179,6 +211,7 @@ def _finish_tiles(
     """Write all tiles; what became of their points."""
     removed: Counter[str] = Counter()
     corrected: Counter[int] = Counter()
+    classes: Counter[int] = Counter()
     tiles = buckets.tiles()
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
         made = _made_tiles(buckets, pool, recipe=recipe, writer=writer)
@@ -186,7 +219,8 @@ def _finish_tiles(
             writer.write(packed)
             removed += part.removed
             corrected += part.corrected
-    return _Done(removed, corrected)
+            classes += part.classes
+    return _Done(removed, corrected, classes)
 
 
 def _counts(corrections: ClassVolumes | None, changed: Counter[int]) -> tuple[int, ...]:

@@ -33,6 +33,9 @@ class MapNotes:
     """Names of the sensors, in the order of their numbers in the points."""
     removed: Mapping[str, int] = field(default_factory=dict)
     """Reason -> number of points that are not in the map."""
+    classes: Mapping[int, int] = field(default_factory=dict)
+    """Code of a class -> number of its points, also of those that are left out; empty = it was not
+    counted."""
     corrected: tuple[int, ...] = ()
     """Points that each correction of classes changed; empty = there are none."""
 
@@ -49,6 +52,7 @@ class MapNotes:
             crs=MapCrs(crs["wkt"], tuple(crs["origin_m"])) if crs else None,
             sensors=tuple(str(name) for name in facts.get("sensors", ())),
             removed={str(name): int(n) for name, n in facts.get("removed", {}).items()},
+            classes={int(code): int(n) for code, n in facts.get("classes", {}).items()},
             corrected=tuple(int(n) for n in facts.get("corrected", ())),
         )
 
@@ -60,6 +64,7 @@ class MapNotes:
             "crs": crs,
             "sensors": list(self.sensors),
             "removed": dict(self.removed),
+            "classes": {str(code): n for code, n in sorted(self.classes.items())},
         }
         return record | ({"corrected": list(self.corrected)} if self.corrected else {})
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.halves import round_to_half
+from recon4.kernels.structure_points import Structure
 from recon4.kernels.surface_points import spread_surfaces
 from recon4.kernels.surface_records import Moved
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
@@ -32,6 +33,7 @@ from recon4.mapping.records import (
     to_sensor_m,
 )
 from recon4.mapping.sparse_surfaces import with_sparse_places
+from recon4.mapping.structure import mark_structure
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.mapping.tile_memory import TileMeans
@@ -96,6 +98,8 @@ class Recipe:
     """Of the multiframes; None = no deviations of the points."""
     corrections: ClassVolumes | None = None
     """Of classes by people; None = there are none."""
+    structure: Structure | None = None
+    """What stands in the map; None = it is not known."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,6 +127,8 @@ class MadeTile:
     """Rows of the other blocks, left out of the map: stray returns, the carrier, what moves."""
     corrected: Counter[int] = field(default_factory=Counter)
     """Number of a correction of classes -> how many points it changed."""
+    classes: Counter[int] = field(default_factory=Counter)
+    """Code of a class -> how many points of the tile have it."""
 
 
 def make_tile(records: Records, tile: Tile, recipe: Recipe, *, means: TileMeans) -> MadeTile:
@@ -142,15 +148,20 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, means: TileMeans)
     if settings.surface == "fitted":
         surfaces = _surfaces(records, classes, recipe, means=means)
         mark_noise(classes, surfaces, settings.min_neighborhood)
+        normals = surfaces.surfaces, surfaces.surface_of
         columns = partial(_fitted_columns, records, surfaces, recipe=recipe)
     else:
-        normals = _normals(records, classes, recipe.grid.cell_m)
+        found = _normals(records, classes, recipe.grid.cell_m)
         stands = classes == PointClass.UNCLASSIFIED
-        lonely = own & stands & (normals.support < settings.min_neighborhood)
+        lonely = own & stands & (found.support < settings.min_neighborhood)
         removed["lonely"] = int(lonely.sum())
         own &= ~lonely
-        columns = partial(_raw_columns, records, normals, recipe=recipe)
+        columns = partial(_raw_columns, records, found, recipe=recipe)
+        normals = _facing_sensor(found, records), np.arange(len(records), dtype=np.int32)
     origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
+    if recipe.structure is not None:
+        made = recipe.structure
+        mark_structure(classes, records["xyz"], origin_m, normals=normals, structure=made)
     corrected: Counter[int] = Counter()
     if recipe.corrections is not None:
         places = TilePlaces(records["xyz"], origin_m, lambda rows: columns(rows)["xyz"])
@@ -160,7 +171,9 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, means: TileMeans)
     block = partial(_block, columns_of=columns, classes=classes, origin_m=origin_m, recipe=recipe)
     rows = chain(stored_blocks(points), stored_blocks(left_out))
     blocks = (partial(block, part) for part in rows)
-    return MadeTile(removed, blocks, len(points), len(left_out), corrected)
+    counts = np.bincount(classes[own], minlength=1)
+    given = Counter({code: int(counts[code]) for code in np.flatnonzero(counts).tolist()})
+    return MadeTile(removed, blocks, len(points), len(left_out), corrected, given)
 
 
 def _block(
@@ -196,6 +209,12 @@ def _normals(records: Records, classes: NDArray[np.uint8], cell_m: float) -> Nor
     normal, support = np.zeros((len(records), 3), np.float32), np.zeros(len(records), np.int32)
     normal[stands], support[stands] = made.normal, made.support
     return Normals(normal, support)
+
+
+def _facing_sensor(normals: Normals, records: Records) -> NDArray[np.float32]:
+    """Normals turned to the sensors, (N, 3)."""
+    away = np.einsum("ni,ni->n", normals.normal, records["to_sensor"].astype(np.float32)) < 0.0
+    return np.where(away[:, None], -normals.normal, normals.normal)
 
 
 def _raw_columns(

@@ -240,6 +240,19 @@ class TileSet:
         """Points in all tiles that the map leaves out; ``len`` is without them."""
         return sum(tile.strays for tile in self.tiles)
 
+    def class_counts(self) -> dict[int, int]:
+        """Code of each class that the map has -> number of its points, also of those left out.
+
+        A map of an earlier version, which has no such counts, is read.
+        """
+        if self.notes.classes or "classification" not in self.fields:
+            return dict(self.notes.classes)
+        counts = np.zeros(256, np.int64)
+        for tile in (*self, *self.only_strays()):
+            given = tile.read(["classification"])["classification"]
+            counts += np.bincount(given, minlength=256)
+        return {code: int(counts[code]) for code in np.flatnonzero(counts).tolist()}
+
     def as_measured(self) -> TileSet:
         """The same map with every point where it was measured; itself if it has no surfaces."""
         if RAW_OFFSET not in self.fields:

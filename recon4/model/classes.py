@@ -44,12 +44,18 @@ CLASSES: dict[PointClass, ClassFacts] = {
     PointClass.NEVER_CLASSIFIED: ClassFacts(
         "never classified", "Every point of a map from before there were classes."
     ),
-    PointClass.UNCLASSIFIED: ClassFacts("unclassified", "Furniture, cars that stand, thin things."),
-    PointClass.GROUND: ClassFacts("ground", "The level surface that was walked on."),
+    PointClass.UNCLASSIFIED: ClassFacts(
+        "unclassified", "Furniture, cars that stand, poles, wires, low walls."
+    ),
+    PointClass.GROUND: ClassFacts(
+        "ground", "What was walked on, and what leads on from it: earth, streets, floors, steps."
+    ),
     PointClass.LOW_VEGETATION: ClassFacts("low vegetation", "Up to 0.5 m above the ground."),
     PointClass.MEDIUM_VEGETATION: ClassFacts("medium vegetation", "Up to 2 m above the ground."),
     PointClass.HIGH_VEGETATION: ClassFacts("high vegetation", "More than 2 m above the ground."),
-    PointClass.BUILDING: ClassFacts("building", "Large flat surfaces: walls, ceilings, facades."),
+    PointClass.BUILDING: ClassFacts(
+        "building", "Large flat surfaces that reach 2.2 m: walls, ceilings, facades."
+    ),
     PointClass.LOW_NOISE: ClassFacts(
         "low noise", "A stray return beside a surface: a beam met two things.", delivered=False
     ),
