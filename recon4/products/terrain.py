@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
+from recon4.model.classes import PointClass
 from recon4.products.tuning import TERRAIN
 from recon4.slices.geotiff import GeoRaster
 from recon4.slices.points import SliceWindow
@@ -74,9 +75,10 @@ def terrain(
 ) -> Terrain:
     """Heights of the ground (``dtm``) or of what is highest (``dsm``), cell by cell.
 
-    The ground is found by a progressive morphological filter (Zhang et al. 2003) on the lowest
-    level surface of each cell; its height is the mean of the points near it. Cells without ground
-    stay empty: nothing is interpolated. Memory is that of the raster.
+    Ground is what has the class; in a map without that class it is found by a progressive
+    morphological filter (Zhang et al. 2003) on the lowest level surface of each cell. Its height is
+    the mean of the points near the lowest. Cells without ground stay empty: nothing is
+    interpolated. Memory is that of the raster.
 
     Args:
         tiles: The map.
@@ -94,12 +96,17 @@ def terrain(
     for rows, z_m in _cells(tiles, grid, part, ground=ground):
         (np.minimum if ground else np.maximum).at(edge, rows, z_m)
     lowest = edge.reshape(shape)
-    if ground:
+    if ground and not has_ground(tiles):
         lowest = np.where(_is_ground(lowest, cell_m), lowest, np.nan)
     lowest[~np.isfinite(lowest)] = np.nan
     points = _cells(tiles, grid, part, ground=ground)
     height, sd = _means(points, lowest)
     return Terrain(kind, grid, height, sd, _position_sd(tiles))
+
+
+def has_ground(tiles: TileSet) -> bool:
+    """Whether points of a map have the class ground."""
+    return bool(tiles.notes.classes.get(int(PointClass.GROUND)))
 
 
 def spacing_m(tiles: TileSet, part: TerrainPart) -> float:
@@ -135,7 +142,10 @@ def _grid(window: SliceWindow, cell_m: float) -> RasterGrid:
 def _cells(
     tiles: TileSet, grid: RasterGrid, part: TerrainPart, *, ground: bool
 ) -> Iterator[tuple[NDArray[np.int64], Array]]:
-    """Cell and height of points, tile by tile; of the ground only those of level surfaces."""
+    """Cell and height of points, tile by tile; of the ground only those of its class, or without it
+    those of level surfaces.
+    """
+    of_ground = ["classification" if has_ground(tiles) else "normal"] if ground else []
     window = grid.window
     rounding_m = 1e-4  # of points at the edge of a map
     low = np.array([window.left - rounding_m, window.bottom - rounding_m, part.low_m])
@@ -143,10 +153,12 @@ def _cells(
     for tile in tiles:
         if np.any(np.array(tile.high_m) < low) or np.any(np.array(tile.low_m) > high):
             continue
-        columns = tile.read(["xyz", "normal"] if ground else ["xyz"])
+        columns = tile.read(["xyz", *of_ground])
         p = columns["xyz"].astype(np.float64) + tile.origin_m
         inside = np.all((p >= low) & (p <= high), axis=1)
-        if ground:
+        if "classification" in columns:
+            inside &= columns["classification"] == PointClass.GROUND
+        elif ground:
             inside &= columns["normal"][:, 2] > TERRAIN.level
         p = p[inside]
         column = ((p[:, 0] - window.left) / grid.pixel_m).astype(np.int64)
