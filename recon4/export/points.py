@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
-from recon4.export.selection import DELIVERED, PointSelection
+from recon4.export.selection import DELIVERED, PointSelection, shares_text
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import Columns
@@ -119,7 +119,7 @@ class PointSource:
         if not count:
             raise ConfigError(
                 "no point of the map is in the chosen classes, box and storey: there is nothing "
-                "to export"
+                f"to export; the map has {shares_text(self.tiles.class_counts())}"
             )
         return replace(self, count=count, offset=np.round((low + high) / 2.0))
 

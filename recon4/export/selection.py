@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -89,6 +90,13 @@ class PointSelection:
 
 DELIVERED = PointSelection()
 """All points that the map delivers."""
+
+
+def shares_text(counts: Mapping[int, int]) -> str:
+    """The classes of a map with their part of all points: ``ground 12.3 %, building 70.1 %``."""
+    total = sum(counts.values())
+    known = [(CLASSES[PointClass(code)].title, n) for code, n in sorted(counts.items())]
+    return ", ".join(f"{title} {100.0 * n / total:.1f} %" for title, n in known) or "no classes"
 
 
 def _check_box(box_m: Box) -> None:

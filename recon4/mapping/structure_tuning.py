@@ -33,7 +33,7 @@ class StructureTuning(Struct, frozen=True, kw_only=True):
     spread: int = 15
     """The height of the ground is known so far beside it [m]."""
     storey: int = 1
-    """Not so many cubes above and below ground that is known [m]."""
+    """But not in this number of cubes above and below ground that is known."""
     cubes: int = 60
     """A large surface has as many cubes, about 2 m²."""
     round_: float = 0.05

@@ -3,6 +3,7 @@
 import { html, nothing, render, targetOf } from "../shared/dom.js";
 import { slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
+import { shareText } from "../shared/format.js";
 import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
 import { corrections } from "./corrections.js";
@@ -80,6 +81,10 @@ function colors(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
     /></label>`;
 }
 
+function share(/** @type {MapIndex} */ { class_percent }, /** @type {string} */ code) {
+  return code in class_percent ? `, ${shareText(class_percent[code])}` : "";
+}
+
 /** What the colors mean. */
 function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   const { state } = page;
@@ -89,7 +94,9 @@ function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
     return html`<ul class="classes">
       ${Object.entries(index.classes).map(
         ([code, name]) =>
-          html`<li><i .style=${`background: ${css(classColor(Number(code)))}`}></i>${name}</li>`,
+          html`<li>
+            <i .style=${`background: ${css(classColor(Number(code)))}`}></i>${name}${share(index, code)}
+          </li>`,
       )}
     </ul>`;
   const { ends, unit } = endsShown();

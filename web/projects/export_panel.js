@@ -162,7 +162,7 @@ export class ExportPanel extends HTMLElement {
               ${classes
                 .filter((one) => mayAll || one.delivered)
                 .map(
-                  ({ code, title }) =>
+                  ({ code, title, percent }) =>
                     html`<label class="check">
                       <input
                         type="checkbox"
@@ -170,7 +170,7 @@ export class ExportPanel extends HTMLElement {
                         value=${code}
                         .checked=${chosen.includes(code)}
                       />
-                      <span>${title}</span>
+                      <span>${title}, ${shareText(percent)}</span>
                     </label>`,
                 )}
             </fieldset>`

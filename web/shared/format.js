@@ -101,3 +101,7 @@ export function progressText(
   if (status.eta_s !== null) parts.push(timeLeft(status.eta_s));
   return `This part ${parts.join(" · ")}`;
 }
+
+/** A part of a whole in percent, where nothing would look like none at all. */
+export const shareText = (/** @type {number} */ percent) =>
+  percent < 0.1 ? "below 0.1 %" : `${percent.toFixed(1)} %`;

@@ -188,6 +188,8 @@ export interface Choices {
 export interface ClassChoice {
   code: number;
   title: string;
+  points: number;
+  percent: number;
   delivered: boolean;
 }
 
@@ -737,6 +739,7 @@ export interface MapIndex {
   tiles: Array<MapTile>;
   columns: Array<MapColumn>;
   classes: Record<string, string>;
+  class_percent: Record<string, number>;
   storeys: Array<Storey>;
   crs: string;
   frame: string;

@@ -27,15 +27,29 @@ def estimate(artifacts: Artifacts, file: str, options: ExportOptions) -> ExportE
     return estimate_export({k: Path(folder) for k, folder in artifacts.items()}, file, options)
 
 
+def _class_choices(counts: dict[int, int]) -> list[ClassChoice]:
+    """The classes that a map has, in the order of their table."""
+    total = sum(counts.values())
+    return [
+        ClassChoice(
+            code=int(code),
+            title=facts.title,
+            points=counts[code],
+            percent=round(100.0 * counts[code] / total, 2),
+            delivered=facts.delivered,
+        )
+        for code, facts in CLASSES.items()
+        if counts.get(code)
+    ]
+
+
 def write_choices(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
     """Write what can be chosen of the exports of a map as JSON."""
-    storeys = find_storeys(map_of(artifacts, evidence))
+    tiles = map_of(artifacts, evidence)
+    storeys = find_storeys(tiles)
     choices = ExportChoices(
         kinds=list(KINDS.values()),
-        classes=[
-            ClassChoice(code=int(code), title=facts.title, delivered=facts.delivered)
-            for code, facts in CLASSES.items()
-        ],
+        classes=_class_choices(tiles.class_counts()),
         storeys=[StoreyChoice(name=one.name, floor_m=round(one.floor_m, 2)) for one in storeys],
         crs=map_frame(artifacts).crs,
     )

@@ -24,10 +24,14 @@ class NewExport(BaseModel):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ClassChoice:
-    """A class of points."""
+    """A class of points that the map has."""
 
     code: int
     title: str
+    points: int
+    """How many points have it."""
+    percent: float
+    """Their part of all points, those that are left out of the map included [%]."""
     delivered: bool
     """Whether the map delivers it."""
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
-from recon4.model.classes import CLASSES, PointClass
+from recon4.model.classes import CLASSES, PointClass, is_delivered
 from recon4.products.storeys import storey_names
 from recon4.slices.map_crs import MapFrame
 from recon4_app.map_view.model import ColumnName, MapColumn, MapIndex, MapTile, Storey
@@ -33,7 +33,8 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
     sizes = sample_sizes(tiles)
     found = _sample(tiles, sizes, names)
     low, high = _extent(found["xyz"])
-    codes = np.unique(found["classification"]) if "classification" in found else ()
+    sampled = np.unique(found["classification"]).tolist() if "classification" in found else []
+    percent = _class_percent(tiles)
     return MapIndex(
         key=key,
         version=MAP_CHUNKS.version,
@@ -42,13 +43,21 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
         high_m=_xyz(high),
         tiles=_tiles(tiles, sizes),
         columns=[_column(name, found[FIELD_OF[name]], tiles) for name in names],
-        classes={int(code): class_name(int(code)) for code in codes},
+        classes={int(code): class_name(int(code)) for code in percent or sampled},
+        class_percent=percent,
         storeys=storeys(found["xyz"], found.get("normal"), walk_m),
         crs=frame.crs,
         frame=frame.text,
         surface=tiles.surface,
         seconds=(tiles.last_ns - tiles.first_ns) / 1e9,
     )
+
+
+def _class_percent(tiles: TileSet) -> dict[int, float]:
+    """Part of the points of a map that have each class [%]; empty if they were not counted."""
+    codes = np.array(sorted(tiles.notes.classes), np.uint8)
+    counts = {code: tiles.notes.classes[code] for code in codes[is_delivered(codes)].tolist()}
+    return {code: round(100.0 * n / sum(counts.values()), 2) for code, n in counts.items()}
 
 
 def class_name(code: int) -> str:

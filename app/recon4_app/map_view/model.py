@@ -75,6 +75,8 @@ class MapIndex(BaseModel):
     columns: list[MapColumn]
     classes: dict[int, str]
     """Names of the classes in the map, by code."""
+    class_percent: dict[int, float]
+    """Part of its points that have each class [%]; empty = a map of an earlier version."""
     storeys: list[Storey]
     crs: str
     frame: str
