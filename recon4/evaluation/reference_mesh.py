@@ -78,6 +78,7 @@ def scene_of(mesh: TriangleMesh) -> Scene:
             mesh.vertices_m.astype(np.float32),
             mesh.triangles.astype(np.uint32),
             np.ones(len(mesh.triangles), dtype=np.float32),
+            np.zeros(len(mesh.triangles), dtype=np.uint8),
         )
     )
 

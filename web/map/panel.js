@@ -92,12 +92,10 @@ function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   if (color === "plain") return nothing;
   if (color === "class")
     return html`<ul class="classes">
-      ${Object.entries(index.classes).map(
-        ([code, name]) =>
-          html`<li>
-            <i .style=${`background: ${css(classColor(Number(code)))}`}></i>${name}${share(index, code)}
-          </li>`,
-      )}
+      ${Object.entries(index.classes).map(([code, name]) => {
+        const color = css(classColor(Number(code)));
+        return html`<li><i .style=${`background: ${color}`}></i>${name}${share(index, code)}</li>`;
+      })}
     </ul>`;
   const { ends, unit } = endsShown();
   const stops = rampOf(color).map(css).join(", ");

@@ -21,7 +21,7 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
-import { bytes, count } from "../shared/format.js";
+import { bytes, count, shareText } from "../shared/format.js";
 import { exportList } from "./export_list.js";
 import { orderOf, usual } from "./export_options.js";
 
