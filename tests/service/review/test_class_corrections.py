@@ -19,7 +19,7 @@ ALL = {"shape": "sphere", "center_m": [0.0, 0.0, 0.0], "radius_m": 1000.0}
 LEFT = {"shape": "box", "center_m": [-50.0, 0.0, 0.0], "size_m": [100.0, 100.0, 100.0]}
 
 
-def spec(root, volume=LEFT, to="building", **more):
+def spec(root, volume=LEFT, to="high vegetation", **more):
     return {"volume": volume, "to": to, "map": read_artifacts(root)["map"].name, **more}
 
 
@@ -51,13 +51,13 @@ def test_a_correction_is_counted_made_signed_and_undone(server, root):
     summary = remake(root)
 
     assert count["points"] == noted["points"] == left > 10_000
-    assert count["now"] == {"unclassified": left}
+    assert sum(count["now"].values()) == left
     assert (noted["who"], noted["why"], noted["in_map"]) == ("local", "it is a wall", False)
     assert refused.status_code == 409 and "not in the map" in refused.json()["detail"]
     after = keys_of(root)
     assert {name for name in after if after[name] != before[name]} == {"map", "audit"}
     assert [stage.stage for stage in summary.stages if not stage.reused] == ["map", "audit"]
-    assert classes_of(root / "map.laz")[PointClass.BUILDING] == left
+    assert classes_of(root / "map.laz")[PointClass.HIGH_VEGETATION] == left
     assert server.get("/classes").json()["corrections"][0]["in_map"]
     assert "it is a wall" in (root / "report.html").read_text()
     approval = server.post("/approve", json={"why": "checked against the plan"}).json()["approval"]
@@ -83,7 +83,7 @@ def test_what_cannot_be_corrected_is_refused_and_nothing_is_noted(server, root):
         corrected(server, root, flat),
         corrected(server, root, to="wall"),
         corrected(server, root, {"shape": "cone"}),
-        corrected(server, root, ALL, only=["ground"]),
+        corrected(server, root, ALL, only=["never classified"]),
         server.post("/classes", json=spec(root) | {"map": "ab", "seen_seq": 0}),
     ]
 
@@ -111,7 +111,8 @@ def test_another_person_who_corrected_meanwhile_is_not_overtaken(server, root):
 def test_a_list_is_counted_in_a_shell_after_what_is_not_in_the_map_yet(root, capsys, tmp_path):
     listed = tmp_path / "c.csv"
     listed.write_text(
-        "shape,x,y,z,radius,to,only\nsphere,0,0,0,1000,building,\nsphere,0,0,0,1000,moving,6\n"
+        "shape,x,y,z,radius,to,only\nsphere,0,0,0,1000,high vegetation,\n"
+        "sphere,0,0,0,1000,moving,5\n"
     )
     points = len(TileSet.open(read_artifacts(root)["map"]))
 
@@ -119,10 +120,9 @@ def test_a_list_is_counted_in_a_shell_after_what_is_not_in_the_map_yet(root, cap
     said = capsys.readouterr().out.splitlines()
 
     assert code == 0
-    assert said == [
-        f"c.csv, line 2: {points} points, now: {points} unclassified -> building",
-        f"c.csv, line 3: {points} points, now: {points} building -> moving",
-    ]
+    assert said[0].startswith(f"c.csv, line 2: {points} points, now: ")
+    assert said[0].endswith(" -> high vegetation")
+    assert said[1] == f"c.csv, line 3: {points} points, now: {points} high vegetation -> moving"
     assert main(["classify", str(root), "--undo", "ab"]) == 1
     assert main(["classify", str(root)]) == 0
     assert "no correction of classes" in capsys.readouterr().out
