@@ -31,7 +31,7 @@ class _StatedPoses:
     """Position and quaternion of its transform, or its position alone."""
 
 
-_Wanted = Mapping[tuple[str, ...], Sequence[_StatedPoses]]
+_Wanted = Mapping[tuple[str, str], Sequence[_StatedPoses]]
 """Parent and child, or topic and name of the driver -> who wants the statement."""
 
 
@@ -46,7 +46,7 @@ def read_joint_poses(
         report: Counts what is left out.
     """
     found = {joint.child: _StatedPoses() for joint in joints}
-    wanted: dict[tuple[str, ...], list[_StatedPoses]] = {}
+    wanted: dict[tuple[str, str], list[_StatedPoses]] = {}
     for joint in joints:
         by = (joint.source, joint.driven.driver) if joint.driven else (joint.parent, joint.child)
         wanted.setdefault(by, []).append(found[joint.child])
@@ -63,7 +63,7 @@ def read_joint_poses(
     return {joint.child: _trajectory(joint, found[joint.child], report) for joint in joints}
 
 
-def _transforms(content: Any) -> Iterator[tuple[tuple[str, ...], int, tuple[float, ...]]]:
+def _transforms(content: Any) -> Iterator[tuple[tuple[str, str], int, tuple[float, ...]]]:
     for one in content.transforms:
         pair, numbers = (
             (frame_name(one.header.frame_id), frame_name(one.child_frame_id)),
@@ -75,7 +75,7 @@ def _transforms(content: Any) -> Iterator[tuple[tuple[str, ...], int, tuple[floa
 
 def _positions(
     content: Any, topic: str, report: ImportReport
-) -> Iterator[tuple[tuple[str, ...], int, tuple[float, ...]]]:
+) -> Iterator[tuple[tuple[str, str], int, tuple[float, ...]]]:
     t_ns = stamp_ns(content.header.stamp)
     for name, position in positions_of(content, report):
         yield (topic, name), t_ns, (position,)

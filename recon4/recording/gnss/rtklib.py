@@ -126,6 +126,8 @@ def _add(line: str, header: _Header, rows: FixRows) -> None:
     if len(cells) < 3 + wide:
         raise ValueError(f"expected {3 + wide} cells or more, got {len(cells)}")
     t_ns = _time_ns(cells[0], cells[1])
+    if not 0 <= t_ns < GNSS_FILES.latest_ns:
+        raise ValueError("no time of our days")
     first, second, third = _position(cells[2 : 2 + wide], header.sexagesimal)
     if header.position == "geodetic" and (abs(first) > 90.0 or abs(second) > 360.0):
         raise ValueError(f"no latitude and longitude in degrees: {first:g}, {second:g}")
@@ -196,6 +198,11 @@ def _geodetic(position: Array, header: _Header, name: str) -> Array:
         lat, lon, height = header.base
         if np.linalg.norm(header.base) > GNSS_FILES.least_radius_m:
             lat, lon, height = geodetic.transform(*header.base)
+        if not (abs(lat) <= 90.0 and abs(lon) <= 360.0):
+            raise CorruptFile(
+                f"{name}: expected a base on the earth in the comment 'ref pos', got "
+                f"{lat:g}, {lon:g}"
+            )
         to_ecef = Transformer.from_pipeline(
             "+proj=pipeline +step +inv +proj=topocentric +ellps=WGS84 "
             f"+lat_0={lat!r} +lon_0={lon!r} +h_0={height!r}"

@@ -11,6 +11,7 @@ from recon4.model.samples import GnssQuality
 from recon4.recording.gnss.files import is_gnss_file, read_gnss
 from recon4.recording.gnss.receiver_logs import read_receiver_log
 from recon4.recording.gnss.records import Dating
+from recon4.recording.gnss.rtklib import read_rtklib
 from recon4.recording.info import describe
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.report import ImportReport
@@ -311,3 +312,27 @@ def test_a_novatel_log_is_as_its_driver_decoded_it(data):
     assert len(found) == 1000
     assert found.height_m[0] == pytest.approx(1059.7447 - 16.9)
     assert found.sd_enu_m[0].tolist() == [1.5644, 1.8736, 2.8763]
+
+
+def test_a_solution_of_no_time_is_a_damaged_line(tmp_path):
+    path = tmp_path / "a.pos"
+    lines = [f"2026/11/27 10:00:{k}.0 48.1 16.3 200 1 9" for k in range(10, 50)]
+    head = "% GPST latitude(deg) longitude(deg) height(m) Q ns"
+    path.write_text(
+        "\n".join([head, *lines, "2026/11/27 9999999999:00:00.0 48.1 16.3 200 1 9", ""]), "utf-8"
+    )
+    report = ImportReport()
+
+    assert len(read_rtklib(path, report).samples) == 40
+    assert report.counts["gnss_lines_damaged"] == 1
+
+
+def test_a_base_that_is_nowhere_on_the_earth_is_refused(tmp_path):
+    path = tmp_path / "a.pos"
+    lines = ["% ref pos : 128.2 16.6 250.0"]
+    lines += ["% GPST e-baseline(m) n-baseline(m) u-baseline(m) Q ns"]
+    lines += [f"2026/11/27 10:00:0{k}.0 1.0 2.0 3.0 1 9" for k in range(9)]
+    path.write_text("\n".join([*lines, ""]), "utf-8")
+
+    with pytest.raises(CorruptFile, match=r"expected a base on the earth.*128\.2"):
+        read_rtklib(path, ImportReport())
