@@ -7,6 +7,10 @@ import pytest
 import rasterio
 
 from recon4.errors import ConfigError
+from recon4.mapping.map_notes import MapNotes
+from recon4.mapping.tile import FIELDS
+from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tiles import TileSet
 from recon4.products.contours import contours
 from recon4.products.terrain import terrain
 from recon4.products.volume import volume
@@ -139,3 +143,37 @@ def test_a_volume_over_a_given_height_and_its_refusals(ground, meadow):
         volume(ground, MOUND[[0, 2, 1, 3]])
     with pytest.raises(ConfigError, match="nothing was seen"):
         volume(ground, MOUND + 100.0)
+
+
+def two_levels(folder, *, counts):
+    """A square of ground (class 2) half a meter over a level of class 1."""
+    folder.mkdir()
+    xy = np.random.default_rng(2).uniform(0.0, 4.0, (4000, 2))
+    high = np.arange(len(xy)) % 2 == 0
+    columns = {
+        name: np.zeros((len(xy), width) if width > 1 else len(xy), dtype)
+        for name, (dtype, width) in FIELDS.items()
+    }
+    columns["xyz"] = np.column_stack([xy, np.where(high, 0.5, 0.0)]).astype(np.float32)
+    columns["normal"][:, 2] = 1.0
+    columns["classification"] = np.where(high, 2, 1).astype(np.uint8)
+    fields = ["xyz", "normal", "classification", "frame_id", "t_ns"]
+    with TileWriter(folder, fields, tile_m=5.0) as writer:
+        writer.notes = MapNotes(classes=counts)
+        writer.append((0, 0, 0), columns)
+    return TileSet.open(folder)
+
+
+def test_heights_of_the_ground_are_those_of_its_class_where_a_map_has_it(tmp_path):
+    classified = two_levels(tmp_path / "a", counts={1: 2000, 2: 2000})
+    earlier = two_levels(tmp_path / "b", counts={})
+
+    heights = [
+        np.nanmedian(terrain(one, "dtm", cell_m=0.5).height_m) for one in (classified, earlier)
+    ]
+
+    assert heights == pytest.approx([0.5, 0.0], abs=0.002)
+
+
+def test_classes_of_an_earlier_map_are_counted_by_reading_it(tmp_path):
+    assert two_levels(tmp_path / "a", counts={}).class_counts() == {1: 2000, 2: 2000}
