@@ -328,6 +328,6 @@ def test_a_changed_layout_of_the_index_has_another_version():
     text = re.sub(r'"(description|title)": "[^"]*",? ?', "", layout)
 
     assert (MAP_CHUNKS.version, hashlib.sha256(text.encode()).hexdigest()[:12]) == (
-        2,
-        "b6213e593171",
+        3,
+        "6d09a7396e21",
     )

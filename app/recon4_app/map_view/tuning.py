@@ -8,7 +8,7 @@ from msgspec import Struct
 class MapChunkTuning(Struct, frozen=True, kw_only=True):
     """Points as they are sent."""
 
-    version: int = 4
+    version: int = 3
     """Part of the names of kept files and of ETags: layout of index, sample and chunks."""
     sample_points: int = 60_000
     """Points of the coarsest sample of the whole map, which is sent first."""
