@@ -115,7 +115,10 @@ def workers_here(count: int) -> Cluster:
             LocalCluster(
                 n_workers=count,
                 threads_per_worker=1,
-                dashboard_address=None,
+                # No dashboard; its server listens all the same, and here to this computer only, at
+                # a free port: with the usual one, a second cluster would warn, or not start.
+                dashboard_address="127.0.0.1:0",
+                scheduler_kwargs={"dashboard": False},
                 security=security,
                 protocol="tls://",
                 silence_logs=CLUSTER.log_level,
