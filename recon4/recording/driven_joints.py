@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.recording.formats.urdf import UrdfJoint
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning import LISTED
 from recon4.recording.tuning_mounts import JOINTS
 
 
@@ -116,3 +118,12 @@ def stated_positions(
             elif name in drivers:
                 found[name] = StatedPositions(position)
     return found
+
+
+def several_joints(topic: str, names: Sequence[str]) -> ConfigError:
+    """Why the angle of a head is not taken from positions of several joints."""
+    few = ", ".join(map(str, names[: LISTED.few]))
+    return ConfigError(
+        f"{topic}: expected the angle of one joint, got {len(names)} ({few}): with the robot "
+        "description in the bag, the rig file names that as head_topic"
+    )

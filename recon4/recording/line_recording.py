@@ -20,6 +20,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import stamp_clock, stamp_ns
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
+from recon4.recording.driven_joints import several_joints
 from recon4.recording.formats.bags import (
     CLOUD,
     JOINT_STATES,
@@ -170,6 +171,8 @@ class LineRecording:
     def _push_angle(
         self, head: HeadAngles, message: BagMessage, content: Any, *, stamps: StampClock
     ) -> None:
+        if len(content.position) > 1:
+            raise several_joints(message.topic, content.name)
         t_ns = stamp_ns(content.header.stamp)
         known = stamps.offset_ns is not None
         sound = stamps.is_sound(t_ns, message.t_ns)

@@ -197,6 +197,19 @@ def test_a_rig_file_may_name_transforms_that_move_a_profiler(tmp_path):
         run(path, out=tmp_path / "none", rig=still)
 
 
+def test_angles_of_several_joints_without_a_description_are_refused(tmp_path):
+    text = 'name = "r"\n[[sensor]]\nname = "p"\nmodel = "generic"\nkind = "profiler"\n'
+    text += 'topic = "/scan"\nhead_topic = "/joint_states"\n'
+
+    words = r"expected the angle of one joint, got 3 \(wheel, motor, broken\)"
+    with pytest.raises(ConfigError, match=words):
+        run(
+            tilting_bag(tmp_path, urdf=URDF),
+            out=tmp_path / "frames",
+            rig=parse_rig(text, where="rig.toml"),
+        )
+
+
 def test_a_lidar_that_turns_on_a_joint_is_placed_in_what_carries_it(tmp_path):
     path = turning_lidar(tmp_path, imu_frame="base_link")
 
