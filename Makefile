@@ -74,10 +74,10 @@ unit: $(VENV)/installed-dev site kernels bytecode
 	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
 
 looks: $(VENV)/installed-dev site kernels bytecode
-	RECON4_LOOKS=both $(BIN)/python -m pytest -m e2e
+	RECON4_LOOKS=both $(BIN)/python -m pytest -m 'e2e and not study'
 
 e2e: $(VENV)/installed-dev site kernels bytecode
-	$(BIN)/python -m pytest -m e2e --durations=10
+	$(BIN)/python -m pytest -m 'e2e and not study' --durations=10
 
 web:
 	.ci/web
@@ -94,7 +94,8 @@ bytecode: $(VENV)/installed-dev
 	@$(BIN)/python -m tools.rewritten_tests
 
 studies: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -m study --durations=0
+	$(BIN)/python -m pytest -m 'study and not e2e' --durations=0
+	$(BIN)/python -m pytest -m 'study and e2e' --durations=0
 
 bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \
