@@ -29,7 +29,7 @@ PAGES = {
     "/nowhere": "shared/lost.html",
 }
 """Path -> its file in `web/`."""
-ELSEWHERE = {"account/login.html", "account/account.html", "account/pair.html"}
+ELSEWHERE = {f"account/{name}.html" for name in ("account", "guest", "login", "pair")}
 """Pages of a server with login."""
 
 
