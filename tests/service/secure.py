@@ -95,6 +95,7 @@ class Secure:
             compression=None,
             max_size=None,
             proxy=None,
+            open_timeout=HANG_S,  # a viewer that it starts takes long on a busy computer
             **{**given, **options},
         )
         with (

@@ -39,7 +39,7 @@ def test_a_qr_code_makes_a_session_that_may_what_was_chosen_and_no_more(server):
         _, token = invite(laptop, "viewer")
         me = redeem(phone, token).json()
 
-        assert (me["name"], me["role"], me["may"]) == ("anna", "viewer", ["look"])
+        assert (me["name"], me["role"], me["may"]) == ("anna", "viewer", ["shared", "look"])
         cookie = next(c for c in phone.cookies.jar if c.name == "__Host-sid")
         assert cookie.secure and cookie.path == "/" and cookie.has_nonstandard_attr("HttpOnly")
         assert phone.get("/api/projects").status_code == 200

@@ -36,7 +36,7 @@ class Client:
 
     async def run(self):
         await self.socket.accept()
-        await Phone(self.socket, self.current_capture).serve()
+        await Phone(self.socket, self.current_capture, "en").serve()
 
     def leave(self):
         self._incoming.put_nowait({"type": "websocket.disconnect", "code": 1000})
