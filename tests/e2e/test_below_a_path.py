@@ -66,6 +66,7 @@ def links(page):
     return page.evaluate("[...document.querySelectorAll('a[href]')].map((one) => one.href)")
 
 
+@pytest.mark.study
 def test_every_page_loads_and_links_below_the_path(site, page):
     sign_in(page, site, "/projects/office/")
     viewer = page.frame_locator("iframe")

@@ -115,6 +115,7 @@ def test_a_survey_with_heights_above_sea_level_is_explained(server, page, screen
 
 
 @looks("desktop dark")
+@pytest.mark.study
 def test_two_tabs_measure_control_points_and_neither_overwrites_the_other(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
     other = page.context.new_page()  # its browser complains of the 409

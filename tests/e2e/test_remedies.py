@@ -79,6 +79,7 @@ def test_an_export_without_room_leads_to_what_takes_space(full, page, screenshot
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_a_job_without_room_is_refused_with_the_way_to_room(full, page):
     leave_out_viewer(page)
     recording = recording_with_gate(full.root / "clouds")

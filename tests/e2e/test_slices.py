@@ -164,6 +164,7 @@ def test_no_double_wall_is_found_where_there_is_none(server, page):
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_findings_are_those_of_the_map_that_is_shown(server, page):
     (server.root / "wall.xyz").write_text("\n".join(f"0 {y / 20} 1.5" for y in range(200)))
     opened(page, server, "?source=project:earlier&kind=horizontal&z=1.5")

@@ -233,6 +233,7 @@ viewer.stop()
     subprocess.run([sys.executable, "-c", code], check=True, cwd=ROOT)
 
 
+@pytest.mark.study
 def test_a_viser_that_starts_its_server_in_another_way_is_noticed(tmp_path):
     with (
         pytest.raises(AssertionError, match="another way"),

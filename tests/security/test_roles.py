@@ -11,6 +11,7 @@ import re
 
 import pytest
 
+from tests.first_variants import all_but_first_are_studies
 from tests.service.test_access_roles import (  # noqa: F401 - fixtures
     client_of,
     closed,
@@ -24,7 +25,7 @@ METHODS = ("GET", "POST", "PUT", "PATCH", "DELETE", "TRACE")
 NAMES = (None, "vera", "anna")
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", all_but_first_are_studies(NAMES, first=2))
 def test_no_method_that_a_route_does_not_have_succeeds(server, routes, name, unhurried):  # noqa: F811
     declared = {(method, route.path) for method, route in requests_of(routes)}
     paths = sorted({route.path for route in routes if route.methods})

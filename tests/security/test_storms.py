@@ -157,6 +157,7 @@ def test_a_stormed_run_ends_in_order_and_leaves_nothing_half(tmp_path, short_rec
     assert not (tmp_path / "rig.toml").exists()
 
 
+@pytest.mark.study
 def test_a_stormed_backup_and_restore_end_in_order_and_leave_nothing_half(tmp_path):
     root, backups, new = tmp_path / "root", tmp_path / "backups", tmp_path / "new"
     build_project(root / "office", points=1000)
@@ -196,6 +197,7 @@ def test_a_stormed_recording_is_a_whole_project(tmp_path, rig):
     assert load_session(walk).outcome.exists()
 
 
+@pytest.mark.study
 def test_a_stormed_recorder_completes_its_file_and_a_stormed_mapper_says_so(tmp_path, rig):
     session = begin(tmp_path / "walk", load_rig(rig), address=an_address())
     recorder = [sys.executable, "-m", "recon4.live.recorder.process", session.project]

@@ -192,6 +192,7 @@ def test_of_all_messages_viser_knows_a_viewers_browser_may_only_send_those_of_lo
         wait_for(lambda: f"dropped {len(kinds) - 1} more" in caplog.text, "the count in the log")
 
 
+@pytest.mark.study
 def test_a_session_above_its_rate_limit_gets_retry_after(server):
     async def many(cookies):
         options = {"base_url": server.url, "verify": server.trust(), "cookies": cookies}

@@ -14,6 +14,7 @@ from recon4.errors import ConfigError
 from recon4_app.network.behind import public_address
 from recon4_app.settings import ServerSettings
 from tests.deadlines import HANG_S
+from tests.first_variants import all_but_first_are_studies
 from tests.service.behind_nginx import behind_nginx, needs_nginx, sign_in
 from tests.service.secure import PASSWORD
 
@@ -99,7 +100,9 @@ def test_other_hosts_are_refused_through_the_proxy_and_beside_it(site):
 
 
 @needs_nginx
-@pytest.mark.parametrize("removed", [False, True], ids=["kept", "removed"])
+@pytest.mark.parametrize(
+    "removed", all_but_first_are_studies([False, True]), ids=["kept", "removed"]
+)
 def test_everything_works_below_a_path_that_the_proxy_keeps_or_removes(tmp_path, removed):
     with behind_nginx(tmp_path, "/maps/old", removed=removed) as (site,), site.client() as client:
         page = {"Accept": "text/html"}

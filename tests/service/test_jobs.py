@@ -210,6 +210,7 @@ def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
     assert ran(recording) == ["frames", "odometry", "odometry", "finished"]
 
 
+@pytest.mark.study
 def test_the_server_answers_before_a_job_that_takes_all_processors(tmp_path, recording):
     with (
         server_process(tmp_path) as (server, process),

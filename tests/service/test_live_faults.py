@@ -208,6 +208,7 @@ class FaultyNetwork:
                 yield ReplayDatagram(one.t_ns, "127.9.9.9", 2368, self.rng.bytes(size))
 
 
+@pytest.mark.study
 def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk, project):
     address, sent, texts = an_address(), [], set()
 

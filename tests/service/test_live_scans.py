@@ -130,6 +130,7 @@ def test_a_laser_that_falls_silent_is_said(server, log, tmp_path):
     assert phone.newest["state"] == "ready"
 
 
+@pytest.mark.study
 def test_a_backpack_with_a_profiler_gives_the_frames_of_its_bag(server, tmp_path):
     walk = tmp_path / "walk"
     rig = load_rig("wuerzburg")

@@ -122,6 +122,7 @@ def serving(root, *options):
             process.terminate()
 
 
+@pytest.mark.study
 def test_a_server_shows_read_only_media_and_changes_nothing(media):
     with serving(media) as process:
         first = process.stdout.readline()
@@ -156,6 +157,7 @@ def test_a_server_shows_read_only_media_and_changes_nothing(media):
     assert "Traceback" not in errors
 
 
+@pytest.mark.study
 def test_a_server_with_login_does_not_start_on_read_only_media(media):
     done = command("serve", media, "--lan", "--port", "0")
 

@@ -163,6 +163,7 @@ def test_the_map_from_above_comes_with_its_window(server):
     assert window["left"] < 0 < ROOM_M[0] < window["right"]
 
 
+@pytest.mark.study
 def test_the_server_may_be_given_a_relative_folder(tmp_path, monkeypatch):
     build_project(tmp_path / "projects" / "office", points=2000)
     monkeypatch.chdir(tmp_path)

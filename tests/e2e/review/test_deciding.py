@@ -22,6 +22,7 @@ pytestmark = pytest.mark.e2e
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_forty_loops_are_reviewed_without_the_mouse(opened, root):
     page = opened
 

@@ -47,6 +47,7 @@ def url(server, root, what):
     return f"{server.running.url}/api/projects/{root.name}/slices/{what}"
 
 
+@pytest.mark.study
 def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     before = read_decided(root).key
     p_map = seen_places(root)
