@@ -173,6 +173,7 @@ def test_a_restored_file_shares_nothing_with_the_backup_or_with_another(tmp_path
     assert (tmp_path / "new" / "one").stat().st_nlink == 1
 
 
+@pytest.mark.study
 def test_one_object_listed_a_million_times_is_refused_before_it_is_copied(tmp_path):
     """A small backup that becomes 10 TB."""
     place = made(tmp_path / "backup", {f"{k:06d}": {"bytes": 10 << 20} for k in range(100_000)})

@@ -63,6 +63,7 @@ def confirmed(right):
     return run(right, AUTO)
 
 
+@pytest.mark.study
 def test_a_rig_file_that_is_right_is_confirmed(confirmed):
     found = confirmed
 

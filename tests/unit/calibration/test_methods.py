@@ -194,6 +194,7 @@ def test_entropy_finds_a_rotation_back(dance):
     assert np.all(np.diff(found.costs) <= 0.0)
 
 
+@pytest.mark.study
 def test_two_maps_give_the_mount(dance):
     wrong = mounted(dance.rig, 1, turn_deg=(3.0, -2.0, 2.0), shift_m=(0.05, 0.0, -0.05))
     walk = RecordedWalk(replace(dance, rig=wrong), dance.truth, *np.zeros((2, len(dance)), bool))

@@ -184,6 +184,7 @@ def test_a_pause_during_a_turn_is_not_mistaken_for_a_place_that_looks_alike(foll
     assert max(error for pose, error in later if not pose.lost) < 0.1
 
 
+@pytest.mark.study
 def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(walk, followed):
     follower = followed(130)
     back = walk.store[130].t_ns - walk.store[60].t_ns + 60_000_000_000

@@ -146,6 +146,7 @@ def test_reflectivity_has_a_value_for_every_return_of_every_packet(perfect):
         assert np.array_equal(truth[f"sensor{row}"] > 0, distance > 0)
 
 
+@pytest.mark.study
 def test_the_same_seed_gives_the_same_bytes_and_another_does_not(tmp_path):
     for name, seed in (("a", 3), ("b", 3), ("c", 4)):
         simulate(prepare("field", seconds=SECONDS, seed=seed), tmp_path / name, progress=Silent())
