@@ -181,6 +181,7 @@ def test_an_upload_can_be_removed_after_it_has_arrived(server, page, capture):
 
 
 @looks("desktop light", "phone dark")
+@pytest.mark.study
 def test_a_folder_of_several_recordings_offers_each_as_a_button(server, page, capture, tmp_path):
     walks = tmp_path / "walks"
     for name in ("monday", "tuesday"):

@@ -96,6 +96,7 @@ def test_a_job_without_room_is_refused_with_the_way_to_room(full, page):
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_a_refused_export_says_why_on_the_page_and_the_next_one_is_made(server, page):
     page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=90")
     expect(page.locator(".facing strong")).to_be_visible()

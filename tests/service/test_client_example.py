@@ -57,6 +57,7 @@ def test_the_client_signs_in_sends_follows_and_fetches_a_result(here, root):
     assert view["job"]["inputs"]["preset"] in ("indoor", "outdoor")
 
 
+@pytest.mark.study
 def test_a_failed_job_is_reported_with_the_message_of_the_server(here, root):
     with server_thread(root, worker_module=SLOW) as server:  # its worker takes no capture
         ended = call(here, server.url, "--project", "office")

@@ -243,6 +243,7 @@ def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk
     assert frames.report["counts"]["packets_duplicate"] > 1000
 
 
+@pytest.mark.study
 def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_reports_why(project):
     address = an_address()
 

@@ -140,6 +140,7 @@ def test_the_api_description_has_permissions_and_errors(server):
     assert server.get("/openapi.json").json() == described
 
 
+@pytest.mark.study
 def test_two_servers_do_not_share_a_folder(tmp_path):
     with server_process(tmp_path) as (server, _):
         assert httpx.get(f"{server.url}/healthz").status_code == 200

@@ -82,6 +82,7 @@ WAYS = [
 
 
 @looks("desktop light")
+@pytest.mark.study
 def test_whatever_is_held_or_pressed_again_decides_about_one_pair(opened, root):
     page = opened
     for done, (decide, key, onwards) in enumerate(WAYS):

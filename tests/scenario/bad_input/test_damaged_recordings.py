@@ -71,6 +71,7 @@ def test_garbage_duplicates_and_disorder_do_not_change_the_map(process, tmp_path
     assert "data packets: received twice, the copies dropped" in summary["report"]
 
 
+@pytest.mark.study
 def test_a_product_byte_of_another_model_is_overridden_and_reported(process, tmp_path, whole):
     t_ns, payloads = room_packets(seconds=0.8)
     payloads[:, 1205] = 0x21
@@ -81,6 +82,7 @@ def test_a_product_byte_of_another_model_is_overridden_and_reported(process, tmp
     assert_warned(summary, "HDL-32E", "VLP-16")
 
 
+@pytest.mark.study
 def test_a_recording_over_the_full_hour_is_one_recording(process, tmp_path, whole):
     start_ns = (T0_NS // HOUR_NS + 1) * HOUR_NS - 400_000_000
     t_ns, payloads = room_packets(seconds=0.8, t0_ns=start_ns)

@@ -98,6 +98,7 @@ def test_angular_rates_in_degrees_are_converted_and_said(pcap, process, tmp_path
     assert "are in deg/s, stored in rad/s" in summary["report"]
 
 
+@pytest.mark.study
 def test_accelerations_in_g_are_scaled_with_a_warning(pcap, process, tmp_path):
     summary = process(pcap, "--imu", write_imu(tmp_path / "imu.csv", accel=(0.0, 0.0, 1.0)))
 

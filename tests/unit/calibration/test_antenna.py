@@ -97,6 +97,7 @@ def test_heights_above_sea_level_are_raised_by_the_geoid_that_the_settings_have(
     assert heights_m[1] - heights_m[0] == pytest.approx(44.2)
 
 
+@pytest.mark.study
 def test_an_audit_compares_the_receiver_and_changes_nothing(walk, agreed):
     found = with_antenna(agreed, walk, settings=settings("audit"), progress=Silent())
 

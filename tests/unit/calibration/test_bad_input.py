@@ -45,6 +45,7 @@ def test_a_sensor_that_the_recording_lacks_is_not_observable_and_stays(dance, tm
         assert np.array_equal(found.rig.sensors[2].T_body_sensor.t, np.zeros(3))
 
 
+@pytest.mark.study
 def test_a_walk_of_five_seconds_shows_nothing_and_changes_nothing(dance, tmp_path):
     short = replace(dance, frames=dance.frames[:50])
 

@@ -96,6 +96,7 @@ def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong, a
     )
 
 
+@pytest.mark.study
 def test_an_audit_changes_nothing(audited):
     assert not audited.figures.applied
     assert audited.rig is None
@@ -148,6 +149,7 @@ def test_a_mount_that_slips_during_the_walk_is_announced_and_not_calibrated(danc
     assert not figures.applied
 
 
+@pytest.mark.study
 def test_a_right_rig_file_is_not_changed_on_request(right, confirmed, tmp_path):
     figures = confirmed.save(tmp_path)
 
@@ -206,6 +208,7 @@ def test_one_lidar_without_an_imu_leaves_nothing_to_compare(dance, tmp_path):
     assert found.figures.parameters == ()
 
 
+@pytest.mark.study
 def test_who_stands_still_learns_nothing_wrong(tmp_path):
     still = scanned_room.walk(scanned_room.standing, 60, noise_m=0.01, columns=COLUMNS)
     found = run(store(tmp_path, still, imu_mounted(still.rig, turn_deg=(0, 0, 1.5)), still.imu))

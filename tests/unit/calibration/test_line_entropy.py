@@ -50,6 +50,7 @@ def mounted_wrong(walk, *, turn_deg, shift_m, ahead_s):
     return replace(walk, t_ns=t_ns, recorded=replace(rig, sensors=tuple(sensors)))
 
 
+@pytest.mark.study
 def test_the_map_is_sharpest_with_the_true_mount(walk):
     rig = walk.recorded
     wrong = mounted_wrong(walk, turn_deg=(0.0, 0.5, 0.0), shift_m=(0.0, 0.0, 0.0), ahead_s=0.0)

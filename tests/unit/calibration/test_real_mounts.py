@@ -7,6 +7,7 @@ from recon4.registration.scan_registration import make_scan
 from tests.benchmarks.calibration_real import SETTINGS, by_gicp, cloud, mount
 
 
+@pytest.mark.study
 def test_two_scenes_of_one_rig_give_the_same_mount_although_the_drawing_is_45_degrees_off(
     data,
 ):

@@ -80,6 +80,7 @@ def test_a_wrong_unit_of_the_accelerometer_is_named(dance, factor, words):
     assert any(words in text for text in said(start)), said(start)
 
 
+@pytest.mark.study
 def test_an_imu_of_another_recording_explains_nothing(dance):
     rng = np.random.default_rng(1)
     noise = rng.standard_normal(dance.imu.gyro_rad_s.shape)

@@ -85,6 +85,7 @@ def test_who_leaves_early_stops_what_runs(cluster, tmp_path):
     wait_for(stopped.exists, "the task stops")
 
 
+@pytest.mark.study
 def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_done(cluster):
     (ended,) = cluster.run(always_die, ["poison"], ignore)
     (after,) = cluster.run(double, [4], ignore)

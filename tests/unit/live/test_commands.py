@@ -4,6 +4,8 @@ import signal
 import subprocess
 import sys
 
+import pytest
+
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.store.project import read_artifacts
 from tests.loopback import an_address
@@ -17,6 +19,7 @@ def recon4(*arguments, **options):
     )
 
 
+@pytest.mark.study
 def test_a_recording_without_a_server_is_stopped_by_ctrl_c_and_is_a_project(tmp_path):
     address = an_address()
     rig = tmp_path / "rig.toml"

@@ -100,6 +100,7 @@ def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(wa
     )
 
 
+@pytest.mark.study
 def test_accelerations_of_zero_are_said_and_mapping_goes_on_with_the_gyroscope(walk):
     follower = Follower(walk, imu_axes=[0.0, 0.0, 0.0], gyro_axes=[1.0, 1.0, 1.0])
 
@@ -125,6 +126,7 @@ def test_accelerations_that_fail_on_the_way_do_not_end_the_map(followed):
     ("rate", "said"),
     [(0.0, "zero"), (0.03, "constant")],
 )
+@pytest.mark.study
 def test_a_gyroscope_whose_values_never_change_is_found_out_and_said(walk, rate, said):
     follower = Follower(walk, gyro_axes=[0.0, 0.0, 0.0])
     follower.rate = np.array([rate, -rate, rate])
@@ -166,6 +168,7 @@ def test_what_is_left_out_is_counted_for_ten_seconds(walk):
     assert (later.thinned, later.lately.thinned) == (5, 0)
 
 
+@pytest.mark.study
 def test_after_a_pause_the_walk_goes_on_where_it_stopped(followed):
     follower = followed(100)
     later = [follower.push(row, 60_000_000_000) for row in range(100, 130)]

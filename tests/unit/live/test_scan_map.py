@@ -83,6 +83,7 @@ def test_the_poses_are_those_of_the_finished_recording(room, odometry):
     np.testing.assert_array_equal([step.weak_sd_m for step in found], steps.weak_sd_m)
 
 
+@pytest.mark.study
 def test_a_walk_around_a_block_closes_the_loop_and_stays_true(ring):
     walk, live, poses, messages = ring
 
@@ -158,6 +159,7 @@ def test_the_plan_is_drawn_again_at_most_every_ten_seconds(room, monkeypatch):
 
 
 @pytest.mark.parametrize("with_imu", [False, True])
+@pytest.mark.study
 def test_a_laser_upside_down_gives_the_poses_of_an_upright_one(room, with_imu):
     hanging = parse_rig(
         '[[sensor]]\nname = "laser2d"\nkind = "laser2d"\nrpy_deg = [180.0, 0.0, 0.0]',

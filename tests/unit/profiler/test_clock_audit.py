@@ -79,6 +79,7 @@ def shifted(frames, folder, *, imu_s=0.0, lines_s=0.0):
         ({"lines_s": -0.04}, "the clock of the profiler is (39|40|41) ms behind those of the IMU"),
     ],
 )
+@pytest.mark.study
 def test_wrong_clocks_are_said(frames, settings, tmp_path, clocks, words):
     store = shifted(frames, tmp_path / "frames", **clocks)
     (tmp_path / "out").mkdir()

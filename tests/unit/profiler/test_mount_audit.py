@@ -37,6 +37,7 @@ def test_the_mount_of_the_rig_file_is_left_alone(points, origin_m, truth):
 
 
 @pytest.mark.parametrize("turn_deg", [(1.5, 0.0, 0.0), (0.0, -1.25, 0.0), (0.5, 1.0, -0.75)])
+@pytest.mark.study
 def test_a_turned_profiler_is_found(points, origin_m, truth, turn_deg):
     found = mount_change(mounted(points, origin_m, turn_deg=turn_deg), origin_m, truth)
 

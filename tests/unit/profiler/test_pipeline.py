@@ -133,6 +133,7 @@ def test_a_recording_without_an_imu_is_said_to_lack_steps(frames, settings, tmp_
     assert position_rmse_m(found, truth) < 0.25
 
 
+@pytest.mark.study
 def test_a_2d_laser_silent_for_seconds_is_bridged_and_said(frames, settings, tmp_path, truth):
     folder = tmp_path / "frames"
     shutil.copytree(frames.folder, folder)

@@ -36,6 +36,7 @@ def pair_of(source, edge):
     return int(frames[edge.i]), int(frames[edge.j])
 
 
+@pytest.mark.study
 def test_the_points_of_a_node_are_those_of_its_turn(source, edge):
     data = pair_points(source, pair_of(source, edge), 0)
 

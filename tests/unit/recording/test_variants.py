@@ -28,7 +28,7 @@ def walk(tmp_path_factory):
     return record_walk(tmp_path_factory.mktemp("walk") / "office", seconds=2.0)
 
 
-@pytest.mark.parametrize("seed", all_but_first_are_studies(SEEDS, first=5))
+@pytest.mark.parametrize("seed", all_but_first_are_studies(SEEDS, first=3))
 def test_a_drawn_recording_gives_a_map_or_a_reason(walk, tmp_path, seed):
     outcome = run_variant(seed, walk, tmp_path)
 

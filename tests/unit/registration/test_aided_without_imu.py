@@ -43,6 +43,7 @@ def test_fixes_hold_a_body_that_its_scans_do_not(bare):
     assert worst_m < 0.1
 
 
+@pytest.mark.study
 def test_fixes_that_begin_later_are_in_another_frame_and_place_nothing(bare):
     lost, worst_m = followed(bare, strolling_fixes(FRAMES, first_s=3 * FRAME_NS * 1e-9 - 0.05))
 

@@ -80,6 +80,7 @@ def test_the_bias_of_a_gyroscope_is_subtracted(frames):
     ],
     ids=["an axis the wrong way", "a wrong unit", "a late clock"],
 )
+@pytest.mark.study
 def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
     imu, choice = chosen(Walk(frames, altered(frames, **fault)))
 

@@ -66,6 +66,7 @@ def test_a_wrong_clock_is_measured_and_named(walked, late_ns, words):
     assert f"{words} that of the LiDARs" in " ".join(said(found))
 
 
+@pytest.mark.study
 def test_without_the_estimate_a_wrong_scale_turns_the_walk(walked):
     fixed = with_tuning(SETTINGS, "odometry.gyro_gain_sd=0", "odometry.imu_clock_sd_s=0")
     _, right = walked()

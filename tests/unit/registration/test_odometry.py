@@ -239,6 +239,7 @@ def test_the_thesis_preset_uses_line_odometry(stroll):
 
 
 @pytest.mark.parametrize("mode", ["joined", "averaged"])
+@pytest.mark.study
 def test_lines_follow_a_slow_motion(mode):
     def slow(t_s):
         return SE3.exp(np.asarray(t_s)[:, None] * [0, 0, 0.05, 0.15, 0.05, 0.0])

@@ -174,6 +174,7 @@ def test_the_rig_is_audited_where_the_trajectory_is_wrong(tunnel, proven):
         assert run.audited
 
 
+@pytest.mark.study
 def test_recordings_that_are_kept_are_not_simulated_again(begun, tunnel, proven):
     written = begun[1]
 
@@ -181,6 +182,7 @@ def test_recordings_that_are_kept_are_not_simulated_again(begun, tunnel, proven)
     assert written_ns(proven) == written
 
 
+@pytest.mark.study
 def test_what_cannot_be_observed_is_not_silent(tunnel):
     for run in tunnel.values():
         assert run.outcome in {"right", "announced"}, run
@@ -189,6 +191,7 @@ def test_what_cannot_be_observed_is_not_silent(tunnel):
         assert any(text in reason for reason in run.reasons for text in said)
 
 
+@pytest.mark.study
 def test_a_run_is_measured_and_written_down(tunnel):
     assert set(tunnel) == {"none", "no-imu"}  # no GNSS in a tunnel
     # Measured 6 cm; without an IMU nothing carries the body along the axis, 4 m.

@@ -232,6 +232,7 @@ def test_recordings_of_one_walk_differ_in_their_degradations_only(recordings):
     assert "imu.csv" not in clock
 
 
+@pytest.mark.study
 def test_the_stamps_of_one_lidar_are_ahead_and_arrivals_are_not(recordings):
     def packets(name, port):
         return [

@@ -114,6 +114,7 @@ def test_an_independent_decoder_puts_the_points_onto_the_model(perfect):
         assert error.max() < 0.01
 
 
+@pytest.mark.study
 def test_our_readers_get_the_same_points_from_capture_bag_and_frames(perfect, tmp_path):
     settings = IngestSettings(min_range_m=0.0)
     for name in ("recording.pcap", "rosbag2"):
@@ -214,6 +215,7 @@ def test_position_packets_tell_the_time_and_outdoors_the_place(perfect):
     assert sentences[-1].startswith("$GPRMC,100004,V,")
 
 
+@pytest.mark.study
 def test_a_rig_with_clock_offsets_stamps_its_packets_with_them(tmp_path):
     rig = load_rig("single-vlp16")
     late = replace(rig, sensors=(replace(rig.sensors[0], time_offset_s=0.25),))

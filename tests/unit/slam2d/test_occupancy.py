@@ -168,6 +168,7 @@ def test_a_map_of_202_million_cells_is_written_in_full(large):
     assert sorted(zip(rows.tolist(), columns.tolist(), strict=True)) == [(2, 14_998), (13_494, 2)]
 
 
+@pytest.mark.study
 def test_pages_show_an_overview_of_a_large_map_with_the_same_places(large):
     shown = read_overview(large[0])
 

@@ -92,6 +92,7 @@ def seen_box(rng, *, T=None, noise_m=0.005):
     "shift_m", [(0.03, 0.0, 0.0), (0.0, -0.02, 0.0), (0.01, 0.0, -0.04)], ids=["x", "y", "xz"]
 )
 @pytest.mark.parametrize("method", ["plane", "point"])
+@pytest.mark.study
 def test_a_shifted_map_is_known_by_its_shift_though_its_signs_cancel(tmp_path, shift_m, method):
     p, normal = seen_box(np.random.default_rng(2), T=SE3(np.eye(3), np.array(shift_m)))
     tiles = write_map(tmp_path / "map", p, normal=normal.astype(np.float16))

@@ -220,6 +220,7 @@ def test_an_image_too_large_for_one_transformation_is_rejected(tiles, tmp_path):
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+@pytest.mark.study
 def test_a_sheet_is_the_same_file_each_time(tiles, tmp_path, ending):
     layout = lay_out(SliceWindow(0.0, -1.0, 3.0, 5.0))
     drawn = draw(tiles, CUT, layout.paper)

@@ -52,6 +52,7 @@ def test_columns_that_are_not_certain_are_asked_for_and_given(project, tmp_path,
     assert "first one is like a point number" in question and "--columns id,x,y,z" in question
 
 
+@pytest.mark.study
 def test_a_reference_in_millimeters_is_asked_for_its_unit(project, tmp_path, capsys):
     path = tmp_path / "a.xyz"
     path.write_text(wall("{x} {y} {z}", 0.001) + "\n9000 0 0\n")
