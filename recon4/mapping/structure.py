@@ -80,15 +80,13 @@ class StructureCells:
         Returns:
             None where no ground is found below the walk.
         """
-        key, total = self._sums
-        rows = np.flatnonzero((key >= 0) & (total[:, 0] >= STRUCTURE.least))
-        rows = rows[np.argsort(key[rows])]
-        cells, sums = indexed(key[rows]), total[rows].astype(np.float64)
-        self._sums, self._used = _empty_sums(STRUCTURE.first), 0
-        means = sums[:, 1:4] / sums[:, :1]
+        key, sums = self._taken()
+        cells, count = indexed(key), sums[:, 0].astype(np.float64)
+        means = sums[:, 1:4] / count[:, None]
         means += _numbers(cells.key) * [GROUND.cell_m, GROUND.cell_m, GROUND.height_m]
-        above = (sums[:, 4] / sums[:, 0]).astype(np.float32)
+        above = (sums[:, 4] / count).astype(np.float32)
         cubes, of_cell, of_cubes = _cubes(cells, means, sums)
+        del sums, count
         planes = _planes(cubes, of_cubes)
         steep = planes.normal.any(axis=1) & (np.abs(planes.normal[:, 2]) < STRUCTURE.steep)
         above[steep[of_cell]] = 0.0
@@ -109,6 +107,14 @@ class StructureCells:
             near,
             growth,
         )
+
+    def _taken(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+        """Keys in ascending order (C,) and sums (C, 6) of what was counted; the table is freed."""
+        (key, total), self._sums = self._sums, _empty_sums(STRUCTURE.first)
+        self._used = 0
+        rows = np.flatnonzero((key >= 0) & (total[:, 0] >= STRUCTURE.least))
+        rows = rows[np.argsort(key[rows])]
+        return key[rows], total[rows]
 
 
 def mark_structure(
@@ -206,7 +212,7 @@ def _mean_of(keys: NDArray[np.int64], values: Array) -> tuple[NDArray[np.int64],
 
 
 def _cubes(
-    cells: CellIndex, means: Array, sums: Array
+    cells: CellIndex, means: Array, sums: NDArray[np.float32]
 ) -> tuple[CellIndex, NDArray[np.intp], Array]:
     """Cubes of the cells, that of each, and of each the means x, y, z, and the parts that were
     seen from above and of echoes, (C, 5).
