@@ -23,7 +23,7 @@ from recon4.review.newest_approval import judging_folders
 from recon4.review.trusted_keys import STATE, record_own_key
 from recon4.store.atomic import make_folders
 from recon4.system.stopping import StopSignals
-from recon4_app import docs_pages, error_responses, metrics_routes, page_texts, server_routes
+from recon4_app import docs_pages, error_responses, metrics_routes, server_routes
 from recon4_app.access import admin_routes, key_routes
 from recon4_app.access.guests import routes as guest_routes
 from recon4_app.access.login import routes as login_routes
@@ -180,7 +180,7 @@ def _routes() -> list[BaseRoute]:
     for part in (review_routes, slice_routes, map_view_routes, rig_routes, storage_routes):
         router.include_router(part.router)
         router.include_router(part.page)
-    for one in (live_routes.router, live_routes.page, page_texts.page):
+    for one in (live_routes.router, live_routes.page):
         router.include_router(one)
     for one in (upload_routes.files, upload_routes.router):
         router.include_router(one)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Mapping
+from functools import cache
 from html import escape
 from pathlib import Path
 
@@ -11,7 +13,7 @@ from fastapi import Request
 from fastapi.responses import HTMLResponse
 from starlette.requests import HTTPConnection
 
-from recon4.locales.languages import best_of, languages
+from recon4.locales.languages import ENGLISH, ROOT, best_of, languages
 from recon4.locales.texts import texts
 from recon4_app.network.behind import prefix_of
 
@@ -27,8 +29,10 @@ HEAD_HERE = "<!-- shared/head.html -->"
 """Stands in each page where the common elements of the heads belong."""
 _ADDRESS = re.compile(r"""(?<=\s)((?:href|src|action)=")(?=/)""")
 """In front of each address of this server in a page; all of them begin with a slash."""
-_TEXTS = re.compile(r'<html [^>]*data-texts="([a-z-]+)"')
-"""File of texts of a page that is translated; the others are English in every language."""
+SHARED_TEXTS = "shared"
+"""File of the texts that all pages have in common."""
+_TEXTS = re.compile(r'<html [^>]*data-texts="([a-z -]+)"')
+"""Files of texts of a page that is translated; the others are English in every language."""
 _TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
 LANGUAGE_COOKIE = "recon4_language"
 """The choice on a page; `web/shared/texts.js` sets it."""
@@ -55,14 +59,12 @@ def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) ->
         fills: HTML for the places of the page: ``title`` for ``{title}``.
     """
     page = html_of(file, prefix_of(request.scope))
+    language = language_of(request) if _TEXTS.search(page) else ENGLISH
+    page = _in_language(page, language)
     for place, content in fills.items():
         page = page.replace(f"{{{place}}}", content)
-    named = _TEXTS.search(page)
-    if named is None:
-        return HTMLResponse(page)
-    language = language_of(request)
     headers = {"Content-Language": language, "Vary": "Accept-Language, Cookie"}
-    return HTMLResponse(_translated(page, named[1], language), headers=headers)
+    return HTMLResponse(page, headers=headers)
 
 
 def language_of(connection: HTTPConnection) -> str:
@@ -73,9 +75,34 @@ def language_of(connection: HTTPConnection) -> str:
     return best_of(connection.headers.get("accept-language", ""))
 
 
-def _translated(page: str, file: str, language: str) -> str:
-    """A page with its texts, ``{{ name }}``, in a language."""
-    say = texts(language, file)
+def text_files(page: str) -> tuple[str, ...]:
+    """Names of the files of texts of a page, from its HTML."""
+    named = _TEXTS.search(page)
+    return (SHARED_TEXTS, *(named[1].split() if named else ()))
+
+
+def _in_language(page: str, language: str) -> str:
+    """A page with its texts, ``{{ name }}``, and those that its scripts ask for."""
+    files = text_files(page)
+    say = texts(language, *files)
     attributes = f'lang="{language}" data-languages="{" ".join(languages())}"'
     page = page.replace('lang="en"', attributes, 1)
-    return _TEXT.sub(lambda found: escape(say(found[1])), page)
+    page = _TEXT.sub(lambda found: escape(say(found[1])), page)
+    return page.replace("</head>", f"{_texts_of_scripts(language, files)}</head>", 1)
+
+
+@cache
+def _texts_of_scripts(language: str, files: tuple[str, ...]) -> str:
+    """What `web/shared/texts.js` reads: the Fluent files of a language, then those of English."""
+    sources = [
+        (one, "".join(_source(one, file) for file in files))
+        for one in dict.fromkeys((language, ENGLISH))
+        if one == language or texts(language, *files).lacks_some()
+    ]
+    data = json.dumps(sources, ensure_ascii=False).replace("<", r"\u003c")
+    return f'<script type="application/json" id="texts">{data}</script>\n  '
+
+
+def _source(language: str, file: str) -> str:
+    path = ROOT / language / f"{file}.ftl"
+    return path.read_text("utf-8") + "\n" if path.is_file() else ""

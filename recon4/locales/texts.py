@@ -72,6 +72,11 @@ class Texts:
         yield from known
         yield from (one for one in self._messages if one not in known)
 
+    def lacks_some(self) -> bool:
+        """Whether some of these texts are only English."""
+        fallback = self._fallback
+        return fallback is not None and not fallback._messages.keys() <= self._messages.keys()
+
     def parts(self, name: str) -> dict[str, ast.Pattern]:
         """The parts of a message, in order; the text itself has the empty name."""
         entry = self._entry(name)

@@ -1,12 +1,9 @@
+import "./english.js?live";
+
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { readFileSync } from "node:fs";
-
 import { axisRows, next, steps } from "../../web/live/dance_captions.js";
-import { addTexts } from "../../web/shared/texts.js";
-
-addTexts("en", readFileSync("recon4/locales/en/live.ftl", "utf8"));
 
 const axes = (shown) => [
   ...["x", "y", "z"].map((axis) => ({ quantity: "rotation", axis, shown })),

@@ -1,13 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { addTexts, hasText, language, t } from "../../web/shared/texts.js";
+import { addTexts, decimal, hasText, language, t } from "../../web/shared/texts.js";
 
 addTexts(
   "de",
   `width = { DECIMAL($m, digits: 1) } m
 part = { PERCENT($ratio, digits: 1) }
 points = { COUNT($points) } Punkte
+off = { DECIMAL($m, digits: 1, sign: 1) } m, { DEGREES($rad, digits: 0) }, { LENGTH($short) }
 gaps = { $count ->
     [one] eine Lücke
    *[other] { $count } Lücken
@@ -21,6 +22,8 @@ test("numbers are written as the language does, with the digits that the text as
   assert.equal(t("width", { m: 12.34 }), "12,3 m");
   assert.equal(t("part", { ratio: 0.051 }), "5,1 %");
   assert.equal(t("points", { points: 1234567 }), "1\u202f234\u202f567 Punkte");
+  assert.equal(t("off", { m: 1.25, rad: Math.PI, short: 0.123 }), "+1,3 m, 180°, 12,3 cm");
+  assert.equal(decimal(12.34, 1), "12,3");
 });
 
 test("a text selects by number", () => {

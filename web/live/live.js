@@ -3,8 +3,9 @@
 import { keep, kept } from "../shared/address.js";
 import { readCurrentUser } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
-import { attempt, byId, html, render, say, targetOf, within } from "../shared/dom.js";
-import { chooseLanguage, language, languages, loadTexts, t } from "../shared/texts.js";
+import { attempt, byId, say, targetOf, within } from "../shared/dom.js";
+import "../shared/language_choice.js";
+import { t } from "../shared/texts.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
 import { Camera, moveByPointer } from "./camera.js";
 import { drawDance, showDance } from "./dance.js";
@@ -19,8 +20,6 @@ import { clock, coverageTexts, hint, isCapturing, stateText } from "./captions.j
  * @import {Area, Styles} from "./overlay.js"
  * @typedef {(...values: number[]) => number} Best
  */
-
-await loadTexts();
 
 const HEAD_M = 0.5;
 const MIN_FREE_PX = 80;
@@ -291,13 +290,6 @@ byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);
 byId("name-it").addEventListener("click", nameThePlace);
 byId("dance-it").addEventListener("click", () => showDance(scene.newest));
-render(
-  languages().map(
-    ([code, name]) => html`<option value=${code} ?selected=${code === language()}>${name}</option>`,
-  ),
-  byId("language"),
-);
-byId("language").addEventListener("change", (event) => chooseLanguage(targetOf(event).value));
 byId("ceiling").addEventListener("change", (event) => showAll(targetOf(event).checked));
 
 /** @type {Record<string, () => unknown>} */

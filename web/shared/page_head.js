@@ -13,6 +13,8 @@ import {
   slicesUrl,
 } from "./api.js";
 import { asError, html, nothing, render } from "./dom.js";
+import "./language_choice.js";
+import { t } from "./texts.js";
 
 /**
  * @import {Me} from "./http_types"
@@ -25,10 +27,10 @@ import { asError, html, nothing, render } from "./dom.js";
 
 /** @type {Array<[string, string]>} */
 const PAGES = [
-  ["", "Project"],
-  ["map/", "Map"],
-  ["review/", "Review"],
-  ["slices/", "Slices"],
+  ["", t("head-project")],
+  ["map/", t("head-map")],
+  ["review/", t("head-review")],
+  ["slices/", t("head-slices")],
 ];
 
 export class PageHead extends HTMLElement {
@@ -58,7 +60,7 @@ export class PageHead extends HTMLElement {
 
   /** Shows whether the server answers. */
   set linked(/** @type {boolean} */ yes) {
-    this.#draw({ problem: yes ? "" : "Connection lost, trying again" });
+    this.#draw({ problem: yes ? "" : t("head-lost") });
   }
 
   async #leave() {
@@ -79,7 +81,9 @@ export class PageHead extends HTMLElement {
         ${id ? [way(name, guest), tabs(id, page, guest ? guestPages(id) : pagesOf(id))] : nothing}
         <span class="link-state" role="status">${problem}</span>
         <span class="account"
-          >${me ? [guest ? nothing : links(me, live), this.#person(me)] : nothing}</span
+          >${me && !guest ? links(me, live) : nothing}<language-choice></language-choice>${
+            me ? this.#person(me) : nothing
+          }</span
         >`,
       this,
     );
@@ -90,10 +94,13 @@ export class PageHead extends HTMLElement {
     return html`${
         role === "guest"
           ? html`<span class="who"><b>${name}</b></span>`
-          : html`<a class="who" href=${at("/account")} aria-label="Account of ${name}, ${role}"
-              ><b>${name}</b><span class="role">${role}</span></a
+          : html`<a
+              class="who"
+              href=${at("/account")}
+              aria-label=${t("head-account", { name, role: t(`role-${role}`) })}
+              ><b>${name}</b><span class="role">${t(`role-${role}`)}</span></a
             >`
-      }<button type="button" @click=${() => this.#leave()}>Sign out</button>`;
+      }<button type="button" @click=${() => this.#leave()}>${t("head-sign-out")}</button>`;
   }
 }
 
@@ -110,8 +117,8 @@ function placeOf(/** @type {string} */ path) {
 const way = (name, guest) =>
   guest
     ? html`<span class="way"><b>${name}</b></span>`
-    : html`<nav aria-label="Where you are" class="way">
-        <a href=${at("/")}>Projects</a><span aria-hidden="true">/</span><b>${name}</b>
+    : html`<nav aria-label=${t("head-where")} class="way">
+        <a href=${at("/")}>${t("head-projects")}</a><span aria-hidden="true">/</span><b>${name}</b>
       </nav>`;
 
 /** @returns {Array<[string, string]>} */
@@ -120,9 +127,9 @@ const pagesOf = (/** @type {string} */ id) =>
 
 /** What a guest link shows. @returns {Array<[string, string]>} */
 const guestPages = (/** @type {string} */ id) => [
-  [mapUrl(id), "Map"],
-  [slicesUrl(id), "Slices"],
-  [reportUrl(id), "Report"],
+  [mapUrl(id), t("head-map")],
+  [slicesUrl(id), t("head-slices")],
+  [reportUrl(id), t("head-report")],
 ];
 
 /**
@@ -132,7 +139,7 @@ const guestPages = (/** @type {string} */ id) => [
  */
 function tabs(id, page, pages) {
   const here = projectUrl(id) + (page && `${page}/`);
-  return html`<nav aria-label="Pages of the project" class="tabs">
+  return html`<nav aria-label=${t("head-pages")} class="tabs">
     ${pages.map(
       ([href, text]) =>
         html`<a href=${href} aria-current=${href === here ? "page" : nothing}>${text}</a>`,
@@ -148,12 +155,12 @@ function tabs(id, page, pages) {
 function links({ may }, live) {
   /** @type {Array<[boolean, string, string]>} */
   const all = [
-    [live, liveUrl, "Live"],
-    [true, at("/rigs"), "Rigs"],
-    [may.includes("process"), at("/storage"), "Storage"],
-    [may.includes("process"), at("/api"), "API"],
-    [true, at("/docs/"), "Help"],
-    [may.includes("administer"), at("/people"), "People"],
+    [live, liveUrl, t("head-live")],
+    [true, at("/rigs"), t("head-rigs")],
+    [may.includes("process"), at("/storage"), t("head-storage")],
+    [may.includes("process"), at("/api"), t("head-api")],
+    [true, at("/docs/"), t("head-help")],
+    [may.includes("administer"), at("/people"), t("head-people")],
   ];
   return all.map(([shown, href, text]) => (shown ? html`<a href=${href}>${text}</a>` : nothing));
 }

@@ -1,7 +1,8 @@
 // Texts of a page in the language of the person, from the Fluent files that the server has, too.
-// The server says in <html> which language and file it is, and which languages there are.
+// The server puts them into the page, so they are there before any module asks: a constant of a
+// module may be a text. <html> says which language it is, and which there are.
 
-import { at, keepForServer } from "./address.js";
+import { keepForServer } from "./address.js";
 import { FluentBundle, FluentResource } from "./vendor/fluent/index.js";
 
 /** @typedef {Record<string, string | number>} Values what a text quotes */
@@ -10,6 +11,7 @@ import { FluentBundle, FluentResource } from "./vendor/fluent/index.js";
 const ENGLISH = "en";
 const COOKIE = "recon4_language";
 const NARROW = "\u202f";
+const DEGREES_PER_RAD = 180 / Math.PI;
 
 /** The bundles of this page: its language first, then English. */
 const state = { bundles: /** @type {FluentBundle[]} */ ([]), language: ENGLISH };
@@ -23,21 +25,36 @@ const localized = (/** @type {string} */ text, /** @type {string} */ language) =
   );
 
 /**
+ * A number with a sign if one is asked for.
+ * @param {number | string} value
+ * @param {{digits?: number, sign?: number}} how
+ */
+const fixed = (value, { digits = 0, sign = 0 }) => {
+  const text = Number(value).toFixed(digits);
+  return sign && !text.startsWith("-") ? `+${text}` : text;
+};
+
+/**
  * What texts call for numbers; `recon4/locales/numbers.py` has the same for the server.
  * @param {string} language
  * @returns {Record<string, TextFunction>}
  */
 const functions = (language) => ({
-  DECIMAL: ([value], { digits }) => localized(Number(value).toFixed(digits), language),
-  PERCENT: ([ratio], { digits }) =>
-    `${localized((100 * Number(ratio)).toFixed(digits), language)} %`,
+  DECIMAL: ([value], how) => localized(fixed(value, how), language),
+  PERCENT: ([ratio], how) => `${localized(fixed(100 * Number(ratio), how), language)} %`,
+  DEGREES: ([rad], how) => `${localized(fixed(DEGREES_PER_RAD * Number(rad), how), language)}°`,
+  LENGTH: ([m]) =>
+    localized(
+      m < 1 ? `${fixed(100 * m, { digits: 1 })} cm` : `${fixed(m, { digits: 2 })} m`,
+      language,
+    ),
   COUNT: ([number]) => String(Math.round(number)).replace(/\B(?=(\d{3})+$)/g, NARROW),
 });
 
 /**
  * Takes the texts of a language; those that were added before come first.
  * @param {string} language
- * @param {string} source a Fluent file
+ * @param {string} source Fluent messages
  */
 export function addTexts(language, source) {
   if (!state.bundles.length) state.language = language;
@@ -49,18 +66,9 @@ export function addTexts(language, source) {
   state.bundles.push(bundle);
 }
 
-/** Reads the texts of this page; to be awaited before the first text is shown. */
-export async function loadTexts() {
-  const { lang, dataset } = document.documentElement;
-  const languages = [...new Set([lang || ENGLISH, ENGLISH])];
-  const sources = await Promise.all(
-    languages.map(async (one) => {
-      const response = await fetch(at(`/texts/${one}/${dataset.texts}.ftl`));
-      return response.ok ? response.text() : "";
-    }),
-  );
-  languages.forEach((one, k) => addTexts(one, sources[k] ?? ""));
-}
+/** @type {Array<[string, string]>} */
+const sources = JSON.parse(globalThis.document?.getElementById("texts")?.textContent ?? "[]");
+for (const [language, source] of sources) addTexts(language, source);
 
 /**
  * The text of a message with the values that it quotes.
@@ -79,6 +87,10 @@ export function t(id, values = {}) {
 export const hasText = (/** @type {string} */ id) =>
   state.bundles.some((bundle) => bundle.hasMessage(id));
 
+/** A number as the language writes it: decimal(12.34, 1) -> "12,3". */
+export const decimal = (/** @type {number} */ value, digits = 0) =>
+  localized(value.toFixed(digits), state.language);
+
 /** The language of this page, for numbers and times. */
 export const language = () => state.language;
 
@@ -88,7 +100,7 @@ export const languages = () =>
     .split(" ")
     .map((code) => [code, new Intl.DisplayNames([code], { type: "language" }).of(code) ?? code]);
 
-/** Shows this page, and the others that are translated, in another language. */
+/** Shows this page, and all others, in another language. */
 export function chooseLanguage(/** @type {string} */ code) {
   keepForServer(COOKIE, code);
   location.reload();

@@ -26,10 +26,6 @@ coverage = Abdeckung
 well = Gut
 poorly = Schlecht
 next-gap-key = Die nächste nicht gesehene Stelle zeigen (N)
-cancel = Abbrechen
-close = Schließen
-name = Name
-language = Sprache
 
 ## Dialoge
 

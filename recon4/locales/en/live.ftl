@@ -26,10 +26,6 @@ coverage = Coverage
 well = Well
 poorly = Poorly
 next-gap-key = Show the next place not seen (N)
-cancel = Cancel
-close = Close
-name = Name
-language = Language
 
 ## Dialogs
 

@@ -1,6 +1,8 @@
 """A page is in the language that was chosen, else in the one that the browser asks for."""
 
+import json
 import re
+from collections import Counter
 
 import pytest
 from starlette.requests import HTTPConnection
@@ -8,13 +10,35 @@ from starlette.requests import HTTPConnection
 from recon4.locales.languages import ENGLISH, ROOT, languages
 from recon4.locales.texts import messages_of, texts
 from recon4.settings.presets import PRESET_TEXTS
-from recon4_app.pages import WEB, language_of, page_response
+from recon4_app import pages
+from recon4_app.pages import WEB, html_of, language_of, page_response, text_files
 
-TRANSLATED = [
+PAGES = [
     path.relative_to(WEB).as_posix()
     for path in sorted(WEB.rglob("*.html"))
-    if "data-texts=" in path.read_text("utf-8")
+    if path.name != "head.html"
 ]
+TRANSLATED = [file for file in PAGES if "data-texts=" in html_of(file)]
+ASKED = re.compile(r'(?<![\w.])t\(\s*"([a-z0-9-]+)"')
+IMPORTED = re.compile(r'^(?:import|export)\b[^;]*?"(\.{1,2}/[^"]+\.js)";', re.MULTILINE)
+
+
+def scripts_of(page):
+    """The modules of a page with all that they import."""
+    waiting = [WEB / one for one in re.findall(r'src="/web/([^"]+\.js)"', page)]
+    found = []
+    while waiting:
+        path = waiting.pop().resolve()
+        if path not in found and "vendor" not in path.parts:
+            found.append(path)
+            waiting += [path.parent / one for one in IMPORTED.findall(path.read_text("utf-8"))]
+    return found
+
+
+def texts_of(page):
+    """The texts for the scripts of a page, by language."""
+    found = re.search(r'<script type="application/json" id="texts">(.*?)</script>', page, re.DOTALL)
+    return dict(json.loads(found[1]))
 
 
 def asking(accept="", cookie=""):
@@ -41,11 +65,44 @@ def test_a_page_has_all_of_its_texts_in_each_language(file, language):
     assert "Cookie" in sent.headers["vary"]
 
 
-@pytest.mark.parametrize("file", ["rigs/rigs.html", "storage/storage.html"])
+@pytest.mark.parametrize("file", ["shared/api.html"])
 def test_a_page_without_translation_is_english_for_everybody(file):
     sent = page_response(file, asking("de"))
 
-    assert '<html lang="en">' in sent.body.decode() and "content-language" not in sent.headers
+    assert '<html lang="en"' in sent.body.decode()
+    assert sent.headers["content-language"] == "en"
+    assert texts_of(sent.body.decode()).keys() == {"en"}
+
+
+def test_scripts_find_their_texts_in_the_page_and_english_ones_only_if_some_lack():
+    page = page_response("live/live.html", asking("de")).body.decode()
+
+    assert texts_of(page).keys() == {"de"}
+    assert "Angemeldet als { $name }" in texts_of(page)["de"]
+    assert "head-sign-out = Abmelden" in texts_of(page)["de"]
+
+
+def test_texts_cannot_end_the_element_they_are_in(monkeypatch, tmp_path):
+    monkeypatch.setattr(pages, "ROOT", tmp_path)
+    (tmp_path / "en").mkdir()
+    (tmp_path / "en" / "shared.ftl").write_text("a = </script><!-- x\n")
+    pages._texts_of_scripts.cache_clear()
+
+    page = page_response("shared/api.html", asking()).body.decode()
+    pages._texts_of_scripts.cache_clear()
+
+    assert texts_of(page) == {"en": "a = </script><!-- x\n\n"}
+
+
+def test_no_page_has_a_name_twice():
+    files = {text_files(html_of(file)) for file in TRANSLATED}
+    names = {
+        file: list(messages_of(ROOT / ENGLISH / f"{file}.ftl")) for one in files for file in one
+    }
+
+    for one in files:
+        counted = Counter(name for file in one for name in names[file])
+        assert [name for name, n in counted.items() if n > 1] == [], one
 
 
 def test_the_phone_names_presets_as_the_shell_does():
@@ -54,9 +111,12 @@ def test_the_phone_names_presets_as_the_shell_does():
     assert {name: say(f"preset-{name}") for name in PRESET_TEXTS} == PRESET_TEXTS
 
 
-def test_scripts_ask_only_for_texts_of_their_page():
-    scripts = "".join(path.read_text("utf-8") for path in (WEB / "live").glob("*.js"))
-    asked = set(re.findall(r'\bt\(\s*"([a-z0-9-]+)"', scripts))
+@pytest.mark.parametrize("file", PAGES)
+def test_scripts_ask_only_for_texts_of_their_page(file):
+    page = html_of(file)
+    asked = {name: path for path in scripts_of(page) for name in ASKED.findall(path.read_text())}
+    known = {
+        name for one in text_files(page) for name in messages_of(ROOT / ENGLISH / f"{one}.ftl")
+    }
 
-    assert len(asked) > 50
-    assert asked - messages_of(ROOT / ENGLISH / "live.ftl").keys() == set()
+    assert {name: path.name for name, path in asked.items() if name not in known} == {}
