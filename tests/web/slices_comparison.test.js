@@ -1,3 +1,5 @@
+import "./english.js";
+
 // Bars of the histogram and frames of picked points; run by .ci/web.
 
 import assert from "node:assert/strict";

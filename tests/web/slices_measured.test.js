@@ -1,3 +1,5 @@
+import "./english.js";
+
 // Measurements of a point in several directions are combined; run by .ci/web.
 
 import assert from "node:assert/strict";

@@ -1,5 +1,7 @@
 // The approval of a map in one line, the same on every page. No DOM, no network.
 
+import { t, wordOf } from "./texts.js";
+
 /** @import {ApprovalState} from "./http_types" */
 
 /** @type {Record<string, [string, string]>} */
@@ -14,11 +16,38 @@ const LEVELS = {
 
 /** Mark, line and CSS class; nothing is marked as approved while its bytes are being compared. */
 export function approvalLine(
-  /** @type {Pick<ApprovalState, "kind" | "text" | "checking">} */ { kind, text, checking },
+  /** @type {Pick<ApprovalState, "kind" | "text" | "checking"> & Partial<ApprovalState>} */ state,
 ) {
+  const { kind, checking } = state;
   const [mark, level] = LEVELS[kind];
+  const text = textOf(state);
   if (!checking) return { text: `${mark} ${text}`, level };
-  return { text: `◷ ${text}; its bytes are being compared with the signature`, level: "" };
+  return { text: `◷ ${t("approval-checking", { text })}`, level: "" };
+}
+
+/** The line of the server in the language of the page. */
+function textOf(
+  /** @type {Pick<ApprovalState, "text"> & Partial<ApprovalState>} */ {
+    text,
+    version,
+    who = "",
+    time = "",
+  },
+) {
+  const day = time.slice(0, 10);
+  const signed = `Approved v${version} · ${who} · ${day}`;
+  if (!who || !text.startsWith(signed)) return phrase(text);
+  const line = t("approval-signed", { version: String(version), who, day });
+  return line + phrase(text.slice(signed.length));
+}
+
+/** A part of the line of the server, which may name a version or a key. */
+function phrase(/** @type {string} */ text) {
+  const version = text.match(/(?<=version )\d+/)?.[0] ?? "";
+  const key = text.match(/(?<=unknown key )\S+(?=:)/)?.[0] ?? "";
+  const named = text.replace(version, "").replace(key, "");
+  const words = wordOf("approval", named, { version, key });
+  return words === named ? text : words;
 }
 
 /** Whether the files carry an approval that does not count. */
@@ -31,4 +60,4 @@ export const inSpiteOf = (
 ) =>
   !verdict || verdict === "good"
     ? ""
-    : `, in spite of the verdict “${verdict}”${why ? `: “${why}”` : ""}`;
+    : t("in-spite-of", { verdict: wordOf("usability", verdict) }) + (why ? `: “${why}”` : "");

@@ -9,6 +9,7 @@ import {
 } from "./api.js";
 import { attempt, html, messagePlace, nothing, render, targetOf, within } from "./dom.js";
 import { count, when } from "./format.js";
+import { t, wordOf } from "./texts.js";
 
 /**
  * @import {CorrectionCount, CorrectionSpec, CorrectionView, CorrectionsView} from "./http_types"
@@ -22,6 +23,7 @@ import { count, when } from "./format.js";
 
 const DELIVERED = ""; // all points that the map delivers
 const EVERY = "*"; // and those that it leaves out
+const classText = (/** @type {string} */ title) => wordOf("class", title);
 
 export class ClassCorrections extends HTMLElement {
   #given = /** @type {Given | null} */ (null);
@@ -75,7 +77,7 @@ export class ClassCorrections extends HTMLElement {
     if (!given?.volume) return;
     const spec = this.#spec({ ...given, volume: given.volume });
     const asked = this.#written + JSON.stringify(spec);
-    this.#work("Counting…", async () => {
+    this.#work(t("correct-counting"), async () => {
       const counted = await countCorrection(given.project, spec);
       const now = this.#given?.volume && this.#spec({ ...this.#given, volume: this.#given.volume });
       if (this.#written + JSON.stringify(now) === asked) this.#counted = counted;
@@ -87,7 +89,7 @@ export class ClassCorrections extends HTMLElement {
     if (!given?.volume || !counted) return;
     const spec = this.#spec({ ...given, volume: given.volume });
     const { why } = this.#choice;
-    this.#work("Noting it…", async () => {
+    this.#work(t("correct-noting"), async () => {
       this.#show(await correctClasses(given.project, { ...spec, why, seen_seq: counted.seq }));
       this.#remade = false;
       this.#choice = { ...this.#choice, why: "" };
@@ -98,7 +100,7 @@ export class ClassCorrections extends HTMLElement {
   #undo(/** @type {string} */ id) {
     const given = this.#given;
     if (!given) return;
-    this.#work("Undoing…", async () => {
+    this.#work(t("correct-undoing"), async () => {
       this.#show(await withdrawCorrection(given.project, id));
       this.#remade = false;
     });
@@ -107,7 +109,7 @@ export class ClassCorrections extends HTMLElement {
   #remake() {
     const given = this.#given;
     if (!given) return;
-    this.#work("Starting…", async () => {
+    this.#work(t("correct-starting"), async () => {
       await remakeMap(given.project);
       this.#remade = true;
     });
@@ -132,25 +134,25 @@ export class ClassCorrections extends HTMLElement {
   }
 
   #form(/** @type {Given} */ { volume, hint }, /** @type {CorrectionsView} */ view) {
-    if (!view.may_correct) return html`<p class="quiet">Reviewers correct classes.</p>`;
+    if (!view.may_correct) return html`<p class="quiet">${t("correct-who")}</p>`;
     const { to, only, why } = this.#choice;
     const idle = this.#busy === "";
     const able = this.#counted !== null && this.#counted.refused === "";
     const of = /** @type {Array<[string, string]>} */ ([
-      [DELIVERED, "all points of the map"],
-      [EVERY, "all points, also those left out"],
-      ...view.classes.map((title) => [title, `only ${title}`]),
+      [DELIVERED, t("correct-delivered")],
+      [EVERY, t("correct-every")],
+      ...view.classes.map((title) => [title, t("correct-only", { class: classText(title) })]),
     ]);
     return html`<div class="correction-fields">
         ${select(
-          "New class",
-          view.classes.map((title) => [title, title]),
+          t("correct-new"),
+          view.classes.map((title) => [title, classText(title)]),
           to,
           (value) => this.#choose({ to: value }),
         )}
-        ${select("Of", of, only, (value) => this.#choose({ only: value }))}
+        ${select(t("correct-of"), of, only, (value) => this.#choose({ only: value }))}
         <label
-          ><span>Why</span
+          ><span>${t("correct-why")}</span
           ><input
             maxlength="500"
             .value=${why}
@@ -160,10 +162,10 @@ export class ClassCorrections extends HTMLElement {
       ${volume ? nothing : html`<p class="quiet">${hint}</p>`}
       <div class="buttons">
         <button type="button" ?disabled=${!volume || !idle} @click=${() => this.#count()}>
-          Count the points
+          ${t("correct-count")}
         </button>
         <button type="button" ?disabled=${!able || !idle} @click=${() => this.#apply()}>
-          Apply
+          ${t("correct-apply")}
         </button>
       </div>`;
   }
@@ -172,10 +174,13 @@ export class ClassCorrections extends HTMLElement {
   #countText() {
     const counted = this.#counted;
     if (!counted) return "";
-    if (counted.refused) return `Nothing to change: ${counted.refused}.`;
+    if (counted.refused) return t("correct-nothing", { why: counted.refused });
     const now = Object.entries(counted.now).sort(([, a], [, b]) => b - a);
-    const parts = now.map(([title, n]) => (now.length > 1 ? `${title} ${count(n)}` : title));
-    return `${count(counted.points)} points, now: ${parts.join(", ")}`;
+    const parts = now.map(([title, n]) => {
+      const word = classText(title);
+      return now.length > 1 ? `${word} ${count(n)}` : word;
+    });
+    return t("correct-counted", { points: counted.points, now: parts.join(", ") });
   }
 
   #list(/** @type {CorrectionsView} */ view) {
@@ -183,26 +188,32 @@ export class ClassCorrections extends HTMLElement {
     const waiting = corrections.filter((one) => !one.in_map).length;
     const changed = waiting + withdrawn.length;
     const texts = [
-      waiting ? `${waiting} not in the map yet` : "",
-      withdrawn.length ? `${withdrawn.length} still in the map, but undone or no longer first` : "",
+      waiting ? t("correct-waiting", { count: String(waiting) }) : "",
+      withdrawn.length ? t("correct-withdrawn", { count: String(withdrawn.length) }) : "",
     ].filter(Boolean);
     const row = (/** @type {CorrectionView} */ one) =>
       html`<li>
         <span
-          ><b>${count(one.points)} points → ${one.to}</b>${
-            one.only.length === 1 ? html` (only ${one.only[0]})` : nothing
-          }${one.in_map ? nothing : html` <em>not in the map yet</em>`}<small
+          ><b>${t("correct-row", { points: one.points, class: classText(one.to) })}</b>${
+            one.only.length === 1
+              ? html` (${t("correct-only", { class: classText(one.only[0]) })})`
+              : nothing
+          }${one.in_map ? nothing : html` <em>${t("correct-not-yet")}</em>`}<small
             >${one.who}, ${when(one.time)}${one.why ? `: ${one.why}` : ""}</small
           ></span
         >${
           may_correct
             ? html`<button
                 type="button"
-                aria-label="Undo the correction to ${one.to} by ${one.who}, ${when(one.time)}"
+                aria-label=${t("correct-undo-of", {
+                  class: classText(one.to),
+                  who: one.who,
+                  when: when(one.time),
+                })}
                 ?disabled=${this.#busy !== ""}
                 @click=${() => this.#undo(one.id)}
               >
-                Undo
+                ${t("correct-undo")}
               </button>`
             : nothing
         }
@@ -216,7 +227,7 @@ export class ClassCorrections extends HTMLElement {
     }
     ${
       this.#remade
-        ? html`<p>The map is made again: <a href="../">its progress</a>.</p>`
+        ? html`<p>${t("correct-remade")} <a href="../">${t("correct-progress")}</a>.</p>`
         : changed
           ? html`<p>${texts.join("; ")}.</p>
               ${
@@ -227,7 +238,7 @@ export class ClassCorrections extends HTMLElement {
                         ?disabled=${this.#busy !== ""}
                         @click=${() => this.#remake()}
                       >
-                        Make the map again
+                        ${t("correct-remake")}
                       </button>
                     </div>`
                   : nothing

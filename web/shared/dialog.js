@@ -1,6 +1,7 @@
 // Dialogs that are made when they are needed, and are gone when they close.
 
 import { html, render, targetOf } from "./dom.js";
+import { t } from "./texts.js";
 
 /** @import {Content} from "./dom.js" */
 
@@ -28,7 +29,7 @@ export const dialogOf = (/** @type {Event} */ event) =>
   /** @type {HTMLDialogElement} */ (targetOf(event).closest("dialog"));
 
 /** A button that closes its dialog. */
-export const closeButton = (text = "Cancel") =>
+export const closeButton = (text = t("cancel")) =>
   html`<button type="button" @click=${(/** @type {Event} */ event) => dialogOf(event).close()}>
     ${text}
   </button>`;

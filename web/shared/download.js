@@ -2,6 +2,7 @@
 
 import { attempt } from "./dom.js";
 import { canBeRead, readBytes } from "./http.js";
+import { t } from "./texts.js";
 
 const NAME_AGAIN_MS = 60_000; // until then a browser has begun to save
 
@@ -47,7 +48,7 @@ const clicked = (places, download) => async (/** @type {MouseEvent} */ event) =>
   const { href } = link; // the link may change while the file is made
   const { message, status } = places();
   link.ariaBusy = "true";
-  status.textContent = `${link.textContent}: the file is being made…`;
+  status.textContent = t("file-being-made", { name: link.textContent ?? "" });
   await attempt(message, () => download(href));
   link.ariaBusy = status.textContent = "";
 };

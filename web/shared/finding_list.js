@@ -27,6 +27,7 @@ import {
   verdictLists,
 } from "./verdict.js";
 import { walkAxis } from "./walk_axis.js";
+import { t } from "./texts.js";
 
 /**
  * @import {Acknowledgment, AcknowledgmentsView} from "./http_types"
@@ -117,8 +118,8 @@ export class FindingList extends HTMLElement {
 
   /** Choices of a level and a kind, with their numbers; they hide the other findings. */
   #filters() {
-    const level = this.#choice("level", "Level of findings", levelText);
-    const kind = this.#choice("kind", "Kind of findings", (value) => value);
+    const level = this.#choice("level", t("finding-levels"), levelText);
+    const kind = this.#choice("kind", t("finding-kinds"), (value) => value);
     return html`<div class="finding-filter">${level}${kind}</div>`;
   }
 
@@ -139,7 +140,7 @@ export class FindingList extends HTMLElement {
     return html`<label
       ><span>${caption}</span
       ><select @change=${change}>
-        <option value="">All (${findings.length})</option>
+        <option value="">${t("finding-all", { count: String(findings.length) })}</option>
         ${values.map(
           (value) => html`<option value=${value}>${words(value)} (${count(value)})</option>`,
         )}
@@ -167,14 +168,14 @@ export class FindingList extends HTMLElement {
       within(details, "summary").focus();
     };
     return html`<details class="acknowledge">
-      <summary>Acknowledge…</summary>
+      <summary>${t("acknowledge-open")}</summary>
       <form @submit=${submit}>
         <label
-          ><span>Note (the verdict does not change)</span
+          ><span>${t("acknowledge-note")}</span
           ><input name="why" maxlength="500" required autocomplete="off"
         /></label>
         ${messagePlace()}
-        <button>Acknowledge</button>
+        <button>${t("acknowledge")}</button>
       </form>
     </details>`;
   }
@@ -183,12 +184,12 @@ export class FindingList extends HTMLElement {
 const levelText = (/** @type {string} */ level) => LEVELS[level] ?? level;
 
 const noteLine = (/** @type {Acknowledgment} */ { who, time, why }) =>
-  html`<p class="acknowledged">✓ Acknowledged by ${who}, ${when(time)}: <q>${why}</q></p>`;
+  html`<p class="acknowledged">${t("acknowledged", { who, when: when(time) })} <q>${why}</q></p>`;
 
 /** Notes about findings that the map does not have any more. */
 const outdatedNotes = (/** @type {Acknowledgment[]} */ notes) =>
   html`<section class="outdated">
-    <h3>Outdated acknowledgments: this map has no such finding</h3>
+    <h3>${t("acknowledged-outdated")}</h3>
     <ul>
       ${notes.map(
         (note) =>
@@ -237,7 +238,7 @@ function placeLinks(finding, guest) {
       href=${mapPlaceUrl(idHere(), stretch)}
       target=${beside}
       rel=${rel}
-      >Show in the map: ${stretchText(finding)}</a
+      >${t("finding-in-map", { stretch: stretchText(finding) })}</a
     >
     ${
       guest
@@ -247,8 +248,8 @@ function placeLinks(finding, guest) {
             href=${stretchUrl(idHere(), stretch)}
             target=${beside}
             rel=${rel}
-            aria-label="In the graph: ${stretchText(finding)}"
-            >In the graph</a
+            aria-label=${t("finding-in-graph-of", { stretch: stretchText(finding) })}
+            >${t("finding-in-graph")}</a
           >`
     }`;
 }
@@ -256,7 +257,7 @@ function placeLinks(finding, guest) {
 /** On the page of slices a link to the slice at the place of a finding. */
 const sliceLink = (/** @type {MapFinding} */ finding) =>
   finding.place_m && location.pathname === slicesUrl(idHere())
-    ? html`<a class="button stretch" href="?${sliceOf(finding)}">Cut here</a>`
+    ? html`<a class="button stretch" href="?${sliceOf(finding)}">${t("finding-cut")}</a>`
     : nothing;
 
 const sentences = (/** @type {MapFacts} */ facts) =>

@@ -12,6 +12,8 @@
  *   "done" | "unit" | "rate_per_s" | "eta_s">} Progress
  */
 
+import { decimal, locale, t, wordOf } from "./texts.js";
+
 const NARROW = "\u202f";
 
 export const count = (/** @type {number} */ n) =>
@@ -23,11 +25,11 @@ export function bytes(/** @type {number} */ n) {
   const units = ["B", "kB", "MB", "GB", "TB"];
   let k = 0;
   while (n >= 1000 && k < units.length - 1) [n, k] = [n / 1000, k + 1];
-  return `${k && n < 10 ? n.toFixed(1) : Math.round(n)} ${units[k]}`;
+  return `${k && n < 10 ? decimal(n, 1) : Math.round(n)} ${units[k]}`;
 }
 
 export function seconds(/** @type {number} */ s) {
-  if (s < 9.95) return `${s.toFixed(1)} s`;
+  if (s < 9.95) return `${decimal(s, 1)} s`;
   const whole = Math.round(s);
   if (whole < 60) return `${whole} s`;
   if (whole < 3600) return `${Math.floor(whole / 60)} min ${whole % 60} s`;
@@ -36,21 +38,21 @@ export function seconds(/** @type {number} */ s) {
 }
 
 export const when = (/** @type {string} */ iso) =>
-  new Date(iso).toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" });
+  new Date(iso).toLocaleString(locale(), { dateStyle: "medium", timeStyle: "short" });
 
 /** @type {Record<StateName, {mark: string, word: string}>} */
 export const STATES = {
-  queued: { mark: "◷", word: "Waiting" },
-  running: { mark: "▶", word: "Running" },
-  succeeded: { mark: "✓", word: "Finished" },
-  failed: { mark: "✕", word: "Failed" },
-  cancelled: { mark: "■", word: "Cancelled" },
-  finished: { mark: "✓", word: "Finished" },
-  check: { mark: "▲", word: "Check this map" },
-  unusable: { mark: "✕", word: "Do not use this map" },
-  sound: { mark: "✓", word: "No problem found in this map" },
-  unjudged: { mark: "▲", word: "No verdict on this map" },
-  unfinished: { mark: "◌", word: "Not finished" },
+  queued: { mark: "◷", word: t("state-queued") },
+  running: { mark: "▶", word: t("state-running") },
+  succeeded: { mark: "✓", word: t("state-succeeded") },
+  failed: { mark: "✕", word: t("state-failed") },
+  cancelled: { mark: "■", word: t("state-cancelled") },
+  finished: { mark: "✓", word: t("state-finished") },
+  check: { mark: "▲", word: t("state-check") },
+  unusable: { mark: "✕", word: t("state-unusable") },
+  sound: { mark: "✓", word: t("state-sound") },
+  unjudged: { mark: "▲", word: t("state-unjudged") },
+  unfinished: { mark: "◌", word: t("state-unfinished") },
 };
 
 /** Verdict -> state of a finished project. */
@@ -71,8 +73,8 @@ export function stateOf(project, view) {
 }
 
 /** A remaining time; near its end an estimate of parts of a second would promise too much. */
-const timeLeft = (/** @type {number} */ s, about = "") =>
-  s < 1 ? "nearly done" : `${about}${seconds(s)} left`;
+const timeLeft = (/** @type {number} */ s, text = "time-left") =>
+  s < 1 ? t("time-left-none") : t(text, { time: seconds(s) });
 
 /** Progress of the whole run and its remaining time. */
 export function runProgressText(
@@ -82,9 +84,10 @@ export function runProgressText(
     status,
   },
 ) {
-  if (!status.what) return "Starting";
-  const left = run_eta_s === null ? [] : [timeLeft(run_eta_s, "about ")];
-  return [`${Math.round(run_progress * 100)} % of the run`, ...left].join(" · ");
+  if (!status.what) return t("starting");
+  const left = run_eta_s === null ? [] : [timeLeft(run_eta_s, "time-left-about")];
+  const part = String(Math.round(run_progress * 100));
+  return [t("run-part", { part }), ...left].join(" · ");
 }
 
 /** Progress of the current stage in one line: fraction, rate, remaining time. */
@@ -92,16 +95,19 @@ export function progressText(
   /** @type {Pick<JobView, "fraction"> & {status: Progress}} */ { status, fraction },
 ) {
   const parts = [
-    fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`,
+    fraction === null
+      ? `${count(status.done)} ${wordOf("unit", status.unit)}`
+      : `${Math.round(fraction * 100)} %`,
   ];
   if (status.rate_per_s > 0) {
     const rate = status.rate_per_s;
-    parts.push(`${rate < 10 ? rate.toFixed(1) : count(rate)} ${status.unit}/s`);
+    const rounded = rate < 10 ? decimal(rate, 1) : count(rate);
+    parts.push(`${rounded} ${wordOf("unit", status.unit)}/s`);
   }
   if (status.eta_s !== null) parts.push(timeLeft(status.eta_s));
-  return `This part ${parts.join(" · ")}`;
+  return t("this-part", { progress: parts.join(" · ") });
 }
 
 /** A part of a whole in percent, where nothing would look like none at all. */
 export const shareText = (/** @type {number} */ percent) =>
-  percent < 0.1 ? "below 0.1 %" : `${percent.toFixed(1)} %`;
+  percent < 0.1 ? t("share-tiny", { least: decimal(0.1, 1) }) : `${decimal(percent, 1)} %`;

@@ -1,10 +1,11 @@
 // Requests to the server: a typed one for each operation, and tus for the bytes of uploads.
 
 import { at, pathHere } from "./address.js";
+import { t } from "./texts.js";
 
 /** @import {Me} from "./http_types" */
 
-export const NO_RESPONSE = "The server does not answer. Is it still running?";
+export const NO_RESPONSE = t("no-response");
 
 export class ApiError extends Error {
   /**
@@ -150,7 +151,7 @@ export async function readBytes(/** @type {string} */ url) {
 /** The error of a response that is JSON, or the text of a proxy in between. */
 async function refusalOf(/** @type {Response} */ response) {
   const text = await response.text();
-  let problem = { detail: text || `The server returned ${response.status}` };
+  let problem = { detail: text || t("bad-response", { status: String(response.status) }) };
   try {
     problem = JSON.parse(text);
   } catch {

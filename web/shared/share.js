@@ -14,6 +14,7 @@ import {
   within,
 } from "./dom.js";
 import { when } from "./format.js";
+import { t } from "./texts.js";
 
 /** @import {GuestLink} from "./http_types" */
 
@@ -33,7 +34,7 @@ export async function openShare(id, query = () => "") {
     copied: false,
     problem: /** @type {unknown} */ (null),
   };
-  const dialog = openDialog("Share with a guest", html`<div></div>`);
+  const dialog = openDialog(t("share-title"), html`<div></div>`);
   dialog.classList.add("share");
   const place = within(dialog, "div");
 
@@ -76,19 +77,15 @@ export async function openShare(id, query = () => "") {
   function draw() {
     const { links, login, problem } = state;
     render(
-      html`<p class="quiet">
-          Anyone who has a link sees the map, the slices and the report of this project; no other
-          project, no jobs, no people, no notes. Nothing can be changed or downloaded.
-        </p>
-        ${login ? form() : html`<p>This server has no login, so it has no guests.</p>`}
-        ${state.made ? made() : nothing}
+      html`<p class="quiet">${t("share-what")}</p>
+        ${login ? form() : html`<p>${t("share-no-login")}</p>`} ${state.made ? made() : nothing}
         <p class="error" role="alert">${problem ? problemText(problem) : nothing}</p>
-        <h3>Links (${links?.filter(({ works }) => works).length ?? "…"} open)</h3>
+        <h3>${t("share-links", { open: openText(links) })}</h3>
         <ul class="links">
           ${repeat(links ?? [], (link) => link.id, row)}
         </ul>
-        ${links?.length === 0 ? html`<p class="quiet">None yet</p>` : nothing}
-        <div class="buttons">${closeButton("Close")}</div>`,
+        ${links?.length === 0 ? html`<p class="quiet">${t("share-none")}</p>` : nothing}
+        <div class="buttons">${closeButton(t("close"))}</div>`,
       place,
     );
   }
@@ -96,30 +93,32 @@ export async function openShare(id, query = () => "") {
   const form = () =>
     html`<form @submit=${make}>
       <label
-        ><span>For whom</span
-        ><input name="label" maxlength="64" required autocomplete="off" placeholder="Client"
+        ><span>${t("share-for")}</span
+        ><input
+          name="label"
+          maxlength="64"
+          required
+          autocomplete="off"
+          placeholder=${t("share-client")}
       /></label>
       <label
-        ><span>Works for</span
+        ><span>${t("share-works-for")}</span
         ><select name="days">
           ${DAYS.map(
             (days) =>
               html`<option value=${days} ?selected=${days === USUAL_DAYS}>
-                ${days} ${days === 1 ? "day" : "days"}
+                ${t("share-days", { days })}
               </option>`,
           )}
         </select></label
       >
-      <button class="primary">Make a link</button>
+      <button class="primary">${t("share-make")}</button>
     </form>`;
 
   const made = () =>
     html`<div class="made" role="status">
-      <label
-        ><span>The link: copy it now, it is shown this once</span
-        ><input readonly .value=${state.made}
-      /></label>
-      <button type="button" @click=${copy}>${state.copied ? "✓ Copied" : "Copy"}</button>
+      <label><span>${t("share-made")}</span><input readonly .value=${state.made} /></label>
+      <button type="button" @click=${copy}>${state.copied ? t("copied") : t("copy")}</button>
     </div>`;
 
   const row = (/** @type {GuestLink} */ link) =>
@@ -130,10 +129,10 @@ export async function openShare(id, query = () => "") {
         link.works
           ? html`<button
               type="button"
-              aria-label="Revoke the link for ${link.label}"
+              aria-label=${t("share-revoke-of", { whom: link.label })}
               @click=${() => attempt(() => revokeGuestLink(id, link.id))}
             >
-              Revoke
+              ${t("share-revoke")}
             </button>`
           : nothing
       }
@@ -152,13 +151,16 @@ const at = (/** @type {number} */ seconds) => when(new Date(1000 * seconds).toIS
 
 /** Whether a link works, and until when. */
 function stateText(/** @type {GuestLink} */ { works, revoked_s, revoked_by, until_s }) {
-  if (revoked_s) return `✕ revoked ${at(revoked_s)} by ${revoked_by}`;
-  if (works) return `works until ${at(until_s)}`;
-  return 1000 * until_s < Date.now() ? `✕ expired ${at(until_s)}` : "✕ its maker may not share";
+  if (revoked_s) return t("share-revoked", { when: at(revoked_s), who: revoked_by });
+  if (works) return t("share-works", { when: at(until_s) });
+  if (1000 * until_s < Date.now()) return t("share-expired", { when: at(until_s) });
+  return t("share-may-not");
 }
 
 const historyText = (/** @type {GuestLink} */ { by, created_s, opened, opened_s }) =>
-  `by ${by}, ${at(created_s)} · ` +
-  (opened_s
-    ? `opened ${opened === 1 ? "once" : `${opened} times, last`} ${at(opened_s)}`
-    : "not opened yet");
+  t("share-made-by", { who: by, when: at(created_s) }) +
+  (opened_s ? t("share-opened", { opened, when: at(opened_s) }) : t("share-not-opened"));
+
+/** How many links work. */
+const openText = (/** @type {GuestLink[] | null} */ links) =>
+  links ? String(links.filter(({ works }) => works).length) : "…";

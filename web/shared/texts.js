@@ -87,12 +87,32 @@ export function t(id, values = {}) {
 export const hasText = (/** @type {string} */ id) =>
   state.bundles.some((bundle) => bundle.hasMessage(id));
 
+/**
+ * What a word of the server is called, by the message PREFIX-WORD; else the word itself.
+ * @param {string} prefix
+ * @param {string} word
+ * @param {Values} [values]
+ */
+export function wordOf(prefix, word, values = {}) {
+  const id = `${prefix}-${word
+    .toLowerCase()
+    .replace(/[^a-z0-9]+/g, "-")
+    .replace(/^-|-$/g, "")}`;
+  return hasText(id) ? t(id, values) : word;
+}
+
 /** A number as the language writes it: decimal(12.34, 1) -> "12,3". */
 export const decimal = (/** @type {number} */ value, digits = 0) =>
   localized(value.toFixed(digits), state.language);
 
-/** The language of this page, for numbers and times. */
+/** A number with all of its digits: 0.05 -> "0,05". */
+export const asWritten = (/** @type {number} */ value) => localized(String(value), state.language);
+
+/** The language of this page. */
 export const language = () => state.language;
+
+/** The language as browsers write dates and times in it. */
+export const locale = () => (state.language === ENGLISH ? "en-GB" : state.language);
 
 /** All languages of this page with their own names: [[code, name], …]. */
 export const languages = () =>

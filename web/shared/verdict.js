@@ -1,5 +1,7 @@
 // The verdict on a map as text. No DOM, no network.
 
+import { decimal, t, wordOf } from "./texts.js";
+
 /**
  * @import {MapVerdict, Unobserved} from "./http_types"
  * @typedef {import("./http_types").SaidFinding} MapFinding
@@ -13,10 +15,10 @@
 /** Captions of the levels of findings, the worst first. */
 /** @type {Record<string, string>} */
 export const LEVELS = {
-  "do not use": "Do not use",
-  check: "Check",
-  note: "Note",
-  good: "Confirms",
+  "do not use": t("level-do-not-use"),
+  check: t("level-check"),
+  note: t("level-note"),
+  good: t("level-good"),
 };
 
 /** What a project's summary says of its map; null before there is one. */
@@ -44,17 +46,24 @@ const STATES = { good: "sound", check: "check", "do not use": "unusable" };
 export const verdictState = (/** @type {MapVerdict | null} */ verdict) =>
   STATES[verdict?.usability ?? ""] ?? "unjudged";
 
-const place = (/** @type {number[]} */ p) =>
-  `x ${p[0].toFixed(1)}, y ${p[1].toFixed(1)}, z ${p[2].toFixed(1)} m`;
+const place = (/** @type {number[]} */ [x, y, z]) =>
+  t("place-xyz", { x: decimal(x, 1), y: decimal(y, 1), z: decimal(z, 1) });
+
+const horizontal = (/** @type {string} */ direction) =>
+  t("direction-some", { direction: wordOf("direction", direction) });
 
 /** When, where and in which direction the LiDAR hardly observes the motion. */
 export function unobservedText(
   /** @type {Unobserved} */ { start_s, end_s, direction, degeneracy, from_m, to_m },
 ) {
-  const times = `${start_s.toFixed(0)} s to ${end_s.toFixed(0)} s`;
-  const known = direction === "vertical" ? "the vertical direction" : `a ${direction} direction`;
-  const what = `${direction ? known : "one direction"}, degeneracy ${degeneracy.toFixed(4)}`;
-  const where = from_m?.length && to_m?.length ? `, from ${place(from_m)} to ${place(to_m)}` : "";
+  const times = t("span-s", { start: start_s.toFixed(0), end: end_s.toFixed(0) });
+  const known = direction === "vertical" ? t("direction-vertical") : horizontal(direction);
+  const which = direction ? known : t("direction-one");
+  const what = t("unobserved", { which, degeneracy: decimal(degeneracy, 4) });
+  const where =
+    from_m?.length && to_m?.length
+      ? t("unobserved-where", { from: place(from_m), to: place(to_m) })
+      : "";
   return `${times}: ${what}${where}`;
 }
 
@@ -67,9 +76,9 @@ export function verdictLists({ verdict, notes }) {
   const reasons = verdict?.reasons ?? [];
   /** @type {Array<[string, string[]]>} */
   const lists = [
-    ["Findings", reasons],
-    ["Hardly observable (0 = unobservable)", (verdict?.unobserved ?? []).map(unobservedText)],
-    ["Notes", notes.filter((text) => !reasons.includes(text))],
+    [t("findings"), reasons],
+    [t("hardly-observable"), (verdict?.unobserved ?? []).map(unobservedText)],
+    [t("notes"), notes.filter((text) => !reasons.includes(text))],
   ];
   return lists.filter(([, texts]) => texts.length > 0);
 }
@@ -108,8 +117,8 @@ export function sliceOf(/** @type {Partial<MapFinding>} */ { place_m, span_s }) 
 /** When or where the stretch of a finding is. */
 export function stretchText(/** @type {Partial<MapFinding>} */ { span_s, place_m }) {
   if (!span_s) return place(place_m?.[0] ?? []);
-  const [start, end] = span_s.map((second) => second.toFixed(1));
-  return start === end ? `${start} s` : `${start} s to ${end} s`;
+  const [start, end] = span_s.map((second) => decimal(second, 1));
+  return start === end ? `${start} s` : t("span-s", { start, end });
 }
 
 /**

@@ -3,6 +3,7 @@
 import { html, nothing } from "./dom.js";
 import { stretchText } from "./verdict.js";
 import { rowsOf, ticksOf } from "./walk_rows.js";
+import { t } from "./texts.js";
 
 /** @import {MapFinding} from "./verdict.js" */
 
@@ -19,9 +20,7 @@ export function walkAxis(findings, duration_s, isChosen) {
   return html`<div
     class="walk-axis"
     role="img"
-    aria-label="Time of the walk, 0 to ${duration_s.toFixed(0)} s, with findings: ${texts.join(
-      ", ",
-    )}"
+    aria-label=${t("walk-axis", { end: duration_s.toFixed(0), findings: texts.join(", ") })}
   >
     ${rows.map(
       (row) =>

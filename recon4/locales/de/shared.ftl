@@ -35,3 +35,195 @@ role-viewer = Betrachter
 role-operator = Bediener
 role-reviewer = Prüfer
 role-admin = Verwalter
+
+## Zustände und Fortschritt
+
+state-queued = Wartet
+state-running = Läuft
+state-succeeded = Fertig
+state-failed = Fehlgeschlagen
+state-cancelled = Abgebrochen
+state-finished = Fertig
+state-check = Diese Karte prüfen
+state-unusable = Diese Karte nicht verwenden
+state-sound = Kein Mangel an dieser Karte gefunden
+state-unjudged = Keine Beurteilung dieser Karte
+state-unfinished = Nicht fertig
+starting = Beginnt
+time-left = noch { $time }
+time-left-about = noch etwa { $time }
+time-left-none = fast fertig
+run-part = { $part } % des Laufs
+this-part = Dieser Schritt { $progress }
+share-tiny = unter { $least } %
+unit-multiframe = Multiframes
+unit-multiframes = Multiframes
+unit-points = Punkte
+unit-steps = Schritte
+unit-files = Dateien
+unit-evaluations = Auswertungen
+unit-node = Knoten
+unit-pair = Paare
+unit-pairs = Paare
+unit-sweep = Umläufe
+unit-scans = Scans
+unit-frames = Aufnahmen
+unit-windows = Zeitfenster
+unit-tiles = Kacheln
+unit-rounds = Runden
+unit-kernels = Kernel
+unit-artifacts = Artefakte
+unit-versions = Versionen
+
+## Anfragen
+
+no-response = Der Server antwortet nicht. Läuft er noch?
+bad-response = Antwort des Servers: { $status }
+
+## Kennzahlen eines Laufs
+
+figure-path = Weglänge
+figure-points = Punkte der Karte
+figure-duration = Dauer der Begehung
+figure-multiframes = Multiframes
+figure-lost = Multiframes ohne Tracking
+figure-accepted = Kanten angenommen
+figure-rejected = Kanten verworfen
+figure-unverified = Kanten nicht verifiziert
+figure-rig = Rig
+figure-serials = Seriennummern
+figure-calibrated = Rig kalibriert
+figure-time = Rechenzeit
+figure-memory = Höchster Speicherbedarf
+not-known = nicht bekannt
+calibrated-unknown = nicht bekannt: steht nicht in der Rig-Datei
+calibrated-by = { $date } mit { $method }
+calibrated-age = , { $days } Tage vor der Begehung
+calibrated-age-old = , { $days } Tage vor der Begehung (alt)
+headline-path = { $m } m Weg
+headline-points = { COUNT($points) } Punkte
+headline-2d = 2-D-Karte
+
+## Beurteilungen und Befunde
+
+level-do-not-use = Nicht verwenden
+level-check = Prüfen
+level-note = Hinweis
+level-good = Bestätigt
+place-xyz = x { $x }; y { $y }; z { $z } m
+span-s = { $start } s bis { $end } s
+direction-vertical = die senkrechte Richtung
+direction-some = eine Richtung ({ $direction })
+direction-horizontal = waagerecht
+direction-one = eine Richtung
+unobserved = { $which }, Degeneriertheit { $degeneracy }
+unobserved-where = , von { $from } bis { $to }
+findings = Befunde
+hardly-observable = Kaum beobachtbar (0 = nicht beobachtbar)
+notes = Hinweise
+finding-levels = Stufe der Befunde
+finding-kinds = Art der Befunde
+finding-all = Alle ({ $count })
+acknowledge = Zur Kenntnis nehmen
+acknowledge-open = Zur Kenntnis nehmen…
+acknowledge-note = Notiz (die Beurteilung ändert sich nicht)
+acknowledged = ✓ Zur Kenntnis genommen von { $who }, { $when }:
+acknowledged-outdated = Überholte Notizen: diese Karte hat keinen solchen Befund
+finding-in-map = In der Karte zeigen: { $stretch }
+finding-in-graph = Im Graphen
+finding-in-graph-of = Im Graphen: { $stretch }
+finding-cut = Hier schneiden
+walk-axis = Zeit der Begehung, 0 bis { $end } s, mit Befunden: { $findings }
+
+## Freigaben
+
+approval-checking = { $text }; die Bytes werden mit der Signatur verglichen
+in-spite-of = , trotz der Beurteilung „{ $verdict }“
+usability-check = prüfen
+usability-do-not-use = nicht verwenden
+usability-good = gut
+
+## Dateien
+
+file-being-made = { $name }: die Datei wird erstellt…
+
+## Gastlinks
+
+share-title = Mit einem Gast teilen
+share-what = Wer einen Link hat, sieht Karte, Schnitte und Bericht dieses Projekts; kein anderes Projekt, keine Aufträge, keine Personen, keine Notizen. Nichts lässt sich ändern oder herunterladen.
+share-no-login = Dieser Server hat keine Anmeldung und daher keine Gäste.
+share-links = Links ({ $open } offen)
+share-none = Noch keine
+share-for = Für wen
+share-client = Auftraggeber
+share-works-for = Gültig für
+share-days = { $days ->
+    [one] { $days } Tag
+   *[other] { $days } Tage
+}
+share-make = Link erstellen
+share-made = Der Link: jetzt kopieren, er wird nur dieses Mal gezeigt
+copy = Kopieren
+copied = ✓ Kopiert
+share-revoke-of = Link für { $whom } widerrufen
+share-revoke = Widerrufen
+share-revoked = ✕ widerrufen am { $when } von { $who }
+share-works = gültig bis { $when }
+share-expired = ✕ abgelaufen am { $when }
+share-may-not = ✕ der Ersteller darf nicht teilen
+share-made-by = von { $who }, { $when } ·{" "}
+share-opened = { $opened ->
+    [one] einmal geöffnet, { $when }
+   *[other] { $opened }-mal geöffnet, zuletzt { $when }
+}
+share-not-opened = noch nicht geöffnet
+
+## Klassen von Punkten und ihre Korrekturen
+
+class-never-classified = nie klassifiziert
+class-unclassified = nicht klassifiziert
+class-ground = Boden
+class-low-vegetation = niedriger Bewuchs
+class-medium-vegetation = mittlerer Bewuchs
+class-high-vegetation = hoher Bewuchs
+class-building = Gebäude
+class-low-noise = Rauschen, nah
+class-high-noise = Rauschen, vereinzelt
+class-moving = bewegt
+class-carrier = Träger
+class-reflection = Spiegelung
+correct-counting = Zählt…
+correct-noting = Wird notiert…
+correct-undoing = Wird rückgängig gemacht…
+correct-starting = Beginnt…
+correct-who = Prüfer korrigieren Klassen.
+correct-delivered = alle Punkte der Karte
+correct-every = alle Punkte, auch weggelassene
+correct-only = nur { $class }
+correct-new = Neue Klasse
+correct-of = Von
+correct-why = Grund
+correct-count = Punkte zählen
+correct-apply = Anwenden
+correct-nothing = Nichts zu ändern: { $why }.
+correct-counted = { COUNT($points) } Punkte, bisher: { $now }
+correct-waiting = { $count } noch nicht in der Karte
+correct-withdrawn = { $count } noch in der Karte, aber rückgängig gemacht oder nicht mehr an erster Stelle
+correct-row = { COUNT($points) } Punkte → { $class }
+correct-not-yet = noch nicht in der Karte
+correct-undo-of = Korrektur zu { $class } von { $who }, { $when }, rückgängig machen
+correct-undo = Rückgängig
+correct-remade = Die Karte wird neu gerechnet:
+correct-progress = Fortschritt
+correct-remake = Karte neu rechnen
+approval-signed = Freigegeben v{ $version } · { $who } · { $day }
+approval-draft-not-approved = Entwurf: nicht freigegeben
+approval-draft-written-without-approval = Entwurf: ohne Freigabe geschrieben
+approval-draft-changed-since-version = Entwurf: geändert seit Version { $version }
+approval-version-is-newer = ; Version { $version } ist neuer
+approval-changed-since-later-decisions-are-not-in-this-map = ; seither geändert: spätere Entscheidungen sind nicht in dieser Karte
+approval-altered-since-the-approval-of-version = Verändert seit der Freigabe von Version { $version }
+approval-signed-by-unknown-key-not-counted-as-approved = Signiert mit unbekanntem Schlüssel { $key }: gilt nicht als freigegeben
+approval-not-approved-older-than-what-this-server-approved = Nicht freigegeben: älter als das, was dieser Server freigegeben hat
+approval-not-approved-an-approval-is-missing-in-the-journal = Nicht freigegeben: im Journal fehlt eine Freigabe
+approval-not-approved-the-approval-is-not-valid = Nicht freigegeben: die Freigabe ist ungültig
