@@ -20,14 +20,24 @@ class KeyBits(NamedTuple):
 KEY = KeyBits()
 
 
+class OffsetUnits(NamedTuple):
+    """Offsets in cells are whole numbers."""
+
+    steps: int = 256
+    """Along an edge."""
+
+
+OFFSET = OffsetUnits()
+
+
 class CellSums(NamedTuple):
     """Sums of the returns in cells, in the places of a hash table."""
 
     key: NDArray[np.int64]
     """-1 = a free place, (S,), a power of two."""
-    total: NDArray[np.float32]
-    """Returns, their offsets x, y, z from the corner of the cell [m], how many were seen from
-    above, and how many are further echoes of their beams, (S, 6)."""
+    total: NDArray[np.uint32]
+    """Returns, their offsets x, y, z from the corner of the cell [edge/`OFFSET.steps`], how many
+    were seen from above, and how many are further echoes of their beams, (S, 6)."""
 
 
 class CellIndex(NamedTuple):
@@ -61,6 +71,12 @@ def place_of(key: Any, mask: Any) -> Any:
     return np.int64(mixed >> np.uint64(32)) & mask
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _steps(part: Any) -> Any:
+    """Whole steps from the corner of a cell by the part of its edge, below 1 but for rounding."""
+    return np.uint32(min(max(part, 0.0) * OFFSET.steps, OFFSET.steps - 1.0))
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def add_returns(
     xyz: NDArray[np.float64],
@@ -68,7 +84,7 @@ def add_returns(
     chosen: NDArray[np.bool_],
     echo: NDArray[np.uint8],
     cell_m: tuple[float, float],
-    limits: tuple[float, int],
+    range_m: float,
     sums: CellSums,
     used: int,
 ) -> int:
@@ -80,19 +96,19 @@ def add_returns(
         chosen: Which returns are added, (N,).
         echo: Number of the echo of its beam, 0 = the first, (N,).
         cell_m: Edge of a cell along x and y, and along z [m].
-        limits: Farther returns are not added [m]; most cells of the table.
-        sums: The table; changed in place.
+        range_m: Farther returns are not added [m].
+        sums: The table, with a free place for each return; changed in place.
         used: Cells that it has.
 
     Returns:
-        Cells that it has now. Returns in further ones are not added when it has the most.
+        Cells that it has now.
     """
     mask, reach = np.int64(len(sums.key) - 1), np.int64(KEY.zero - 1)
     for n in range(len(xyz)):
         far = 0.0
         for d in range(3):
             far += (xyz[n, d] - origin[n, d]) ** 2
-        if not (chosen[n] and far <= limits[0] * limits[0]):
+        if not (chosen[n] and far <= range_m * range_m):
             continue
         i = np.int64(np.floor(xyz[n, 0] / cell_m[0]))
         j = np.int64(np.floor(xyz[n, 1] / cell_m[0]))
@@ -104,31 +120,16 @@ def add_returns(
         while sums.key[at] != key and sums.key[at] >= 0:
             at = (at + 1) & mask
         if sums.key[at] < 0:
-            if used == limits[1]:
-                continue
             sums.key[at] = key
             used += 1
         total = sums.total[at]
-        total[0] += 1.0
-        total[1] += xyz[n, 0] - i * cell_m[0]
-        total[2] += xyz[n, 1] - j * cell_m[0]
-        total[3] += xyz[n, 2] - k * cell_m[1]
+        total[0] += 1
+        total[1] += _steps(xyz[n, 0] / cell_m[0] - i)
+        total[2] += _steps(xyz[n, 1] / cell_m[0] - j)
+        total[3] += _steps(xyz[n, 2] / cell_m[1] - k)
         total[4] += origin[n, 2] > xyz[n, 2]
         total[5] += echo[n] > 0
     return used
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def move_sums(sums: CellSums, out: CellSums) -> None:
-    """Put all cells of a table into an empty larger one."""
-    mask = np.int64(len(out.key) - 1)
-    for n in range(len(sums.key)):
-        if sums.key[n] >= 0:
-            at = place_of(sums.key[n], mask)
-            while out.key[at] >= 0:
-                at = (at + 1) & mask
-            out.key[at] = sums.key[n]
-            out.total[at] = sums.total[n]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -89,7 +89,7 @@ def find_below(
 @njit(cache=True, nogil=True, error_model="numpy")
 def grow_ground(
     index: CellIndex,
-    mean: NDArray[np.float64],
+    z: NDArray[np.float32],
     level: NDArray[np.bool_],
     rules: GroundRules,
     ground: NDArray[np.bool_],
@@ -99,7 +99,7 @@ def grow_ground(
 
     Args:
         index: Of the cells, (C,).
-        mean: Mean of the returns of each [m], (C, 3).
+        z: Mean height of the returns of each [m], (C,).
         level: Whether each may be ground, (C,).
         rules: The rules.
         ground: Where to begin; receives all cells of the ground, (C,).
@@ -121,7 +121,7 @@ def grow_ground(
                     row = find_row(index, key_at(i + di, j + dj, k + dk))
                     if row < 0 or ground[row] or not level[row]:
                         continue
-                    if abs(mean[row, 2] - mean[own, 2]) <= rules.step_m:
+                    if abs(z[row] - z[own]) <= rules.step_m:
                         ground[row] = True
                         queue[stop] = row
                         stop += 1

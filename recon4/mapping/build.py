@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.mapping.buckets import TileBuckets
+from recon4.mapping.cell_runs import CellRuns
 from recon4.mapping.class_corrections import ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs, MapNotes
 from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
-from recon4.mapping.structure import StructureCells
+from recon4.mapping.structure import find_structure
 from recon4.mapping.structure_tuning import STRUCTURE
 from recon4.mapping.threads import in_order
 from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
@@ -100,9 +101,10 @@ def build_map(
     noise_m = settings.range_noise_m or surface_noise_m(rig)
     with TemporaryDirectory(dir=out, prefix="buckets-") as folder:
         buckets = TileBuckets(Path(folder), grid, burst=burst)
-        cells = StructureCells()
+        cells = CellRuns(Path(folder))
         starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
-        structure = cells.structure(inputs.trajectory.T_a_b.t)
+        structure = find_structure(cells, inputs.trajectory.T_a_b.t)
+        del cells
         paths = SensorPaths.of(starts, inputs.trajectory, rig)
         parts = inputs.covariances, inputs.corrections, structure
         recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, *parts)
@@ -139,7 +141,7 @@ def _fields(recipe: Recipe) -> list[str]:
 def _distribute(
     inputs: MapInputs,
     buckets: TileBuckets,
-    cells: StructureCells,
+    cells: CellRuns,
     *,
     settings: MapSettings,
     progress: Progress,
@@ -182,7 +184,7 @@ def _distribute(
 
 
 _Counted = tuple[Placed, NDArray[np.bool_], NDArray[np.uint8]]
-"""Arguments of `StructureCells.add`."""
+"""Arguments of `CellRuns.add`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

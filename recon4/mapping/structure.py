@@ -7,24 +7,24 @@ cells say of the points.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels import ground_cells, structure_cells
-from recon4.kernels.cell_table import (
-    KEY,
-    CellIndex,
-    CellSums,
-    add_returns,
-    index_keys,
-    move_sums,
-)
+from recon4.kernels.cell_table import KEY, CellIndex, index_keys
 from recon4.kernels.structure_cells import NEAR, CubePlanes
 from recon4.kernels.structure_points import Structure, StructureCodes, classify_points
+from recon4.mapping.cell_runs import (
+    CellRuns,
+    MergedCells,
+    cell_keys,
+    cell_numbers,
+    coordinate_sums,
+)
 from recon4.mapping.structure_tuning import GROUND, GROWTH, PLANES, POINTS, STRUCTURE
-from recon4.mapping.undistort import Placed
 from recon4.model.classes import PointClass
 
 CODES = StructureCodes(
@@ -36,85 +36,88 @@ CODES = StructureCodes(
 )
 
 
-class StructureCells:
-    """Counts returns in cells; memory is that of the surfaces that were seen, up to a limit."""
+class StructureCells(NamedTuple):
+    """Cells with returns, and the cubes that they make up."""
 
-    def __init__(self, *, most: int = STRUCTURE.most) -> None:
-        """There are no returns yet.
+    cells: CellIndex
+    """Of the cells, (C,)."""
+    z_m: NDArray[np.float32]
+    """Mean height of the returns of each cell [m], (C,)."""
+    above: NDArray[np.float32]
+    """Part of them that was seen from above, (C,)."""
+    of_cell: NDArray[np.int32]
+    """Row of the cube of each cell, (C,)."""
+    cubes: CellIndex
+    """Of the cubes, (B,)."""
+    of_cube: Array
+    """Means x, y, z [m] of the returns of each cube, and the parts that were seen from above and
+    of further echoes, (B, 5)."""
 
-        Args:
-            most: Cells that are kept; what is seen first in further ones has no such class.
-        """
-        self._most, self._used = most, 0
-        self._sums = _empty_sums(STRUCTURE.first)
 
-    @property
-    def is_full(self) -> bool:
-        """Whether there may be returns without a cell."""
-        return self._used == self._most
+def find_structure(
+    runs: CellRuns, walk_m: Array, *, most: int = STRUCTURE.most
+) -> Structure | None:
+    """What stands in a map.
 
-    def add(self, placed: Placed, chosen: NDArray[np.bool_], echo: NDArray[np.uint8]) -> None:
-        """Count some of the returns of a multiframe.
+    Args:
+        runs: Returns that were counted.
+        walk_m: Positions of the body in the map, (W, 3).
+        most: Cells that are kept; what is seen first in further ones has no such class.
 
-        Args:
-            placed: They and their sensors.
-            chosen: Which of them stand, (N,).
-            echo: Number of the echo of its beam, (N,).
-        """
-        while self._used + len(echo) > STRUCTURE.filled * len(self._sums.key):
-            if STRUCTURE.filled * len(self._sums.key) > self._most:
-                break
-            larger = _empty_sums(2 * len(self._sums.key))
-            move_sums(self._sums, larger)
-            self._sums = larger
-        cell_m, limits = (GROUND.cell_m, GROUND.height_m), (STRUCTURE.range_m, self._most)
-        xyz, origin = placed.xyz_m, placed.origin_m
-        self._used = add_returns(xyz, origin, chosen, echo, cell_m, limits, self._sums, self._used)
+    Returns:
+        None where no ground is found below the walk.
 
-    def structure(self, walk_m: Array) -> Structure | None:
-        """What stands there; forgets the returns.
+    Raises:
+        OSError: If a run cannot be written or read.
+    """
+    found = _cells(runs, most)
+    if found is None:
+        return None
+    cells, cubes = found.cells, found.cubes
+    planes = _planes(cubes, found.of_cube)
+    steep = planes.normal.any(axis=1) & (np.abs(planes.normal[:, 2]) < STRUCTURE.steep)
+    found.above[steep[found.of_cell]] = 0.0
+    ground = _ground(found, walk_m=np.ascontiguousarray(walk_m, np.float64))
+    if not ground.any():
+        return None
+    planes.flat[found.of_cell[ground]] = False
+    seen_above, ground_m, cells = found.of_cube[:, 3], found.z_m[ground], indexed(cells.key[ground])
+    del found, ground
+    below, below_m = _below(cells.key, ground_m)
+    near, growth = _things(cubes, planes, seen_above, ground=(below, below_m))
+    return Structure(
+        cells, ground_m, below, below_m, cubes, planes.normal, planes.offset, near, growth
+    )
 
-        Args:
-            walk_m: Positions of the body in the map, (W, 3).
 
-        Returns:
-            None where no ground is found below the walk.
-        """
-        key, sums = self._taken()
-        cells, count = indexed(key), sums[:, 0].astype(np.float64)
-        means = sums[:, 1:4] / count[:, None]
-        means += _numbers(cells.key) * [GROUND.cell_m, GROUND.cell_m, GROUND.height_m]
-        above = (sums[:, 4] / count).astype(np.float32)
-        cubes, of_cell, of_cubes = _cubes(cells, means, sums)
-        del sums, count
-        planes = _planes(cubes, of_cubes)
-        steep = planes.normal.any(axis=1) & (np.abs(planes.normal[:, 2]) < STRUCTURE.steep)
-        above[steep[of_cell]] = 0.0
-        ground = _ground(cells, means, above, walk_m=np.ascontiguousarray(walk_m, np.float64))
-        if not ground.any():
-            return None
-        planes.flat[of_cell[ground]] = False
-        below, below_m = _below(means[ground])
-        near, growth = _things(cubes, planes, of_cubes[:, 3], ground=(below, below_m))
-        return Structure(
-            indexed(cells.key[ground]),
-            means[ground, 2].astype(np.float32),
-            below,
-            below_m,
-            cubes,
-            planes.normal,
-            planes.offset,
-            near,
-            growth,
-        )
+def _cells(runs: CellRuns, most: int) -> StructureCells | None:
+    """What was counted; None = nothing."""
+    parts = [_part(part) for part in runs.merged(least=STRUCTURE.least, most=most)]
+    if not parts:
+        return None
+    key, z_m, above, cells_of, cube_key, of_cube = (
+        np.concatenate(part) for part in zip(*parts, strict=True)
+    )
+    del parts
+    of_cell = np.repeat(np.arange(len(cells_of), dtype=np.int32), cells_of)
+    return StructureCells(indexed(key), z_m, above, of_cell, indexed(cube_key), of_cube)
 
-    def _taken(self) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
-        """Keys in ascending order (C,) and sums (C, 6) of what was counted; the table is freed."""
-        (key, total), self._sums = self._sums, _empty_sums(STRUCTURE.first)
-        self._used = 0
-        rows = np.flatnonzero((key >= 0) & (total[:, 0] >= STRUCTURE.least))
-        rows = rows[np.argsort(key[rows])]
-        return key[rows], total[rows]
+
+def _part(cells: MergedCells) -> tuple[NDArray[np.generic], ...]:
+    """Keys, mean heights, parts seen from above of cells; of their cubes how many cells they have,
+    their keys, and the rest as in `StructureCells`.
+    """
+    numbers, count = cell_numbers(cells.key), cells.total[:, 0].astype(np.float64)
+    sums = coordinate_sums(cells)
+    z_m = (sums[:, 2] / count).astype(np.float32)
+    above = (cells.total[:, 4] / count).astype(np.float32)
+    numbers[:, 2] //= STRUCTURE.layers
+    cube_key = cell_keys(numbers)
+    starts = np.flatnonzero(np.diff(cube_key, prepend=-1))
+    parts = np.concatenate([sums, cells.total[:, 4:]], axis=1)
+    of_cube = np.add.reduceat(parts, starts) / np.add.reduceat(count, starts)[:, None]
+    cells_of = np.diff(starts, append=len(cube_key))
+    return cells.key, z_m, above, cells_of, cube_key[starts], of_cube
 
 
 def mark_structure(
@@ -146,45 +149,31 @@ def indexed(key: NDArray[np.int64]) -> CellIndex:
     return CellIndex(key, slots)
 
 
-def _empty_sums(places: int) -> CellSums:
-    return CellSums(np.full(places, -1, np.int64), np.zeros((places, 6), np.float32))
-
-
-def _numbers(key: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Numbers of cells by their keys, (C, 3)."""
-    mask = (1 << KEY.each) - 1
-    parts = [(key >> shift) & mask for shift in (2 * KEY.each, KEY.each, 0)]
-    return np.stack(parts, axis=1) - KEY.zero
-
-
-def _keys(numbers: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Keys of cells by their numbers (C, 3)."""
-    i, j, k = (numbers + KEY.zero).T
-    return np.asarray((i << (2 * KEY.each)) | (j << KEY.each) | k)
-
-
-def _ground(
-    cells: CellIndex, means: Array, above: NDArray[np.float32], *, walk_m: Array
-) -> NDArray[np.bool_]:
+def _ground(found: StructureCells, *, walk_m: Array) -> NDArray[np.bool_]:
     """Which cells are ground: those that lead on from below the walk, (C,)."""
-    level, ground = np.empty((2, len(means)), np.bool_)
+    cells, z_m = found.cells, found.z_m
+    level, ground = np.empty((2, len(z_m)), np.bool_)
     ground[:] = False
-    ground_cells.find_level(cells, above, GROUND, level)
+    ground_cells.find_level(cells, found.above, GROUND, level)
     below = np.empty(len(walk_m), np.int64)
     ground_cells.find_below(cells, level, walk_m, GROUND, below)
-    over_m = walk_m[below >= 0, 2] - means[below[below >= 0], 2]
+    over_m = walk_m[below >= 0, 2] - z_m[below[below >= 0]]
     if not len(over_m):
         return ground
     carried = np.abs(over_m - np.median(over_m)) <= GROUND.same_m
     ground[below[below >= 0][carried]] = True
-    queue = np.empty(len(means), np.int32)
-    ground_cells.grow_ground(cells, means, level, GROUND, ground, queue)
+    queue = np.empty(len(z_m), np.int32)
+    ground_cells.grow_ground(cells, z_m, level, GROUND, ground, queue)
     return ground
 
 
-def _below(ground_m: Array) -> tuple[CellIndex, NDArray[np.float32]]:
+def _below(
+    ground: NDArray[np.int64], ground_m: NDArray[np.float32]
+) -> tuple[CellIndex, NDArray[np.float32]]:
     """Heights of the ground in cubes of one meter, spread to those around [m]."""
-    keys, heights = _mean_of(_keys(np.floor(ground_m).astype(np.int64)), ground_m[:, 2])
+    numbers = cell_numbers(ground) // STRUCTURE.per_meter
+    numbers[:, 2] = np.floor(ground_m)
+    keys, heights = _mean_of(cell_keys(numbers), ground_m.astype(np.float64))
     fresh, fresh_m = keys, heights
     for _ in range(STRUCTURE.spread):
         spread = np.concatenate(list(_beside(fresh)))
@@ -209,21 +198,6 @@ def _mean_of(keys: NDArray[np.int64], values: Array) -> tuple[NDArray[np.int64],
     """Each key once, with the mean of its values."""
     found, of = np.unique(keys, return_inverse=True)
     return found, np.bincount(of, values, len(found)) / np.bincount(of, minlength=len(found))
-
-
-def _cubes(
-    cells: CellIndex, means: Array, sums: NDArray[np.float32]
-) -> tuple[CellIndex, NDArray[np.intp], Array]:
-    """Cubes of the cells, that of each, and of each the means x, y, z, and the parts that were
-    seen from above and of echoes, (C, 5).
-    """
-    numbers = _numbers(cells.key)
-    numbers[:, 2] //= STRUCTURE.layers
-    keys, of = np.unique(_keys(numbers), return_inverse=True)
-    weight = np.bincount(of, sums[:, 0], len(keys))
-    parts = [*(means.T * sums[:, 0]), sums[:, 4], sums[:, 5]]
-    totals = np.stack([np.bincount(of, part, len(keys)) for part in parts], axis=1)
-    return indexed(keys), of, totals / weight[:, None]
 
 
 def _planes(cubes: CellIndex, of_cubes: Array) -> CubePlanes:
@@ -303,12 +277,12 @@ def _large(
 def _covered(keys: NDArray[np.int64], roof: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Which cubes have a ceiling over their square meter or one beside it, (C,)."""
     cells = np.unique(keys[roof] >> KEY.each << KEY.each)  # one of each column
-    under, count = np.unique(_keys(_flat(cells)), return_counts=True)
+    under, count = np.unique(cell_keys(_flat(cells)), return_counts=True)
     under = under[count >= STRUCTURE.roofed * STRUCTURE.per_meter**2]
     covered = _wide(under)
     for _ in range(STRUCTURE.eaves):
         covered = np.unique(np.concatenate([covered, *_beside(covered)]))
-    return np.isin(_keys(_flat(keys)), covered)
+    return np.isin(cell_keys(_flat(keys)), covered)
 
 
 def _wide(keys: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -322,6 +296,6 @@ def _wide(keys: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _flat(keys: NDArray[np.int64]) -> NDArray[np.int64]:
     """Numbers of the square meter of each cube, (C, 3)."""
-    place = _numbers(keys) // STRUCTURE.per_meter
+    place = cell_numbers(keys) // STRUCTURE.per_meter
     place[:, 2] = 0
     return place

@@ -16,13 +16,9 @@ class StructureTuning(Struct, frozen=True, kw_only=True):
     """Time between multiframes that are looked at [ns]."""
     range_m: float = 40.0
     """Farther returns are not counted [m]: their cells would be half empty."""
-    first: int = 1 << 18
-    """Places of the table of cells at first …"""
-    filled: float = 0.6
-    """… it grows when this part of it is filled …"""
     most: int = 10_000_000
-    """… up to this number of cells (540 MB): a walk of some kilometers through streets."""
-    least: float = 2.0
+    """Cells that are kept: a walk of some kilometers through streets."""
+    least: int = 2
     """Returns of a cell that counts."""
     steep: float = 0.6
     """Cubes with a smaller vertical part of the normal are no ground: the sides of bushes."""
@@ -68,6 +64,22 @@ class StructureTuning(Struct, frozen=True, kw_only=True):
 
 
 STRUCTURE = StructureTuning()
+
+
+class RunTuning(Struct, frozen=True, kw_only=True):
+    """Tables of cells, and runs of them on disk."""
+
+    places: int = 1 << 20
+    """Of a table (34 MB)."""
+    filled: float = 0.6
+    """It becomes a run when this part of it is filled …"""
+    returns: int = 1 << 24
+    """… or after as many returns: sums have 32 bits."""
+    slab: int = 400_000
+    """Rows of runs that are merged at a time."""
+
+
+RUNS = RunTuning()
 
 GROUND = GroundRules(
     cell_m=0.2,

@@ -9,8 +9,8 @@ from msgspec import Struct
 class BucketTuning(Struct, frozen=True, kw_only=True):
     """Records of each tile on disk."""
 
-    burst: int = 3_000_000
-    """Records held in memory before they are thinned and written (96 MB)."""
+    burst: int = 1500000
+    """Records held in memory before they are thinned and written (48 MB)."""
 
 
 BUCKETS = BucketTuning()

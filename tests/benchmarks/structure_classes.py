@@ -23,9 +23,10 @@ import numpy as np
 from recon4.classes.stage import write_classes
 from recon4.evaluation.table import text_table
 from recon4.geometry.mesh import SurfaceKind
+from recon4.mapping import build
 from recon4.mapping import tile as tile_module
 from recon4.mapping.build import MapInputs, build_map
-from recon4.mapping.structure import StructureCells
+from recon4.mapping.cell_runs import CellRuns
 from recon4.mapping.tiles import TileSet
 from recon4.model.classes import PointClass
 from recon4.recording.formats.poses import read_tum
@@ -97,8 +98,8 @@ def thread_seconds():
         return call
 
     with (
-        patch.object(StructureCells, "add", timed(StructureCells.add)),
-        patch.object(StructureCells, "structure", timed(StructureCells.structure)),
+        patch.object(CellRuns, "add", timed(CellRuns.add)),
+        patch.object(build, "find_structure", timed(build.find_structure)),
         patch.object(tile_module, "mark_structure", timed(tile_module.mark_structure)),
     ):
         yield spent

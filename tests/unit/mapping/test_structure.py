@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from recon4.mapping.build import MapInputs, build_map
-from recon4.mapping.structure import StructureCells
-from recon4.mapping.undistort import place_with_origins
+from recon4.mapping.cell_runs import CellRuns, cell_keys, coordinate_sums
+from recon4.mapping.structure import find_structure
+from recon4.mapping.undistort import Placed, place_with_origins
 from recon4.model.classes import PointClass
 from recon4.settings import MapSettings
 from tests.unit.classes.scanned_scenes import ROOM, box, cylinder, scanned
@@ -73,23 +74,66 @@ def test_a_table_is_no_ground_and_a_cupboard_no_building(furnished):
     assert share(classes, cupboard, OPEN) > 0.9
 
 
-def test_without_a_floor_below_the_walk_there_are_no_such_classes():
-    cells = StructureCells()
-    walk, _ = scanned(box("room", (-3.0, -3.0, -9.0), (9.0, 3.0, 3.0)), seconds=4.0)
+def counted(walk, folder, **options):
+    folder.mkdir()
+    runs = CellRuns(folder, **options)
     for frame in walk.frames:
         placed = place_with_origins(frame, walk.trajectory, walk.rig)
-        cells.add(placed, np.ones(len(frame), bool), frame.echo)
+        runs.add(placed, np.ones(len(frame), bool), frame.echo)
+    return runs
 
-    assert cells.structure(walk.trajectory.T_a_b.t) is None
+
+def test_without_a_floor_below_the_walk_there_are_no_such_classes(tmp_path):
+    walk, _ = scanned(box("room", (-3.0, -3.0, -9.0), (9.0, 3.0, 3.0)), seconds=4.0)
+
+    assert find_structure(counted(walk, tmp_path / "runs"), walk.trajectory.T_a_b.t) is None
 
 
-def test_a_full_table_of_cells_keeps_the_first_ones():
-    walk, _ = scanned(box("room", *ROOM), cylinder("pole", lambda t: (5.0, 0.0), 0.2), seconds=4.0)
-    small, large = StructureCells(most=500), StructureCells()
-    for cells in (small, large):
-        for frame in walk.frames:
-            placed = place_with_origins(frame, walk.trajectory, walk.rig)
-            cells.add(placed, np.ones(len(frame), bool), frame.echo)
+@pytest.fixture(scope="module")
+def pole():
+    """A walk in a room with a pole."""
+    pole = cylinder("pole", lambda t: (5.0, 0.0), 0.2)
+    return scanned(box("room", *ROOM), pole, seconds=4.0)[0]
 
-    assert small.is_full
-    assert not large.is_full
+
+def test_many_runs_and_one_give_the_same_cells(pole, tmp_path):
+    runs = [counted(pole, tmp_path / "one"), counted(pole, tmp_path / "many", places=1 << 11)]
+    one, many = (
+        [np.concatenate(part) for part in zip(*r.merged(least=2, most=10**6), strict=True)]
+        for r in runs
+    )
+
+    assert len(list((tmp_path / "many").glob("cells-*"))) > 4
+    assert len(list((tmp_path / "one").glob("cells-*"))) == 1
+    np.testing.assert_array_equal(one[0], many[0])
+    np.testing.assert_array_equal(one[1], many[1])
+    assert (np.diff(one[0]) > 0).all()
+
+
+def test_the_cells_of_the_first_runs_are_kept(pole, tmp_path):
+    runs = counted(pole, tmp_path / "runs", places=1 << 11)
+    every, some = (
+        np.concatenate([part.key for part in runs.merged(least=2, most=most)])
+        for most in (10**6, 3000)
+    )
+
+    first = np.load(tmp_path / "runs" / "cells-0.npy")
+    assert 1000 < len(some) <= 3000 < len(every)
+    assert np.isin(some, every).all()
+    assert np.isin(np.intersect1d(first, every), some).all()
+
+
+def test_means_of_cells_are_those_of_their_returns(tmp_path):
+    xyz = np.random.default_rng(3).uniform((-5.0, -3.0, -2.0), (5.0, 3.0, -1.0), (20_000, 3))
+    (tmp_path / "runs").mkdir()
+    runs = CellRuns(tmp_path / "runs")
+    placed = Placed(xyz, np.zeros((len(xyz), 3)))
+    runs.add(placed, np.ones(len(xyz), bool), np.zeros(len(xyz), np.uint8))
+
+    for cells in runs.merged(least=2, most=10**6):
+        means = coordinate_sums(cells) / cells.total[:, :1]
+        key = cell_keys(np.floor(xyz / (0.2, 0.2, 0.1)).astype(int))
+        for row in range(0, len(means), 100):
+            mine = xyz[key == cells.key[row]]
+            assert len(mine) == cells.total[row, 0]
+            np.testing.assert_allclose(means[row], mine.mean(axis=0), atol=5e-4)
