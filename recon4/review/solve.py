@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3
 from recon4.model.figures import ReviewFigures
 from recon4.model.plain import finite_or_none, to_plain
-from recon4.model.pose_graph import AUTOMATIC, Edge, PoseGraph
+from recon4.model.pose_graph import AUTOMATIC, Edge, PoseGraph, Relations
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import outlier_limit
@@ -183,10 +184,39 @@ def review(
         graph = verify(
             applied.graph, settings=settings.verification, progress=progress or Silent()
         ).graph
+        graph = graph.with_poses(_poses_by_edges(verified, graph))
     found = conflicts(
         graph, probability=tuned(VerificationTuning, settings.verification).inlier_probability
     )
     return Reviewed(graph, found, applied.missing, applied.changed)
+
+
+def _poses_by_edges(verified: PoseGraph, graph: PoseGraph) -> SE3:
+    """Poses that depend on the edges in use alone, not on how the robust solve came to them.
+
+    A decision that leaves the edges in use as they are, such as a confirmed verdict, so changes no
+    bit of the poses, and later stages have nothing to do.
+
+    Args:
+        verified: Before any decision.
+        graph: Verified and solved with the decisions.
+    """
+    if _has_same_factors(verified.relations, graph.relations):
+        return verified.T_map_body
+    again = optimize(graph.with_poses(verified.T_map_body), kernel="none")
+    is_same_minimum = again.chi2 <= chi2_of(graph)[0] * (1.0 + REVIEW_SOLVE.same_chi2)
+    return again.T_map_body if is_same_minimum else graph.T_map_body
+
+
+def _has_same_factors(before: Relations, after: Relations) -> bool:
+    """Whether the same edges are in use, with the same measurements."""
+
+    def used(of: Relations) -> tuple[NDArray[Any], ...]:
+        T = of.T_i_j
+        columns = (of.i, of.j, T.R, T.t, of.information)
+        return tuple(column[of.in_graph] for column in columns)
+
+    return all(map(np.array_equal, used(before), used(after)))
 
 
 def _solved(graph: PoseGraph) -> PoseGraph:

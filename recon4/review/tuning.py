@@ -88,6 +88,8 @@ class ReviewSolveTuning(Struct, frozen=True, kw_only=True):
     """Smaller shifts are not reported [m]."""
     named_pairs: int = 5
     """Pairs that a message names."""
+    same_chi2: float = 1e-9
+    """A solve whose chi-square is larger by no more than this, relatively, has the same minimum."""
 
 
 REVIEW_SOLVE = ReviewSolveTuning()

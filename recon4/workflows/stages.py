@@ -315,7 +315,7 @@ CALIBRATION = Stage(
 )
 GRAPH = Stage("graph", 10, GraphReads, _graph, GraphFigures)
 VERIFICATION = Stage("verification", 3, VerificationReads, _verification, VerificationFigures)
-REVIEW = Stage("review", 4, VerificationReads, _review, ReviewFigures)
+REVIEW = Stage("review", 5, VerificationReads, _review, ReviewFigures)
 REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)
 LEVEL = Stage("level", 31, LevelReads, _level, LevelFigures)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures)

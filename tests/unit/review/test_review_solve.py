@@ -57,6 +57,10 @@ def said(reviewed):
     return texts(problem_findings(review_figures(reviewed, 1, chi2_before=None)))
 
 
+def farthest_m(before, after):
+    return np.linalg.norm(after.T_map_body.t - before.T_map_body.t, axis=1).max()
+
+
 def test_no_decision_changes_nothing(verified):
     found = review(verified, (), settings=Settings())
 
@@ -217,3 +221,30 @@ def test_the_same_decisions_give_the_same_bits(verified):
     a, b = (review(verified, chosen, settings=Settings()).graph for _ in range(2))
 
     assert np.array_equal(a.T_map_body.t, b.T_map_body.t)
+
+
+@pytest.mark.parametrize("decision", [accept(3, 32), reject(10, 40)])
+def test_a_decision_that_confirms_a_verdict_changes_no_bit_of_the_poses(decision):
+    wrong = [(10, 40, (1.5, 0.0, 0.0))]
+    before = verify(two_rounds(wrong=wrong), settings=Settings().verification).graph
+
+    confirmed = review(before, standing(decision), settings=Settings()).graph
+    other = review(before, standing(reject(5, 34)), settings=Settings()).graph
+    both = review(before, standing(reject(5, 34), decision), settings=Settings()).graph
+
+    assert "Eva" in {edge.decided_by for edge in confirmed.edges}
+    for expected, found in ((before, confirmed), (other, both)):
+        np.testing.assert_array_equal(found.T_map_body.t, expected.T_map_body.t)
+        np.testing.assert_array_equal(found.T_map_body.R, expected.T_map_body.R)
+    assert farthest_m(before, other) > 1e-6
+
+
+def test_the_poses_by_the_edges_alone_are_those_of_the_robust_solve(verified):
+    decided = standing(reject(5, 34), reject(8, 37), accept(3, 32))
+    robust = verify(
+        apply_decisions(verified, decided).graph, settings=Settings().verification
+    ).graph
+
+    found = review(verified, decided, settings=Settings()).graph
+
+    assert farthest_m(robust, found) < 1e-6 < farthest_m(verified, found)
