@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.trajectory import Times
+from recon4.model.trajectory import Times, Trajectory
 
 Rows = NDArray[np.intp]
 Flags = NDArray[np.bool_]
@@ -349,6 +349,11 @@ class PoseGraph:
     def relations(self) -> Relations:
         """The edges as arrays, created on first access."""
         return relations_of(self.edges)
+
+    @property
+    def nodes(self) -> Trajectory:
+        """``T_map_body`` of the nodes by their times."""
+        return Trajectory(self.t_ns, self.T_map_body)
 
     def verdict_counts(self) -> dict[str, int]:
         """Number of edges with each verdict."""

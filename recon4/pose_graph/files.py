@@ -16,6 +16,7 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
+from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.histories import judgment_columns, judgments_in, judgments_of
 from recon4.pose_graph.tuning_solve import GRAPH_FILES
 from recon4.store.arrays import load_arrays, save_arrays
@@ -78,6 +79,19 @@ def load_graph(folder: Path) -> PoseGraph:
         raise StoreError(f"graph.npz: {error}") from error
     T_map_body = SE3(columns["node_R"], columns["node_t"])
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
+
+
+def load_nodes(folder: Path) -> Trajectory:
+    """The nodes of a graph with their poses ``T_map_body``, without its edges.
+
+    Args:
+        folder: With a ``graph.npz``.
+
+    Raises:
+        StoreError: If the file is missing or damaged.
+    """
+    columns = load_arrays(folder / "graph.npz", list(_NODES))
+    return Trajectory(columns["t_ns"], SE3(columns["node_R"], columns["node_t"]))
 
 
 def load_history(folder: Path, frames: tuple[int, int]) -> tuple[Judgment, ...]:

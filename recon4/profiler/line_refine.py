@@ -20,7 +20,6 @@ from recon4.model.events import RoundRefined
 from recon4.model.figures import RefineRound
 from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import turned_round
-from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.at_rest import AtRest
 from recon4.profiler.imu_chain import (
@@ -42,7 +41,7 @@ from recon4.profiler.tuning_solve import LINE_REFINE_STEPS
 from recon4.progress import Progress
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.tuning import PLANES, OdometryTuning, PlaneTuning
-from recon4.semi_rigid.refine import Refinement, corrected_by_graph
+from recon4.semi_rigid.refine import Refinement, corrected_by_nodes
 from recon4.settings.reads import LineRefineReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
@@ -258,7 +257,7 @@ class _LineSweep:
 def refine_lines(
     frames: FrameStore,
     odometry: Path,
-    graph: PoseGraph,
+    nodes: Trajectory,
     *,
     settings: LineRefineReads,
     progress: Progress,
@@ -268,11 +267,11 @@ def refine_lines(
     Args:
         frames: The points, with scans of the 2-D laser beside them.
         odometry: Folder of the stage ``odometry``.
-        graph: The verified graph of turns.
+        nodes: ``T_map_body`` of the nodes of the verified graph of turns.
         settings: Uses lines, planes and odometry.
         progress: Counts multiframes.
     """
-    start = corrected_by_graph(load_trajectory(odometry / "trajectory.npz"), graph)
+    start = corrected_by_nodes(load_trajectory(odometry / "trajectory.npz"), nodes)
     if settings.lines.method == "published":
         lines = load_lines(frames.folder)
         published = PublishedRefiner(frames, lines, tuned(LineTuning, settings.lines), progress)

@@ -23,7 +23,6 @@ from recon4.model.events import RoundRefined
 from recon4.model.figures import RefineFigures, RefineRound
 from recon4.model.multiframe import Multiframe
 from recon4.model.plain import to_plain
-from recon4.model.pose_graph import PoseGraph
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Times, Trajectory
 from recon4.progress import Progress
@@ -64,7 +63,7 @@ class Refinement:
 def refine(
     frames: FrameStore,
     odometry: Path,
-    graph: PoseGraph,
+    nodes: Trajectory,
     *,
     settings: RefineReads,
     progress: Progress,
@@ -74,11 +73,11 @@ def refine(
     Args:
         frames: The multiframes.
         odometry: Folder of the stage ``odometry``.
-        graph: The verified graph.
+        nodes: ``T_map_body`` of the nodes of the verified graph.
         settings: Uses segments, planes and refine; only mode ``beyond`` refines.
         progress: Counts multiframes.
     """
-    start = corrected_by_graph(load_trajectory(odometry / "trajectory.npz"), graph)
+    start = corrected_by_nodes(load_trajectory(odometry / "trajectory.npz"), nodes)
     if settings.graph.mode != "beyond":
         return Refinement(start, ())
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
@@ -86,10 +85,10 @@ def refine(
     return Refinement(refined, tuple(rounds))
 
 
-def corrected_by_graph(odometry: Trajectory, graph: PoseGraph) -> Trajectory:
+def corrected_by_nodes(odometry: Trajectory, nodes: Trajectory) -> Trajectory:
     """Dense odometry corrected by the nodes of the graph: ``T_map_body``."""
-    before = odometry.at(graph.t_ns)
-    return apply_corrections(odometry, graph.t_ns, T_before=before, T_after=graph.T_map_body)
+    before = odometry.at(nodes.t_ns)
+    return apply_corrections(odometry, nodes.t_ns, T_before=before, T_after=nodes.T_a_b)
 
 
 def refine_trajectory(

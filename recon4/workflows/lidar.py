@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from recon4.workflows.make_map import make_map
 from recon4.workflows.map_results import MAP_RESULTS
 from recon4.workflows.stages import (
     AUDIT,
@@ -32,18 +33,16 @@ def before_review(run: Run) -> None:
 
 def to_trajectory(run: Run) -> None:
     """The final trajectory: refined, leveled, georeferenced."""
-    inputs = run.measurements | {"odometry": "odometry", "graph": run.graph}
-    run.stage(REFINE, **inputs)
-    run.stage(LEVEL, **inputs, **run.control, refined="refine", audit=run.rig_audit)
+    inputs = run.measurements | {"odometry": "odometry"}
+    run.stage(REFINE, **inputs, nodes=run.nodes)
+    leveled = {"refined": "refine", "graph": run.graph, "audit": run.rig_audit}
+    run.stage(LEVEL, **inputs, **leveled, **run.control)
 
 
 def from_review(run: Run) -> None:
     """Trajectory and map."""
     to_trajectory(run)
-    points = run.measurements | {"odometry": "odometry", "level": "level"}
-    run.stage(INTENSITY, **points)
-    run.stage(CLASSES, **points)
-    run.stage(MAP, **points, **run.corrections, intensity="intensity", classes="classes")
+    make_map(run, **run.measurements)
 
 
 LIDAR = Workflow(

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon4.model.figures import GraphFigures, RefineFigures
 from recon4.model.odometry_figures import OdometryFigures
+from recon4.model.trajectory import Trajectory
 from recon4.settings.reads import LineGraphReads, LineOdometryReads, LineRefineReads
 from recon4.store.stage import Stage, StageContext
 
@@ -36,15 +37,14 @@ def _sweep_graph(
 
 
 def _refine_lines(
-    context: StageContext[LineRefineReads], *, frames: Path, odometry: Path, graph: Path
+    context: StageContext[LineRefineReads], *, frames: Path, odometry: Path, nodes: Trajectory
 ) -> RefineFigures:
-    from recon4.pose_graph.files import load_graph
     from recon4.profiler.line_refine import refine_lines
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
     found = refine_lines(
-        store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
+        store, odometry, nodes, settings=context.settings, progress=context.progress
     )
     return found.save(context.out)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from recon4.workflows.line_stages import LINE_ODOMETRY, LINE_REFINE, TURN_GRAPH
+from recon4.workflows.make_map import make_map
 from recon4.workflows.map_results import MAP_RESULTS
 from recon4.workflows.stages import (
     AUDIT,
@@ -27,14 +28,17 @@ def before_review(run: Run) -> None:
 
 
 def from_review(run: Run) -> None:
-    """Every line scan is moved; then the map, as of LiDARs."""
-    inputs = {"frames": "frames", "odometry": "odometry", "graph": run.graph}
-    run.stage(LINE_REFINE, **inputs)
-    run.stage(LEVEL, **inputs, **run.control, refined="refine", audit=None)
-    points = {"frames": "frames", "odometry": "odometry", "level": "level"}
-    run.stage(INTENSITY, **points)
-    run.stage(CLASSES, **points)
-    run.stage(MAP, **points, **run.corrections, intensity="intensity", classes="classes")
+    """Trajectory and map, as of LiDARs."""
+    to_trajectory(run)
+    make_map(run, frames="frames")
+
+
+def to_trajectory(run: Run) -> None:
+    """Every line scan is moved; then the trajectory is leveled."""
+    inputs = {"frames": "frames", "odometry": "odometry"}
+    run.stage(LINE_REFINE, **inputs, nodes=run.nodes)
+    leveled = {"refined": "refine", "graph": run.graph, "audit": None}
+    run.stage(LEVEL, **inputs, **leveled, **run.control)
 
 
 PROFILER = Workflow(

@@ -25,6 +25,7 @@ from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.model.site_control import SiteControl
+from recon4.model.trajectory import Trajectory
 from recon4.review.decisions import Standing, StandingCorrection
 from recon4.settings.reads import (
     AuditReads,
@@ -163,17 +164,14 @@ def _refine(
     *,
     frames: Path,
     odometry: Path,
-    graph: Path,
+    nodes: Trajectory,
     calibration: Path | None = None,
 ) -> RefineFigures:
-    from recon4.pose_graph.files import load_graph
     from recon4.semi_rigid.refine import refine
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration, odometry)
-    found = refine(
-        store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
-    )
+    found = refine(store, odometry, nodes, settings=context.settings, progress=context.progress)
     return found.save(context.out)
 
 

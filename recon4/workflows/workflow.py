@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from recon4.model.calibration_figures import CalibrationFigures
+from recon4.pose_graph.files import load_nodes
 from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.sandbox.freed_memory import return_freed_memory
+from recon4.store.contents import arrays_of, files_of
 from recon4.store.stage import Input, Stage, StageRunner
 from recon4.workflows.publish import Results
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
@@ -57,6 +59,17 @@ class Run:
     def graph(self) -> str:
         """Stage with the final graph before leveling."""
         return REVIEW.name if self.decided.standing else VERIFICATION.name
+
+    @property
+    def nodes(self) -> Input:
+        """Poses of the nodes of that graph; verdicts that leave them alone do not change it."""
+        found = load_nodes(self.runner.runs[self.graph].artifact.folder)
+        T = found.T_a_b
+        return arrays_of(found, {"t_ns": found.t_ns, "R": T.R, "t": T.t})
+
+    def files(self, stage: str, names: tuple[str, ...]) -> Input:
+        """Some files of a stage's artifact: a stage that is given them reads no others of it."""
+        return files_of(self.runner.runs[stage].artifact, names)
 
     @property
     def control(self) -> dict[str, Input]:

@@ -59,7 +59,7 @@ def solve(
     if settings.graph.mode in ("verification", "beyond"):
         graph = verify(graph, settings=settings.verification, progress=Silent()).graph
     save_graph(verified, graph)
-    refine(frames, odometry, graph, settings=settings, progress=Silent()).save(refined)
+    refine(frames, odometry, graph.nodes, settings=settings, progress=Silent()).save(refined)
     seconds = time.perf_counter() - start
     return load_trajectory(refined / "trajectory.npz"), seconds
 

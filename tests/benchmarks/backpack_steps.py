@@ -17,7 +17,7 @@ from recon4.evaluation.reference_mesh import read_mesh
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.recording.formats.poses import read_tum
-from recon4.semi_rigid.refine import corrected_by_graph
+from recon4.semi_rigid.refine import corrected_by_nodes
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
@@ -32,7 +32,7 @@ def steps_of(project: Path) -> dict[str, Trajectory]:
     odometry = load_trajectory(made["odometry"] / "trajectory.npz")
     return {
         "2-D SLAM and IMU": odometry,
-        "turns registered": corrected_by_graph(odometry, load_graph(made["verification"])),
+        "turns registered": corrected_by_nodes(odometry, load_graph(made["verification"]).nodes),
         "every line refined": load_trajectory(made["refine"] / "trajectory.npz"),
     }
 

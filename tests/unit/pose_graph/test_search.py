@@ -262,7 +262,7 @@ def tiny(frames, folder):
     facts = refine(
         frames,
         folder / "odometry",
-        load_graph(folder / "verified"),
+        load_graph(folder / "verified").nodes,
         settings=settings,
         progress=Silent(),
     ).save(folder / "refined")

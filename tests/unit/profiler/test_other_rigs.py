@@ -100,7 +100,7 @@ def test_another_rig_is_mapped_by_its_rig_file(tmp_path, settings, name, turn_s)
     refined = refine_lines(
         frames,
         tmp_path / "odometry",
-        load_graph(tmp_path / "graph"),
+        load_graph(tmp_path / "graph").nodes,
         settings=settings,
         progress=Silent(),
     )

@@ -86,7 +86,7 @@ def test_refined_lines_lie_within_two_centimeters(frames, odometry, graph_folder
     before = load_trajectory(odometry[0] / "trajectory.npz")
 
     found = refine_lines(
-        frames, odometry[0], load_graph(graph_folder), settings=settings, progress=Silent()
+        frames, odometry[0], load_graph(graph_folder).nodes, settings=settings, progress=Silent()
     )
 
     error = absolute_error(pair_poses(found.trajectory, truth))

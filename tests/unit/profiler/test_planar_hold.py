@@ -83,7 +83,7 @@ def test_the_other_side_of_a_wall_is_another_wall(settings, tmp_path):
     found = refine_lines(
         frames,
         tmp_path / "odometry",
-        load_graph(tmp_path / "graph"),
+        load_graph(tmp_path / "graph").nodes,
         settings=settings,
         progress=Silent(),
     )

@@ -13,7 +13,7 @@ from recon4.progress import Silent
 from recon4.registration.plane_map import Match
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
-from recon4.semi_rigid.refine import _Sweep, corrected_by_graph, refine, refine_trajectory
+from recon4.semi_rigid.refine import _Sweep, corrected_by_nodes, refine, refine_trajectory
 from recon4.semi_rigid.tuning import RefineTuning
 from recon4.settings import Settings, override
 from recon4.store.arrays import load_trajectory, save_trajectory
@@ -212,7 +212,7 @@ def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
     figures = refine(
         stroll,
         tmp_path / "odometry",
-        graph,
+        graph.nodes,
         settings=override(SETTINGS, [f"graph.mode={mode}"]),
         progress=Silent(),
     ).save(tmp_path / "out")
@@ -220,7 +220,7 @@ def test_other_modes_keep_the_trajectory_of_the_graph(stroll, tmp_path, mode):
     assert figures == RefineFigures(rounds=())
     found = load_trajectory(tmp_path / "out" / "trajectory.npz")
     odometry = load_trajectory(tmp_path / "odometry" / "trajectory.npz")
-    expected = corrected_by_graph(odometry, graph)
+    expected = corrected_by_nodes(odometry, graph.nodes)
     np.testing.assert_allclose(found.T_a_b.t, expected.T_a_b.t, atol=1e-9)
 
 
@@ -230,7 +230,7 @@ def test_mode_beyond_writes_a_better_trajectory_and_its_rounds(stroll, tmp_path)
     figures = refine(
         stroll,
         tmp_path / "odometry",
-        graph,
+        graph.nodes,
         settings=SETTINGS,
         progress=Silent(),
     ).save(tmp_path / "out")
@@ -252,7 +252,7 @@ def test_odometry_moves_along_with_the_nodes(stroll):
         (),
     )
 
-    moved = corrected_by_graph(stroll.truth, shifted)
+    moved = corrected_by_nodes(stroll.truth, shifted.nodes)
 
     expected = SE3.from_rpy(0, 0, 1.0, t=[5.0, 0, 0]) @ stroll.truth.T_a_b
     np.testing.assert_allclose(moved.T_a_b.t, expected.t, atol=1e-9)

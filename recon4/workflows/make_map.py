@@ -1,0 +1,27 @@
+"""From the final trajectory to the map: the same stages for rigs of LiDARs and of a profiler."""
+
+from __future__ import annotations
+
+from recon4.workflows.stages import CLASSES, INTENSITY, MAP
+from recon4.workflows.workflow import Run
+
+POSES = ("trajectory.npz",)
+"""What `INTENSITY` reads of the stage ``level``."""
+SIGHT = (*POSES, "mirrors.npz")
+"""What `CLASSES` reads of it."""
+PLACE = (*POSES, "uncertainty.npz", "georeference.json")
+"""What `MAP` reads of it."""
+
+
+def make_map(run: Run, **measurements: str) -> None:
+    """Intensities, classes and map; verdicts that leave the trajectory alone change none of them.
+
+    Args:
+        run: Its stage ``level`` is there.
+        measurements: Inputs of a stage that places points, but for the odometry.
+    """
+    points = measurements | {"odometry": "odometry"}
+    run.stage(INTENSITY, **points, level=run.files("level", POSES))
+    run.stage(CLASSES, **points, level=run.files("level", SIGHT))
+    made = {"intensity": "intensity", "classes": "classes"}
+    run.stage(MAP, **points, **run.corrections, **made, level=run.files("level", PLACE))
