@@ -2,19 +2,20 @@
 
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { html, messagePlace, render, say, targetOf, within } from "../shared/dom.js";
-import { KEYS, seconds } from "./captions.js";
+import { t } from "../shared/texts.js";
+import { keys, seconds } from "./captions.js";
 import { FIRST_CSS, SECOND_CSS } from "./draw.js";
 
 /** @import {TrajectoryNodes} from "../shared/http_types" */
 
 const SIZE_PX = { width: 640, height: 400 };
-const CAPTIONS = ["First multiframe (blue)", "Second multiframe (orange)"];
+const CAPTIONS = ["first-multiframe", "second-multiframe"];
 
 export function showKeys() {
-  const rows = KEYS.map(
-    ([keys, text]) =>
+  const rows = keys().map(
+    ([key, text]) =>
       html`<tr>
-        <th scope="row"><kbd>${keys}</kbd></th>
+        <th scope="row"><kbd>${key}</kbd></th>
         <td>${text}</td>
       </tr>`,
   );
@@ -23,8 +24,8 @@ export function showKeys() {
         ${rows}
       </tbody>
     </table>
-    ${closeButton("Close")}`;
-  openDialog("Keys", table).classList.add("wide");
+    ${closeButton(t("close"))}`;
+  openDialog(t("keys"), table).classList.add("wide");
 }
 
 /**
@@ -41,7 +42,7 @@ export function askForFrames(walk, chosen, look) {
       walk.frames.findIndex((one) => one >= frame),
     );
   const state = { nodes: chosen ? chosen.map(nodeOf) : [0, most], active: 0 };
-  const dialog = openDialog("Add a loop closure", html`<form></form>`);
+  const dialog = openDialog(t("add-loop-closure"), html`<form></form>`);
   const form = within(dialog, "form", HTMLFormElement);
   const put = (/** @type {number} */ k, /** @type {number} */ node) => {
     state.nodes[k] = node;
@@ -58,7 +59,12 @@ export function askForFrames(walk, chosen, look) {
         .value=${String(node)}
         @input=${(/** @type {Event} */ event) => put(k, Number(targetOf(event).value))}
         @focus=${() => (state.active = k)}
-      /><output>${seconds(walk.t_s[node] ?? 0)}, multiframe ${walk.frames[node]}</output></label
+      /><output
+        >${t("at-multiframe", {
+          time: seconds(walk.t_s[node] ?? 0),
+          frame: String(walk.frames[node]),
+        })}</output
+      ></label
     >`;
   };
   const onPlan = (/** @type {PointerEvent} */ event) => {
@@ -69,7 +75,7 @@ export function askForFrames(walk, chosen, look) {
   const submit = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const [a = 0, b = 0] = state.nodes.map((node) => walk.frames[node] ?? 0);
-    if (a === b) return say(within(form, ".error"), "Both are the same multiframe");
+    if (a === b) return say(within(form, ".error"), t("same-multiframe"));
     dialog.close();
     look([Math.min(a, b), Math.max(a, b)]);
   };
@@ -80,12 +86,12 @@ export function askForFrames(walk, chosen, look) {
           width=${SIZE_PX.width}
           height=${SIZE_PX.height}
           role="img"
-          aria-label="The walk from above"
+          aria-label=${t("walk-from-above")}
           @pointerdown=${onPlan}
         ></canvas>
-        ${CAPTIONS.map(slider)} ${messagePlace()}
+        ${CAPTIONS.map((id, k) => slider(t(id), k))} ${messagePlace()}
         <div class="buttons">
-          ${closeButton()}<button class="primary">Look at this pair</button>
+          ${closeButton()}<button class="primary">${t("look-at-pair")}</button>
         </div>`,
       form,
     );

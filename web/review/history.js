@@ -1,6 +1,7 @@
 // The history of the verdicts on a pair, in words. No DOM, no network.
 
-import { length, percent, plain } from "./captions.js";
+import { t } from "../shared/texts.js";
+import { length, percent, plain, reasonText } from "./captions.js";
 
 /**
  * @import {Judgment} from "../shared/http_types"
@@ -10,19 +11,19 @@ import { length, percent, plain } from "./captions.js";
  */
 
 /**
- * The figure that a judge compared with its limit: in words, and how it is written.
+ * The figure that a judge compared with its limit: the name of its text, and how it is written.
  * @type {Record<string, [string, (value: number) => string]>}
  */
 const MEASURES = {
-  overlap: ["overlap", percent],
-  error_m: ["error", length],
-  match_ratio: ["matches", percent],
-  degeneracy: ["degeneracy", plain],
-  seen_through: ["seen through", (v) => `${plain(100 * v, 2)} %`],
-  confirmed_nodes: ["nodes that confirm it", plain],
-  contradicted_nodes: ["nodes that contradict it", plain],
-  verification_m: ["path discrepancy", length],
-  chi2: ["squared residual", plain],
+  overlap: ["measure-overlap", percent],
+  error_m: ["measure-error-m", length],
+  match_ratio: ["measure-match-ratio", percent],
+  degeneracy: ["measure-degeneracy", plain],
+  seen_through: ["measure-seen-through", (v) => `${plain(100 * v, 2)} %`],
+  confirmed_nodes: ["measure-confirmed-nodes", plain],
+  contradicted_nodes: ["measure-contradicted-nodes", plain],
+  verification_m: ["measure-verification-m", length],
+  chi2: ["measure-chi2", plain],
 };
 
 /** The figure of a judgment with its limit; empty if it has none. */
@@ -30,16 +31,17 @@ export function figureText(
   /** @type {Pick<Judgment, "measure" | "value" | "limit">} */ { measure, value, limit },
 ) {
   if (!measure || value === null) return "";
-  const [word, write] = MEASURES[measure] ?? [measure, plain];
-  return `${word} ${write(value)}${limit === null ? "" : `, limit ${write(limit)}`}`;
+  const [id, write] = MEASURES[measure] ?? [measure, plain];
+  const figure = `${t(id)} ${write(value)}`;
+  return limit === null ? figure : t("with-limit", { figure, limit: write(limit) });
 }
 
 /** One verdict: `by` whom, `verdict`, and `why` with the figure that decided. */
 export function judgmentText(/** @type {Judgment} */ judgment) {
   const { by, person, verdict, reason, measure, value, note } = judgment;
   const alone = by === "verification" && measure && value === null;
-  const figure = alone ? "no alternative path" : figureText(judgment);
-  const why = person ? note : [reason, figure].filter(Boolean).join("; ");
+  const figure = alone ? t("no-alternative-path") : figureText(judgment);
+  const why = person ? note : [reasonText(reason), figure].filter(Boolean).join("; ");
   return { by: person || by, verdict, why };
 }
 

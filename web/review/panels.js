@@ -9,14 +9,17 @@ import {
   approvalText,
   decisionText,
   degrees,
+  judgeText,
   length,
   mapText,
   percent,
   permissionMissing,
   plain,
   seconds,
+  verdictText,
 } from "./captions.js";
 import { html, messagePlace, nothing, render, within } from "../shared/dom.js";
+import { language, t } from "../shared/texts.js";
 
 const MANY = 8; // of a list
 
@@ -55,8 +58,8 @@ const checked = (bad, text) => (bad ? html`<span class="bad">✕ ${text}</span>`
  */
 export function showPair(panel, { row, facts, found }, path_limit_m) {
   if (!row) {
-    const none = html`<h2>No pair selected</h2>
-      <p class="quiet">Press J for the first one</p>`;
+    const none = html`<h2>${t("no-pair")}</h2>
+      <p class="quiet">${t("press-j-first")}</p>`;
     return render(none, panel);
   }
   const figures = found ?? row;
@@ -65,49 +68,34 @@ export function showPair(panel, { row, facts, found }, path_limit_m) {
     html`<h2>${row.title}</h2>
       <p>${decisionText(row, path_limit_m)}</p>
       <dl>
+        ${figureRow(t("influence"), length(row.influence_m), "", t("influence-hint"))}
+        ${figureRow(t("overlap"), percent(figures.overlap), "", t("overlap-hint"))}
         ${figureRow(
-          "Influence on the map",
-          length(row.influence_m),
-          "",
-          "How far the map moves if this edge is rejected instead of accepted, or the reverse",
-        )}
-        ${figureRow(
-          "Overlap",
-          percent(figures.overlap),
-          "",
-          "Part of the view volume of the first place that the second one sees too",
-        )}
-        ${figureRow(
-          "Registration error",
+          t("registration-error"),
           checked(over(figures), length(figures.error_m)),
-          figures.limit_m === null ? "" : `limit ${length(figures.limit_m)}`,
-          "Mean distance of the matched features",
+          figures.limit_m === null ? "" : t("limit-is", { limit: length(figures.limit_m) }),
+          t("registration-error-hint"),
         )}
         ${figureRow(
-          "Degeneracy",
+          t("degeneracy"),
           plain(figures.degeneracy, 2),
-          "0 unobservable, 0.33 isotropic",
-          "Smallest eigenvalue of the normalized information; near 0 the places can slide",
+          t("degeneracy-scale"),
+          t("degeneracy-hint"),
         )}
         ${figureRow(
-          "Path discrepancy",
+          t("path-discrepancy"),
           checked(contradicted, length(row.verification_m)),
-          `median of ${row.paths ?? 0} alternative paths`,
-          "Distance between this edge and the other paths through the graph between its ends",
+          t("median-of-paths", { paths: String(row.paths ?? 0) }),
+          t("path-discrepancy-hint"),
         )}
+        ${figureRow(t("chi-square"), plain(row.chi2), "", t("chi-square-hint"))}
         ${figureRow(
-          "Chi-square contribution",
-          plain(row.chi2),
-          "",
-          "Squared residual of this edge, weighted by its information",
-        )}
-        ${figureRow(
-          "Residual to the graph",
+          t("residual-to-graph"),
           facts ? length(facts.apart_m) : "…",
           facts ? degrees(facts.apart_rad, 2) : "",
-          "Difference between this edge and the relative pose in the optimized graph",
+          t("residual-hint"),
         )}
-        ${figureRow("Decided by", row.who || "program", row.why)}
+        ${figureRow(t("decided-by"), row.who || judgeText("program"), row.why)}
       </dl>
       ${facts ? historyList(historyOf(facts.history, row)) : nothing}
       ${facts?.paths.length ? pathList(facts) : nothing}`,
@@ -120,12 +108,13 @@ function historyList(/** @type {Verdicts[]} */ judgments) {
   if (!judgments.length) return nothing;
   const line = (/** @type {Verdicts} */ { by, verdict, why, pending }) =>
     html`<li class=${verdict}>
-      <b>${by}</b> ${verdict}${why ? html`<small> ${why}</small>` : nothing}${
-        pending ? html`<small> (not in the map yet)</small>` : nothing
+      <b>${judgeText(by)}</b>
+      ${verdictText(verdict)}${why ? html`<small> ${why}</small>` : nothing}${
+        pending ? html`<small> ${t("not-in-map-yet")}</small>` : nothing
       }
     </li>`;
   return html`<details ?open=${judgments.length > 1}>
-    <summary>History of the verdict (${judgments.length})</summary>
+    <summary>${t("history-of-verdict", { count: judgments.length })}</summary>
     <ol class="history">
       ${judgments.map(line)}
     </ol>
@@ -136,7 +125,7 @@ function pathList(/** @type {PairFacts} */ { paths, path_count }) {
   const line = (/** @type {PairFacts["paths"][number]} */ path) =>
     html`<li><span>${path.frames.join(" → ")}</span><b>${length(path.residual_m)}</b></li>`;
   return html`<details>
-    <summary>Alternative paths (${path_count})</summary>
+    <summary>${t("alternative-paths", { count: String(path_count) })}</summary>
     <ul class="paths">
       ${paths.slice(0, 20).map(line)}
     </ul>
@@ -154,7 +143,11 @@ function shortList(title, items, className = "") {
     <h3>${title}</h3>
     <ul>
       ${items.slice(0, MANY).map((one) => html`<li>${one}</li>`)}
-      ${items.length > MANY ? html`<li>and ${items.length - MANY} more</li>` : nothing}
+      ${
+        items.length > MANY
+          ? html`<li>${t("and-more", { count: items.length - MANY })}</li>`
+          : nothing
+      }
     </ul>
   </div>`;
 }
@@ -167,43 +160,45 @@ function shortList(title, items, className = "") {
  */
 export function showEffect(panel, effect, { working, choose }) {
   if (!effect) {
-    const none = html`<h2>Effect</h2>
-      <p class="quiet">${working ? "Solving the graph…" : "No decisions yet"}</p>`;
+    const none = html`<h2>${t("effect")}</h2>
+      <p class="quiet">${working ? t("solving") : t("no-decisions")}</p>`;
     return render(none, panel);
   }
   const { last, all, conflicts, missing, changed } = effect;
   const pair = (/** @type {Pair} */ p) =>
     html`<button type="button" class="link" @click=${() => choose(p)}>
-      multiframes ${p[0]} and ${p[1]}
+      ${t("multiframes", { i: String(p[0]), j: String(p[1]) })}
     </button>`;
   const conflictTexts = conflicts.map(
     (one) =>
-      html`${pair(one.pair)} residual ${length(one.residual_m)}, ${degrees(one.residual_rad)}, by
-      ${one.who}`,
+      html`${pair(one.pair)}
+      ${t("conflict", {
+        length: length(one.residual_m),
+        angle: degrees(one.residual_rad),
+        who: one.who,
+      })}`,
   );
-  const moveTexts = last.moves
-    .slice(0, 5)
-    .map((move) => `${length(move.moved_m)} at multiframe ${move.frame_id} (${seconds(move.t_s)})`);
+  const moveTexts = last.moves.slice(0, 5).map((move) =>
+    t("move", {
+      length: length(move.moved_m),
+      frame: String(move.frame_id),
+      time: seconds(move.t_s),
+    }),
+  );
   render(
-    html`<h2>${working ? "Effect (solving…)" : "Effect"}</h2>
+    html`<h2>${t(working ? "effect-solving" : "effect")}</h2>
       <dl>
-        ${figureRow(
-          "Chi-square, last decision",
-          `${plain(last.chi2_before, 4)} → ${plain(last.chi2_after, 4)}`,
-        )}
-        ${figureRow("Edges in the graph", `${last.edges_before} → ${last.edges_after}`)}
-        ${figureRow(
-          "Chi-square, all decisions",
-          `${plain(all.chi2_before, 4)} → ${plain(all.chi2_after, 4)}`,
-        )}
-        ${figureRow("Largest move, all decisions", length(all.moves[0]?.moved_m ?? 0))}
+        ${figureRow(t("chi-last"), `${plain(last.chi2_before, 4)} → ${plain(last.chi2_after, 4)}`)}
+        ${figureRow(t("edges-in-graph"), `${last.edges_before} → ${last.edges_after}`)}
+        ${figureRow(t("chi-all"), `${plain(all.chi2_before, 4)} → ${plain(all.chi2_after, 4)}`)}
+        ${figureRow(t("largest-move"), length(all.moves[0]?.moved_m ?? 0))}
       </dl>
-      ${shortList("✕ Accepted, but does not fit the graph", conflictTexts, "bad")}
-      ${shortList("Without effect: not in this graph, or not registered", missing.map(pair))}
-      ${shortList("Registered again since the decision", changed.map(pair))}
-      ${shortList("Rejected automatically as a consequence", all.rejected_automatically.map(pair))}
-      ${shortList("Accepted automatically as a consequence", all.accepted_automatically.map(pair))}
-      ${shortList("Largest moves of the last decision", moveTexts)}`,
+      ${shortList(t("does-not-fit"), conflictTexts, "bad")}
+      ${shortList(t("without-effect"), missing.map(pair))}
+      ${shortList(t("registered-again"), changed.map(pair))}
+      ${shortList(t("rejected-as-consequence"), all.rejected_automatically.map(pair))}
+      ${shortList(t("accepted-as-consequence"), all.accepted_automatically.map(pair))}
+      ${shortList(t("largest-moves"), moveTexts)}`,
     panel,
   );
 }
@@ -219,7 +214,7 @@ export function showApproval(panel, state, { remake, approve }) {
   const obstacle = approvalObstacle(state);
   const explained = obstacle && !busy && approval.kind !== "approved";
   render(
-    html`<h2>Map</h2>
+    html`<h2>${t("map")}</h2>
       <p>${mapText(state)}</p>
       <p class="approval ${approvalLine(approval).level}">${approvalText(approval)}</p>
       ${approval.detail ? html`<p class="quiet approval-detail">${approval.detail}</p>` : nothing}
@@ -229,10 +224,10 @@ export function showApproval(panel, state, { remake, approve }) {
           type="button"
           id="remake"
           ?disabled=${busy || in_map || !may_process}
-          title=${may_process ? "" : permissionMissing("process")}
+          title=${may_process ? "" : permissionMissing("may-process")}
           @click=${() => remake(within(panel, ".error"))}
         >
-          Rebuild map</button
+          ${t("rebuild-map")}</button
         ><button
           type="button"
           id="approve"
@@ -240,13 +235,13 @@ export function showApproval(panel, state, { remake, approve }) {
           title=${obstacle}
           @click=${approve}
         >
-          Approve map…
+          ${t("approve-map")}
         </button>
       </div>
       ${
         explained
           ? html`<p class="quiet">
-              Approval: ${obstacle.charAt(0).toLowerCase()}${obstacle.slice(1)}
+              ${t("approval-obstacle", { obstacle: withinSentence(obstacle) })}
             </p>`
           : nothing
       }
@@ -255,10 +250,15 @@ export function showApproval(panel, state, { remake, approve }) {
   );
 }
 
+/** A sentence after a colon: in English it begins small. */
+const withinSentence = (/** @type {string} */ text) =>
+  language() === "en" ? text.charAt(0).toLowerCase() + text.slice(1) : text;
+
 /** What a row of the journal is about. */
-const kindText = (/** @type {RowView} */ row) =>
-  (KINDS[row.kind] ?? row.kind) +
-  (row.frame_i === null ? "" : ` multiframes ${row.frame_i} and ${row.frame_j}`);
+function kindText(/** @type {RowView} */ { kind, frame_i, frame_j }) {
+  const pair = frame_i === null ? "" : t("did-pair", { i: String(frame_i), j: String(frame_j) });
+  return KINDS[kind] ? t(KINDS[kind], { pair }) : kind + pair;
+}
 
 /**
  * What another person did meanwhile: the last of `count` new rows of the journal.
@@ -266,9 +266,8 @@ const kindText = (/** @type {RowView} */ row) =>
  * @param {number} count
  */
 export function journalNews(row, count) {
-  const more =
-    count > 1 ? `, after ${count - 1} other ${count > 2 ? "decisions" : "decision"}` : "";
-  return `Meanwhile ${row.who} ${kindText(row)}${more}`;
+  const given = { who: row.who, did: kindText(row) };
+  return count > 1 ? t("meanwhile-after", { ...given, others: count - 1 }) : t("meanwhile", given);
 }
 
 /**

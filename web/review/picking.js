@@ -1,5 +1,6 @@
 // Picking the same three points in two places, in the first and second place by turns. No DOM.
 
+import { t } from "../shared/texts.js";
 import { IDENTITY, apply } from "./math.js";
 
 /**
@@ -17,7 +18,7 @@ export class Picking {
   j = []; // in the frame of the second place
   #names;
 
-  constructor(names = ["first (blue) place", "second (orange) place"]) {
+  constructor(names = [t("first-place"), t("second-place")]) {
     this.#names = names;
   }
 
@@ -32,7 +33,7 @@ export class Picking {
   /** What to pick next. */
   get text() {
     const name = this.#names[this.#isFirst ? 0 : 1];
-    return `Pick point ${this.j.length + 1} of ${PAIRS} in the ${name}`;
+    return t("pick-point", { n: this.j.length + 1, count: PAIRS, place: name ?? "" });
   }
 
   /**

@@ -2,23 +2,28 @@
 // and doubtful ones first.
 
 import { html, nothing, render, repeat, targetOf, within } from "../shared/dom.js";
-import { VERDICTS, length, seconds } from "./captions.js";
+import { t } from "../shared/texts.js";
+import { VERDICTS, edgeText, length, reasonText, seconds } from "./captions.js";
 import { workMark } from "./team_captions.js";
 
 /** @import {Row} from "./state.js" */
 
+/** The name of a text, and what it shows. */
 /** @type {Record<string, [string, (row: Row, me: string) => boolean]>} */
 const SHOW = {
-  loops: ["Loop closures", (row) => row.measured && row.kind !== "neighbor"],
-  doubt: ["Rejected or unverified", (row) => row.measured && row.state !== "accepted"],
-  kept: ["Accepted", (row) => row.measured && row.state === "accepted" && row.kind !== "neighbor"],
-  open: ["Decided automatically", (row) => row.measured && !row.who],
-  decided: ["Decided by people", (row) => Boolean(row.who)],
-  mine: ["Assigned to me", (row, me) => me !== "" && row.work?.assignee === me],
-  second: ["Waiting for a second opinion", (row) => Boolean(row.work?.waits)],
-  later: ["Skipped for later", (row) => Boolean(row.work?.skipped_by)],
-  all: ["All registered pairs", (row) => row.measured],
-  apart: ["Not registered", (row) => !row.measured],
+  loops: ["queue-loops", (row) => row.measured && row.kind !== "neighbor"],
+  doubt: ["queue-doubt", (row) => row.measured && row.state !== "accepted"],
+  kept: [
+    "queue-kept",
+    (row) => row.measured && row.state === "accepted" && row.kind !== "neighbor",
+  ],
+  open: ["queue-open", (row) => row.measured && !row.who],
+  decided: ["queue-decided", (row) => Boolean(row.who)],
+  mine: ["queue-mine", (row, me) => me !== "" && row.work?.assignee === me],
+  second: ["queue-second", (row) => Boolean(row.work?.waits)],
+  later: ["queue-later", (row) => Boolean(row.work?.skipped_by)],
+  all: ["queue-all", (row) => row.measured],
+  apart: ["queue-apart", (row) => !row.measured],
 };
 const PAGE = 300; // rows in the list at a time
 
@@ -118,19 +123,20 @@ export class ReviewQueue extends HTMLElement {
       this.#filter({ reason: targetOf(event).value });
     render(
       html`<div class="queue-head">
-          <h1>Loops</h1>
+          <h1>${t("loops")}</h1>
           <div class="buttons"></div>
         </div>
         <div class="filters">
-          <select aria-label="Which pairs" @change=${byShow}>
+          <select aria-label=${t("which-pairs")} @change=${byShow}>
             ${Object.entries(SHOW).map(
               ([key, [text]]) =>
-                html`<option value=${key} .selected=${key === show}>${text}</option>`,
+                html`<option value=${key} .selected=${key === show}>${t(text)}</option>`,
             )}</select
-          ><select aria-label="Reason of the rejection" @change=${byReason}>
-            <option value="">Any reason</option>
+          ><select aria-label=${t("reason-of-rejection")} @change=${byReason}>
+            <option value="">${t("any-reason")}</option>
             ${reasons.map(
-              (text) => html`<option value=${text} .selected=${text === reason}>${text}</option>`,
+              (one) =>
+                html`<option value=${one} .selected=${one === reason}>${reasonText(one)}</option>`,
             )}
           </select>
         </div>
@@ -150,12 +156,17 @@ export class ReviewQueue extends HTMLElement {
     const { shown } = this.#state;
     const decided = shown.filter((row) => row.who).length;
     return shown.length
-      ? `${this.#at + 1 || "–"} of ${shown.length} · ${decided} decided by people`
-      : "None";
+      ? t("queue-count", {
+          at: this.#at + 1 || "–",
+          count: String(shown.length),
+          decided: String(decided),
+        })
+      : t("none");
   }
 
   #item(/** @type {Row} */ row) {
-    const { mark, word } = VERDICTS[row.state] ?? { mark: "✕", word: "Rejected" };
+    const { mark, word: id } = VERDICTS[row.state] ?? { mark: "✕", word: "mark-rejected" };
+    const word = t(id);
     const chosen = row.key === this.#state.chosen;
     return html`<li data-key=${row.key} aria-current=${chosen ? "true" : nothing}>
       <button type="button" tabindex=${chosen ? 0 : -1} @click=${() => this.choose(row.key)}>
@@ -163,14 +174,14 @@ export class ReviewQueue extends HTMLElement {
           ><span aria-hidden="true">${mark}</span><span class="unseen">${word}</span></span
         ><span>${seconds(row.t_i_s)} – ${seconds(row.t_j_s)}</span
         ><span class="number">${row.measured ? length(row.influence_m) : nothing}</span
-        ><small
-          >${[row.who ? `by ${row.who}` : row.reason || row.kind, workMark(row.work)]
-            .filter(Boolean)
-            .join(" · ")}</small
-        >
+        ><small>${[decider(row), workMark(row.work)].filter(Boolean).join(" · ")}</small>
       </button>
     </li>`;
   }
 }
+
+/** Who decided about a pair, or why the program did. */
+const decider = (/** @type {Row} */ { who, reason, kind }) =>
+  who ? t("by-person", { who }) : reason ? reasonText(reason) : edgeText(kind);
 
 customElements.define("review-queue", ReviewQueue);

@@ -32,6 +32,7 @@ import { watchProject } from "./watch.js";
 import { withPassword } from "../account/recent_login.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
+import { t } from "../shared/texts.js";
 import "./queue.js";
 import "./view.js";
 
@@ -54,14 +55,14 @@ const turns = {
   own: /** @type {Map<string, number>} */ (new Map()),
 };
 
-document.title = `Review of ${id} · recon4`;
+document.title = t("title-of", { project: id });
 
 // -- the selected pair
 
 async function select(/** @type {[number, number]} */ pair) {
   const selected = state.select(pair, queue.get(keyOf(pair)) ?? state.newRow(pair));
   drawSelected();
-  view.clear("Reading points…");
+  view.clear(t("reading-points"));
   say(message, "");
   try {
     const [facts, points] = await loader.load(pair, view.reach);
@@ -78,7 +79,7 @@ async function select(/** @type {[number, number]} */ pair) {
       loader.load([next.frame_i, next.frame_j], view.reach).catch(() => {});
   } catch (error) {
     if (state.selected !== selected) return;
-    view.clear("No points to show");
+    view.clear(t("no-points"));
     showError(message, error);
   }
 }
@@ -155,7 +156,7 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
     kind === "restore" ? !state.activeDecisionOf(pair) : !selected.drawn || selected.decided;
   if (blocked) return undefined;
   if (kind === "accept" && !state.isMeasured) {
-    say(message, "This pair is not registered: align it and refine it first");
+    say(message, t("not-registered-yet"));
     return undefined;
   }
   const reason = reasonField();
@@ -337,23 +338,21 @@ byId("journal").addEventListener("toggle", drawJournal);
 // -- begin
 
 async function begin() {
-  view.clear("Sorting the loop closures…");
+  view.clear(t("sorting"));
   const server = await readReview(id);
   loader.clear();
   const empty = { rows: [], columns: [], began_ns: 0, limit_m: state.path_limit_m };
   state.reset(server, server.graph ? await readQueue(id) : empty);
   queue.rows = state.rows;
-  const searched = server.graph
-    ? "This walk has no pair to decide about"
-    : "Nothing to review until loop closures have been searched and verified";
-  view.clear(state.rows.length ? "Press J for the first pair" : searched);
+  const searched = server.graph ? t("no-pairs") : t("nothing-yet");
+  view.clear(state.rows.length ? t("press-j") : searched);
   update(server);
 }
 
 drawSelected();
 listenToActions(actions, view, reasonField(), () => Boolean(state.selected?.drawn));
 await attempt(message, begin);
-if (message.textContent) view.clear("Nothing to review");
+if (message.textContent) view.clear(t("nothing-to-review"));
 await attempt(message, async () => {
   queue.me = (await readCurrentUser()).name;
   await team.begin(state.server?.may_review ?? false);

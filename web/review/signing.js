@@ -6,16 +6,13 @@ import { attempt, html, messagePlace, nothing, render, within } from "../shared/
 import { figures } from "../shared/figures.js";
 import { fixedFindingList } from "../shared/finding_list.js";
 import { isReason, verdictState } from "../shared/verdict.js";
+import { t } from "../shared/texts.js";
 
 /** @import {MapFacts} from "../shared/http_types" */
 
-const SIGNED =
-  "Your name, the time, the verdict, the figures and the hashes of all results are signed. " +
-  "A version is kept that no later run or decision changes.";
-
 /** What the signature is about: the verdict with its reasons, and the figures. */
 const about = (/** @type {MapFacts} */ map) =>
-  html`<section class="signed-map" tabindex="0" aria-label="What is approved">
+  html`<section class="signed-map" tabindex="0" aria-label=${t("what-is-approved")}>
     <p>${badge(verdictState(map.verdict))}</p>
     ${fixedFindingList(map)}
     <dl>
@@ -35,11 +32,9 @@ const about = (/** @type {MapFacts} */ map) =>
  * @param {number} conflicts
  */
 function reasonField({ reason_needed, min_reason_characters }, conflicts) {
-  const hint =
-    `Needed in spite of the findings, at least ${min_reason_characters} characters. ` +
-    "It stands in the report and in every exported file";
+  const hint = t("reason-hint", { characters: String(min_reason_characters) });
   return html`<label
-    ><span>${reason_needed || conflicts ? "Reason (required)" : "Remark"}</span
+    ><span>${reason_needed || conflicts ? t("reason-required") : t("remark")}</span
     ><input name="why" maxlength="500" autocomplete="off" />${
       reason_needed ? html`<small>${hint}</small>` : nothing
     }</label
@@ -53,7 +48,7 @@ function reasonField({ reason_needed, min_reason_characters }, conflicts) {
  * @param {(why: string, confirmed: boolean) => Promise<boolean>} sign whether it is signed
  */
 export function askToSign(map, conflicts, sign) {
-  const dialog = openDialog("Approve map", html`<form></form>`);
+  const dialog = openDialog(t("approve-map-title"), html`<form></form>`);
   dialog.classList.add("wide");
   const form = within(dialog, "form", HTMLFormElement);
   const list = about(map);
@@ -62,13 +57,13 @@ export function askToSign(map, conflicts, sign) {
   const draw = ({ signing = false, allowed = false }) =>
     render(
       html`${list}
-        <p>${SIGNED}</p>
+        <p>${t("signed-is")}</p>
         ${reasonField(map, conflicts)}
         ${
           conflicts
             ? html`<label class="check"
                 ><input type="checkbox" /><span
-                  >${conflicts} accepted loop closures do not fit the graph; sign anyway</span
+                  >${t("sign-anyway", { count: conflicts })}</span
                 ></label
               >`
             : nothing
@@ -76,7 +71,7 @@ export function askToSign(map, conflicts, sign) {
         ${messagePlace()}
         <div class="buttons">
           ${closeButton()}<button class="primary" ?disabled=${signing || !allowed}>
-            ${signing ? "Signing…" : "Sign"}
+            ${signing ? t("signing") : t("sign")}
           </button>
         </div>`,
       form,

@@ -1,7 +1,8 @@
 // What the review page knows: the server's state, the pairs, the selected pair and the effect of
 // the decisions. No DOM, no network.
 
-import { keyOf, length } from "./captions.js";
+import { t, written } from "../shared/texts.js";
+import { keyOf, length, reasonText } from "./captions.js";
 import { IDENTITY, apart } from "./math.js";
 
 /**
@@ -230,20 +231,18 @@ export class ReviewState {
   /** What the button to refine does next. */
   get refineText() {
     const { selected } = this;
-    if (selected?.busy) return "Refining…";
-    return selected?.found?.measurement && !selected.moved ? "Create edge" : "Refine";
+    if (selected?.busy) return t("refining");
+    return selected?.found?.measurement && !selected.moved ? t("create-edge") : t("refine");
   }
 
   /** What to do next with the selected pair. */
   get hint() {
     const { selected, server } = this;
     if (!selected?.facts || !server) return "";
-    if (selected.decided) return "Decided. J shows the next pair, U or Ctrl Z undoes the decision";
+    if (selected.decided) return t("hint-decided");
     if (selected.found && !selected.moved) return registrationHint(selected);
-    if (selected.moved) return "Moved by hand. Enter refines from here";
-    return this.isMeasured
-      ? ""
-      : "Not registered: refine it (move it first if it is far off), then create the edge";
+    if (selected.moved) return t("hint-moved");
+    return this.isMeasured ? "" : t("hint-not-registered");
   }
 
   #isMeasuredByPerson(/** @type {Row} */ row) {
@@ -252,7 +251,7 @@ export class ReviewState {
 
   #described(/** @type {NewRow} */ row) {
     const { frame_i, frame_j } = row;
-    const title = `Multiframes ${frame_i} and ${frame_j}`;
+    const title = t("pair-title", { i: String(frame_i), j: String(frame_j) });
     return { ...row, key: keyOf([frame_i, frame_j]), title, ...this.#decisionOf(row) };
   }
 
@@ -274,9 +273,9 @@ export class ReviewState {
 function registrationHint(/** @type {Selected} */ { found, facts }) {
   if (!found || !facts) return "";
   const [m, degrees] = apart(found.T_i_j, facts.predicted);
-  const moved = `${length(m)} and ${degrees.toFixed(2)}° from the graph`;
-  if (!found.converged) return "Registration did not converge: move it nearer and refine again";
+  const moved = { length: length(m), angle: written(`${degrees.toFixed(2)}°`) };
+  if (!found.converged) return t("hint-not-converged");
   return found.reason
-    ? `Refined, ${moved}. It would be rejected automatically: ${found.reason}`
-    : `Refined, ${moved}. Enter creates the edge`;
+    ? t("hint-refined-rejected", { ...moved, reason: reasonText(found.reason) })
+    : t("hint-refined", moved);
 }

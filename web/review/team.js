@@ -4,6 +4,7 @@
 import { look, readComments, readReviewers } from "../shared/api.js";
 import { html, nothing, render, targetOf, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 import { NO_WORK, agreementText, lookersText } from "./team_captions.js";
 
 /**
@@ -88,7 +89,7 @@ export class Team {
   #draw() {
     const { shown, lookers } = this.#state;
     render(
-      html`<h2>Team</h2>
+      html`<h2>${t("team")}</h2>
         <p class="quiet" role="status">${lookersText(lookers, shown?.pair)}</p>
         ${shown ? this.#work(shown.work ?? NO_WORK) : nothing}`,
       this.#panel,
@@ -99,19 +100,23 @@ export class Team {
     const { may, comments } = this.#state;
     const agreement = agreementText(work);
     const question = work.second_by
-      ? this.#button("Withdraw the question", () => this.#share("waive"))
-      : this.#button("Ask for a second opinion", () => this.#share("second"));
+      ? this.#button(t("withdraw-question"), () => this.#share("waive"))
+      : this.#button(t("ask-second"), () => this.#share("second"));
     return html`${
       agreement
         ? html`<p class="agreement ${work.waits ? "waits" : work.agreement}">${agreement}</p>`
         : nothing
     }
-    ${work.skipped_by ? html`<p class="quiet">${work.skipped_by} left it for later</p>` : nothing}
+    ${
+      work.skipped_by
+        ? html`<p class="quiet">${t("left-for-later", { who: work.skipped_by })}</p>`
+        : nothing
+    }
     ${may ? this.#assignment(work.assignee) : assigned(work.assignee)}
     ${
       may
         ? html`<div class="buttons">
-            ${this.#button("Skip for later (S)", () => this.#share("skip"))}${question}
+            ${this.#button(t("skip-for-later"), () => this.#share("skip"))}${question}
           </div>`
         : nothing
     }
@@ -142,9 +147,9 @@ export class Team {
     const choose = (/** @type {Event} */ event) =>
       this.#share("assign", { assignee: targetOf(event).value });
     return html`<label
-      ><span>Assigned to</span
+      ><span>${t("assigned-to")}</span
       ><select @change=${choose}>
-        <option value="" .selected=${!assignee}>Nobody</option>
+        <option value="" .selected=${!assignee}>${t("nobody")}</option>
         ${names.map(
           (name) => html`<option value=${name} .selected=${name === assignee}>${name}</option>`,
         )}
@@ -162,11 +167,13 @@ export class Team {
       await this.#share("comment", { why });
     };
     return html`<form class="comment" @submit=${submit}>
-      <label><span>Comment</span><input maxlength="500" required autocomplete="off" /></label>
-      <button>Comment</button>
+      <label
+        ><span>${t("comment")}</span><input maxlength="500" required autocomplete="off"
+      /></label>
+      <button>${t("do-comment")}</button>
     </form>`;
   }
 }
 
 const assigned = (/** @type {string} */ assignee) =>
-  assignee ? html`<p class="quiet">Assigned to ${assignee}</p>` : nothing;
+  assignee ? html`<p class="quiet">${t("assigned-to-person", { who: assignee })}</p>` : nothing;

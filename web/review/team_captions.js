@@ -1,5 +1,6 @@
 // The work of several people on a pair, in words. No DOM, no network.
 
+import { t } from "../shared/texts.js";
 /**
  * @import {LookerView, WorkView} from "../shared/http_types"
  * @typedef {Pick<WorkView, "opinions" | "agreement" | "second_by" | "waits">} Opinions
@@ -16,21 +17,31 @@ export const NO_WORK = {
   waits: false,
 };
 
-const verdict = (/** @type {boolean} */ accepted) => (accepted ? "accepted" : "rejected");
+const verdict = (/** @type {boolean} */ accepted) =>
+  t(accepted ? "verdict-accepted" : "verdict-rejected");
+const said = (/** @type {WorkView["opinions"][number]} */ { who, accepted }) => ({
+  who,
+  verdict: verdict(accepted),
+});
 const listed = (/** @type {string[]} */ names) =>
-  names.length < 2 ? names.join("") : `${names.slice(0, -1).join(", ")} and ${names.at(-1)}`;
+  names.length < 2
+    ? names.join("")
+    : t("list-and", { all: names.slice(0, -1).join(", "), last: names.at(-1) ?? "" });
 
 /** What the people who decided say together; empty if nobody did and nobody is asked to. */
 export function agreementText(/** @type {Opinions} */ { opinions, agreement, second_by, waits }) {
   const [first] = opinions;
   if (agreement === "agree" && first)
-    return `✓ ${listed(opinions.map(({ who }) => who))} agree: ${verdict(first.accepted)}`;
+    return t("agree", {
+      names: listed(opinions.map(({ who }) => who)),
+      verdict: verdict(first.accepted),
+    });
   if (agreement === "disagree")
-    return `▲ ${opinions.map(({ who, accepted }) => `${who} ${verdict(accepted)}`).join(", ")}`;
-  if (!waits) return first ? `${first.who} ${verdict(first.accepted)} it` : "";
+    return `▲ ${opinions.map((one) => t("one-said", said(one))).join(", ")}`;
+  if (!waits) return first ? t("one-decided", said(first)) : "";
   return first
-    ? `◌ ${first.who} ${verdict(first.accepted)} it; ${second_by} asked for a second opinion`
-    : `◌ ${second_by} asked for two opinions`;
+    ? t("asked-second", { ...said(first), asking: second_by })
+    : t("asked-two", { asking: second_by });
 }
 
 /** The work on a pair in the few letters of a row of the queue. */
@@ -38,9 +49,9 @@ export function workMark(/** @type {Partial<WorkView> | undefined} */ work) {
   if (!work) return "";
   return [
     work.assignee && `→ ${work.assignee}`,
-    work.skipped_by && "later",
-    work.waits && "second opinion",
-    work.agreement === "disagree" && "▲ disagree",
+    work.skipped_by && t("later"),
+    work.waits && t("second-opinion"),
+    work.agreement === "disagree" && t("disagree"),
     work.comments && `✎ ${work.comments}`,
   ]
     .filter(Boolean)
@@ -53,11 +64,13 @@ export function workMark(/** @type {Partial<WorkView> | undefined} */ work) {
  * @param {[number, number] | undefined} pair
  */
 export function lookersText(lookers, pair) {
-  if (!lookers.length) return "Nobody else is looking now";
+  if (!lookers.length) return t("nobody-else");
   const texts = lookers.map(({ who, frame_i, frame_j }) => {
     if (frame_i === null) return who;
     const same = pair && frame_i === pair[0] && frame_j === pair[1];
-    return same ? `${who} (at this pair)` : `${who} (multiframes ${frame_i} and ${frame_j})`;
+    return same
+      ? t("at-this-pair", { who })
+      : t("at-pair", { who, i: String(frame_i), j: String(frame_j) });
   });
-  return `Now here: ${texts.join(", ")}`;
+  return t("now-here", { people: texts.join(", ") });
 }

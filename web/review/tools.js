@@ -2,6 +2,7 @@
 
 import { keep, kept } from "../shared/address.js";
 import { html, render, targetOf } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { listenToKeys } from "./keys.js";
 
 /**
@@ -52,32 +53,32 @@ export function drawTools(bar, queueBar, act, { enabled, refineText }) {
     keep(GO_ON, targetOf(event).checked ? "yes" : "no");
   render(
     html`<div class="row main">
-        ${button("previous", "Previous", "K")}
-        ${button("reject", "Reject", "R", { className: "no", action: once(act.reject) })}
-        ${button("accept", "Accept", "A", { className: "yes", action: once(act.accept) })}
-        ${button("next", "Next", "J")}
+        ${button("previous", t("previous"), "K")}
+        ${button("reject", t("reject"), "R", { className: "no", action: once(act.reject) })}
+        ${button("accept", t("accept"), "A", { className: "yes", action: once(act.accept) })}
+        ${button("next", t("next"), "J")}
       </div>
       <div class="row">
-        ${button("restore", "Restore", "U")}
-        ${button("refine", "Refine", "Enter", { caption: refineText })}
-        ${button("pick", "Pick points", "P")} ${button("undo", "Undo", "Ctrl Z")}
-        ${button("redo", "Redo", "Ctrl Y")}
+        ${button("restore", t("restore"), "U")}
+        ${button("refine", t("refine"), "Enter", { caption: refineText })}
+        ${button("pick", t("pick-points"), "P")} ${button("undo", t("undo"), t("key-undo"))}
+        ${button("redo", t("redo"), t("key-redo"))}
       </div>
       <div class="row reason">
         <input
           autocomplete="off"
           maxlength="500"
-          placeholder="Reason (optional)"
-          aria-label="Reason"
+          placeholder=${t("reason-optional")}
+          aria-label=${t("reason")}
         /><label class="check"
           ><input type="checkbox" .checked=${goesOn()} @change=${choose} /><span
-            >Go on to the next pair after a decision</span
+            >${t("go-on")}</span
           ></label
         >
       </div>`,
     bar,
   );
-  render([button("add", "Add loop", "L"), button("keys", "Keys", "?")], queueBar);
+  render([button("add", t("add-loop"), "L"), button("keys", t("keys"), "?")], queueBar);
 }
 
 /**

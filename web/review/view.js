@@ -4,6 +4,7 @@
 
 import { html, nothing, render, targetOf, within } from "../shared/dom.js";
 import { drawScaleBar } from "../shared/scale_bar.js";
+import { t, written } from "../shared/texts.js";
 import { HALO, INK, drawBoth, drawDifference, drawHandle, drawPicked, pointImage } from "./draw.js";
 import { Camera, IDENTITY, nudged, rotationOf, transposed, turn } from "./math.js";
 import { Picking } from "./picking.js";
@@ -85,32 +86,32 @@ export class PairView extends HTMLElement {
     };
     render(
       html`<div class="view-tools">
-          ${group("View", VIEWS, view, (key) => this.show(key))}
+          ${group(t("view"), VIEWS, view, (key) => this.show(key))}
           <button type="button" aria-pressed=${difference} @click=${() => this.toggleDifference()}>
-            Difference
+            ${t("difference")}
           </button>
           ${this.#names ? nothing : this.#choicesOfPlaces(shown)}
         </div>
         <div class="view-stage">
-          <canvas tabindex="0" role="img" aria-label="Points of both places"></canvas>
+          <canvas tabindex="0" role="img" aria-label=${t("points-of-both")}></canvas>
           <p class="view-words">${words}</p>
           ${this.#legend()}
           <p class="view-empty">${empty}</p>
         </div>
         <div class="cut" ?hidden=${view !== "cut"}>
           <label
-            ><span>Position of the cut</span
+            ><span>${t("position-of-cut")}</span
             ><input
               type="range"
               min="-300"
               max="300"
-              aria-label="Position of the cut"
+              aria-label=${t("position-of-cut")}
               .value=${String(cut_cm)}
               @input=${cut}
-            /><output>${(cut_cm / 100).toFixed(2)} m</output></label
+            /><output>${written((cut_cm / 100).toFixed(2))} m</output></label
           ><label class="check"
             ><input type="checkbox" .checked=${upright} @change=${turnUp} /><span
-              >Upright cut</span
+              >${t("upright-cut")}</span
             ></label
           >
         </div>`,
@@ -123,10 +124,11 @@ export class PairView extends HTMLElement {
       this.#state.reach = Number(targetOf(event).value);
       this.#emit("reach");
     };
-    return html`${group("Show", SHOWN, shown, (key) => this.compare(key))}
-      <select aria-label="Multiframes shown around each place" @change=${choose}>
+    return html`${group(t("show-places"), SHOWN, shown, (key) => this.compare(key))}
+      <select aria-label=${t("multiframes-around")} @change=${choose}>
         ${REACHES.map(
-          (n) => html`<option value=${n}>${n ? `± ${n} multiframes` : "Nodes only"}</option>`,
+          (n) =>
+            html`<option value=${n}>${n ? t("reach", { count: n }) : t("nodes-only")}</option>`,
         )}
       </select>`;
   }
@@ -231,7 +233,9 @@ export class PairView extends HTMLElement {
   /** Starts picking the same three points in both places; `done({p_i, p_j})`. */
   pick(/** @type {OnPicked} */ done) {
     const [first, second] = this.#names ?? [];
-    this.#picking = new Picking(first ? [`${first} (blue)`, `${second} (orange)`] : undefined);
+    this.#picking = new Picking(
+      first ? [t("in-blue", { name: first }), t("in-orange", { name: second ?? "" })] : undefined,
+    );
     this.#onPicked = done;
     this.compare("after");
     this.#canvas.focus();
@@ -260,9 +264,9 @@ export class PairView extends HTMLElement {
   }
 
   #legend() {
-    const [first, second] = this.#names ?? ["first", "second"];
+    const [first, second] = this.#names ?? [t("first"), t("second")];
     return html`<div class="view-key">
-      ${key("first", first)} ${key("second", second)} ${key("both", "both")}
+      ${key("first", first)} ${key("second", second)} ${key("both", t("both"))}
     </div>`;
   }
 
@@ -327,8 +331,8 @@ export class PairView extends HTMLElement {
     const { view, cut_cm, difference, words: before } = this.#state;
     const agreeing = Math.round(100 * this.#agreeing);
     const texts = [
-      view === "cut" ? `Cut of 20 cm at ${(cut_cm / 100).toFixed(2)} m` : "",
-      difference ? `${agreeing} % of what is drawn agrees within 5 cm` : "",
+      view === "cut" ? t("cut-at", { m: written((cut_cm / 100).toFixed(2)) }) : "",
+      difference ? t("agreeing", { percent: agreeing }) : "",
       this.#picking?.text ?? "",
     ];
     const words = this.#points ? texts.filter(Boolean).join(" · ") : "";

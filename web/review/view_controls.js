@@ -1,6 +1,7 @@
 // The controls of <pair-view>: what can be chosen, and how it is drawn.
 
 import { html } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Content} from "../shared/dom.js"
@@ -10,16 +11,16 @@ import { html } from "../shared/dom.js";
 
 /** @type {Array<[View, string]>} */
 export const VIEWS = [
-  ["above", "Above"],
-  ["side", "Side"],
-  ["free", "Free"],
-  ["cut", "Cut"],
+  ["above", "view-above"],
+  ["side", "view-side"],
+  ["free", "view-free"],
+  ["cut", "view-cut"],
 ];
 /** @type {Array<[Shown, string]>} */
 export const SHOWN = [
-  ["odometry", "Odometry"],
-  ["predicted", "Graph"],
-  ["after", "Aligned"],
+  ["odometry", "view-odometry"],
+  ["predicted", "view-predicted"],
+  ["after", "view-after"],
 ];
 export const REACHES = [0, 2, 5, 10];
 /**
@@ -46,7 +47,7 @@ export const group = (label, choices, chosen, choose) =>
     ${choices.map(
       ([name, text]) =>
         html`<button type="button" aria-pressed=${name === chosen} @click=${() => choose(name)}>
-          ${text}
+          ${t(text)}
         </button>`,
     )}
   </div>`;

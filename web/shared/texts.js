@@ -108,6 +108,9 @@ export const decimal = (/** @type {number} */ value, digits = 0) =>
 /** A number with all of its digits: 0.05 -> "0,05". */
 export const asWritten = (/** @type {number} */ value) => localized(String(value), state.language);
 
+/** A number that is a text already, with the decimal sign of the language: "12.5 m" -> "12,5 m". */
+export const written = (/** @type {string} */ text) => localized(text, state.language);
+
 /** The language of this page. */
 export const language = () => state.language;
 
