@@ -2,6 +2,8 @@ import "./english.js";
 
 // Bars of the histogram and frames of picked points; run by .ci/web.
 
+import "./english.js?slices&pair";
+
 import assert from "node:assert/strict";
 import test from "node:test";
 import { bars } from "../../web/slices/bars.js";

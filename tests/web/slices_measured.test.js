@@ -2,6 +2,8 @@ import "./english.js";
 
 // Measurements of a point in several directions are combined; run by .ci/web.
 
+import "./english.js?slices";
+
 import assert from "node:assert/strict";
 import test from "node:test";
 import { combined } from "../../web/slices/measured.js";

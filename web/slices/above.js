@@ -6,6 +6,7 @@
 import { render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar } from "../shared/scale_bar.js";
+import { t } from "../shared/texts.js";
 import { normalOf } from "./state.js";
 
 const GRIP_PX = 22;
@@ -36,7 +37,7 @@ export class SliceAbove extends HTMLElement {
     render(this.#canvas, this);
     this.setAttribute("aria-busy", "true"); // nothing to drag before the image is there
     this.#canvas.setAttribute("role", "img");
-    this.#canvas.setAttribute("aria-label", "The map from above, with the slice");
+    this.#canvas.setAttribute("aria-label", t("above-label"));
     listenToGestures(this.#canvas, {
       onDown: (at) => this.#down(at),
       onDrag: (_from, to) => this.#dragged(to),

@@ -3,6 +3,7 @@
 import { alignReference, readAlignPoints } from "../shared/api.js";
 import { openDialog } from "../shared/dialog.js";
 import { attempt, html, messagePlace, within } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { PairView } from "../review/view.js";
 import { inFrames, poseInMap, unpacked } from "./align_math.js";
 
@@ -20,38 +21,32 @@ export async function openAlignment(id, reference, changed) {
   /** @type {{points: AlignPoints | null}} */
   const state = { points: null };
   const dialog = openDialog(
-    `Align ${reference.name} with the map`,
-    html`<p class="quiet">
-        Pick the same three points in the map (blue) and the reference (orange) by turns, as corners
-        of walls far from each other. Or move the reference by its handle and ring (Above), then
-        refine.
-      </p>
-      <pair-view data-first="map" data-second="reference"></pair-view>
+    t("align-with", { reference: reference.name }),
+    html`<p class="quiet">${t("align-help")}</p>
+      <pair-view data-first=${t("name-map")} data-second=${t("name-reference")}></pair-view>
       <div class="buttons">
-        <button type="button" class="primary" @click=${() => pick()}>Pick three pairs</button
+        <button type="button" class="primary" @click=${() => pick()}>${t("pick-pairs")}</button
         ><button type="button" @click=${(/** @type {Event} */ event) => byHand(event)}>
-          Refine by ICP from here</button
+          ${t("refine-icp")}</button
         ><button
           type="button"
           class="undo"
           ?disabled=${!reference.can_undo}
           @click=${(/** @type {Event} */ event) => act(event, () => align({ how: "undo" }))}
         >
-          Undo alignment
+          ${t("undo-alignment")}
         </button>
       </div>
       <div class="buttons">
         <label class="check"
-          ><input type="checkbox" name="level" checked /><span
-            >Both are level: heights come from the floors, not from the pairs</span
-          ></label
+          ><input type="checkbox" name="level" checked /><span>${t("both-level")}</span></label
         ><label class="check"
-          ><input type="checkbox" name="refine" checked /><span>Then refine by ICP</span></label
+          ><input type="checkbox" name="refine" checked /><span>${t("then-icp")}</span></label
         >
       </div>
       ${messagePlace()}
-      <p class="result" role="status">Alignment: ${reference.alignment}</p>
-      <form method="dialog"><button>Close</button></form>`,
+      <p class="result" role="status">${t("alignment-is", { alignment: reference.alignment })}</p>
+      <form method="dialog"><button>${t("close")}</button></form>`,
   );
   dialog.classList.add("aligning");
   const view = within(dialog, "pair-view", PairView);
@@ -73,7 +68,7 @@ export async function openAlignment(id, reference, changed) {
     const found = await alignReference(id, reference.id, how);
     await show();
     const result = within(dialog, ".result");
-    result.textContent = `Alignment: ${found.alignment}. ${found.fit}`;
+    result.textContent = `${t("alignment-is", { alignment: found.alignment })}. ${found.fit}`;
     result.classList.toggle("bad", found.fit.startsWith("✕"));
     within(dialog, ".undo", HTMLButtonElement).disabled = !found.can_undo;
     await changed();

@@ -1,11 +1,16 @@
 // Captions of slices, of points picked on them and of distances. No DOM, no network.
 
+import { decimal, t } from "../shared/texts.js";
 import { COLORS, SURFACES } from "./state.js";
 
 /** @import {OtherMap, PickView, SliceFacts} from "../shared/http_types" */
 
-const KINDS = { horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" };
-const fixed = (/** @type {number[]} */ xs) => xs.map((x) => x.toFixed(3)).join("  ");
+const KINDS = {
+  horizontal: t("kind-horizontal"),
+  vertical: t("kind-vertical"),
+  free: t("kind-free"),
+};
+const fixed = (/** @type {number[]} */ xs) => xs.map((x) => decimal(x, 3)).join("  ");
 
 /**
  * The kind of the slice and its name.
@@ -21,8 +26,8 @@ export const cutText = (kind, name) => `${KINDS[kind]} ${name}`;
  * @param {OtherMap[]} sources
  */
 export function imageText({ source, color, points, surface }, sources) {
-  const name = source ? (sources.find((one) => one.id === source)?.label ?? source) : "This map";
-  return `${name} · ${COLORS[color]} · ${points} points ${SURFACES[surface]}`;
+  const name = source ? (sources.find((one) => one.id === source)?.label ?? source) : t("this-map");
+  return t("image-text", { name, color: COLORS[color], points, surface: SURFACES[surface] });
 }
 
 /**
@@ -33,10 +38,11 @@ export function imageText({ source, color, points, surface }, sources) {
 export function pointText({ p_map, p_crs, about }, { crs, sensors }) {
   const parts = [`x y z  ${fixed(p_map)} m`];
   if (p_crs) parts.push(`${crs}  E N H  ${fixed(p_crs)} m`);
-  if (about.intensity !== undefined) parts.push(`intensity ${about.intensity}`);
-  if (sensors.length) parts.push(sensors[about.sensor] ?? `sensor ${about.sensor}`);
+  if (about.intensity !== undefined)
+    parts.push(t("intensity-of", { value: String(about.intensity) }));
+  if (sensors.length) parts.push(sensors[about.sensor] ?? t("sensor-of", { number: about.sensor }));
   if (about.time_s !== undefined)
-    parts.push(`${about.time_s.toFixed(1)} s, multiframe ${about.frame_id}`);
+    parts.push(t("time-of", { s: about.time_s, frame: String(about.frame_id) }));
   return parts.join(" · ");
 }
 
@@ -54,7 +60,7 @@ function lengths(a, b) {
  * @param {Pick<PickView, "p_map">} a
  * @param {Pick<PickView, "p_map">} b
  */
-export const lengthText = (a, b) => `${lengths(a, b).all.toFixed(3)} m`;
+export const lengthText = (a, b) => `${decimal(lengths(a, b).all, 3)} m`;
 
 /**
  * The distance of two picked points in full.
@@ -64,9 +70,9 @@ export const lengthText = (a, b) => `${lengths(a, b).all.toFixed(3)} m`;
 export function distanceText(a, b) {
   const { all, flat, up } = lengths(a, b);
   return [
-    `Distance ${all.toFixed(3)} m`,
-    `horizontal ${flat.toFixed(3)} m`,
-    `vertical ${up.toFixed(3)} m`,
-    `from ${fixed(a.p_map)} to ${fixed(b.p_map)}`,
+    t("distance", { m: all }),
+    t("horizontal-part", { m: flat }),
+    t("vertical-part", { m: up }),
+    t("from-to", { from: fixed(a.p_map), to: fixed(b.p_map) }),
   ].join(" · ");
 }

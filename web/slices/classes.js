@@ -2,6 +2,7 @@
 
 import { html, nothing, render } from "../shared/dom.js";
 import "../shared/class_corrections.js";
+import { t } from "../shared/texts.js";
 import { axesOf } from "./state.js";
 
 /**
@@ -49,19 +50,16 @@ export function classesPanel(host, { id, state, outline }) {
         ${text}
       </button>`;
     render(
-      html`<p>
-          A polygon through the slice, as thick as it, gives its points another class. The map
-          follows when it is made again; every point is kept.
-        </p>
+      html`<p>${t("polygon-is")}</p>
         ${
           earlier
-            ? html`<p class="quiet">Choose <em>This map</em>: earlier maps stay as they are.</p>`
+            ? html`<p class="quiet">${t("choose-this-map")}</p>`
             : html`<div class="buttons">
-                ${button("Draw a polygon", () => outline("draw"), { pressed: drawing })}
-                ${button("Remove the last corner", () => outline("back"), {
+                ${button(t("draw-polygon"), () => outline("draw"), { pressed: drawing })}
+                ${button(t("remove-corner"), () => outline("back"), {
                   disabled: !corners.length,
                 })}
-                ${button("Remove the polygon", () => outline("clear"), {
+                ${button(t("remove-polygon"), () => outline("clear"), {
                   disabled: !corners.length,
                 })}
               </div>`
@@ -71,7 +69,7 @@ export function classesPanel(host, { id, state, outline }) {
             project: id,
             map: map.key,
             volume: earlier ? null : prismOf(state(), corners),
-            hint: "Draw a polygon around the points: click its corners in the slice.",
+            hint: t("polygon-hint"),
           }}
           @applied=${() => outline("clear")}
         ></class-corrections>`,

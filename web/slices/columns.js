@@ -1,6 +1,7 @@
 // The first rows of a table of coordinates, what each column is taken for, and the question.
 
 import { html, targetOf } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {TablePreview} from "../shared/http_types"
@@ -10,29 +11,29 @@ import { html, targetOf } from "../shared/dom.js";
 
 /** @type {Array<[string, string]>} */
 export const MEANINGS = [
-  ["-", "not used"],
-  ["id", "name"],
-  ["x", "x, east"],
-  ["y", "y, north"],
-  ["z", "z, height"],
-  ["-x", "minus x (to the west)"],
-  ["-y", "minus y (to the south)"],
-  ["lat", "latitude [°]"],
-  ["lon", "longitude [°]"],
-  ["role", "control or check"],
-  ["radius", "radius of a target"],
+  ["-", t("column-none")],
+  ["id", t("column-id")],
+  ["x", t("column-x")],
+  ["y", t("column-y")],
+  ["z", t("column-z")],
+  ["-x", t("column-minus-x")],
+  ["-y", t("column-minus-y")],
+  ["lat", t("column-lat")],
+  ["lon", t("column-lon")],
+  ["role", t("column-role")],
+  ["radius", t("column-radius")],
 ];
 
 /** @type {Array<[string, string]>} */
 export const UNITS = [
-  ["m", "meters"],
-  ["mm", "millimeters"],
-  ["cm", "centimeters"],
-  ["dm", "decimeters"],
-  ["km", "kilometers"],
-  ["ft", "international feet"],
-  ["us-ft", "US survey feet"],
-  ["in", "inches"],
+  ["m", t("unit-m")],
+  ["mm", t("unit-mm")],
+  ["cm", t("unit-cm")],
+  ["dm", t("unit-dm")],
+  ["km", t("unit-km")],
+  ["ft", t("unit-ft")],
+  ["us-ft", t("unit-us-ft")],
+  ["in", t("unit-in")],
 ];
 
 /**
@@ -61,8 +62,9 @@ export function missing(/** @type {string[]} */ columns) {
   /** @type {Record<string, string>} */
   const label = Object.fromEntries(MEANINGS);
   const open = axes.filter((axis) => count(axis) !== 1);
-  if (open.length) return `Choose one column each as ${open.map((one) => label[one]).join("; ")}`;
-  return degrees && count("x") + count("y") ? "Choose either degrees or x and y" : "";
+  if (open.length)
+    return t("choose-columns", { columns: open.map((one) => label[one]).join("; ") });
+  return degrees && count("x") + count("y") ? t("degrees-or-xy") : "";
 }
 
 /**
@@ -76,9 +78,9 @@ export function columnTable(table, changed) {
   const columns = [...table.columns];
   const width = Math.max(columns.length, ...table.rows.map((row) => row.length));
   while (columns.length < width) columns.push("-");
-  const name = (/** @type {number} */ k) => table.header[k] || `column ${k + 1}`;
+  const name = (/** @type {number} */ k) => table.header[k] || t("column-n", { n: k + 1 });
   const pick = (/** @type {number} */ k) =>
-    choice(`Meaning of ${name(k)}`, MEANINGS, columns[k], (meaning) => {
+    choice(t("meaning-of", { column: name(k) }), MEANINGS, columns[k], (meaning) => {
       // A coordinate has one column: the one that had this meaning before is free again.
       const next = columns.map((old, j) => (j !== k && old === meaning ? "-" : old));
       next[k] = /** @type {any} */ (meaning);
@@ -86,7 +88,7 @@ export function columnTable(table, changed) {
     });
   const all = Array.from({ length: width }, (_, k) => k);
   const question = table.question
-    ? html`<p class="bad" role="alert">Not certain: ${table.question}</p>`
+    ? html`<p class="bad" role="alert">${t("not-certain", { question: table.question })}</p>`
     : html`<p class="quiet">${table.description}</p>`;
   return html`<div class="table-columns">
     ${question}
@@ -111,13 +113,14 @@ export function columnTable(table, changed) {
       </table>
     </div>
     <p class="row">
-      ${choice("Unit of the coordinates", UNITS, table.unit, (unit) =>
+      ${choice(t("unit-of-coordinates"), UNITS, table.unit, (unit) =>
         changed(columns, /** @type {Unit} */ (unit)),
       )}<span class="quiet"
-        >${
-          `The first ${table.rows.length} rows; separated by "${table.delimiter}", ` +
-          `decimal "${table.decimal}"`
-        }</span
+        >${t("first-rows", {
+          rows: table.rows.length,
+          delimiter: table.delimiter,
+          decimal: table.decimal,
+        })}</span
       >
     </p>
   </div>`;

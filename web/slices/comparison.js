@@ -2,20 +2,21 @@
 
 import { count } from "../shared/format.js";
 import { html, nothing, svg } from "../shared/dom.js";
+import { t, written } from "../shared/texts.js";
 import { HEIGHT, bars } from "./bars.js";
 
 /** @import {ComparedSlice, Comparison} from "../shared/http_types" */
 
-export const METHODS = { plane: "to the reference's surface", point: "to its nearest point (V)" };
+export const METHODS = { plane: t("method-plane"), point: t("method-point") };
 const UNKNOWN = "–";
 
 const cell = (/** @type {string} */ text) => html`<td class="number">${text}</td>`;
 const figure = (/** @type {number | null} */ x, digits = 2) =>
-  cell(x === null ? UNKNOWN : (x * 100).toFixed(digits).replace(/^-(0\.?0*)$/, "$1"));
+  cell(x === null ? UNKNOWN : written((x * 100).toFixed(digits).replace(/^-(0\.?0*)$/, "$1")));
 
 const HEAD = [
-  ...["Slice", "Mean [cm]", "< 2 cm [%]", "< 5 cm [%]", "Signed mean [cm]", "σ [cm]"],
-  ...["Shift x", "Shift y", "Shift z", "Points", "> 50 cm"],
+  ...[t("head-slice"), t("head-mean"), "< 2 cm [%]", "< 5 cm [%]", t("head-signed"), "σ [cm]"],
+  ...[t("head-shift-x"), t("head-shift-y"), t("head-shift-z"), t("head-points"), "> 50 cm"],
 ];
 
 /**
@@ -39,20 +40,18 @@ const row = (name, one) =>
 export function comparison(found, csvUrl) {
   const head = HEAD.map((text, k) => html`<th scope="col" class=${k ? "number" : ""}>${text}</th>`);
   const plain = html`<tr>
-    <th scope="row">Mean of the slices</th>
+    <th scope="row">${t("mean-of-slices")}</th>
     ${figure(found.plain_mean_m)}
   </tr>`;
   const rows = [
     ...found.slices.map((one) => row(one.name, one)),
-    row("Mean of all points", found.point_weighted),
+    row(t("mean-of-points"), found.point_weighted),
     plain,
   ];
   const tone = found.fit.fits === null ? "" : found.fit.fits ? "good" : "bad";
   return [
     html`<p class="verdict ${tone}">${found.fit.text}</p>`,
-    found.fit.fits === false
-      ? html`<p class="bad">The figures are not those of one and the same place.</p>`
-      : nothing,
+    found.fit.fits === false ? html`<p class="bad">${t("not-one-place")}</p>` : nothing,
     html`<div class="scroll">
       <table class=${found.fit.fits === false ? "unfit" : ""}>
         <thead>
@@ -66,13 +65,15 @@ export function comparison(found, csvUrl) {
       </table>
     </div>`,
     html`<p class="quiet">
-      Against ${found.reference}, distances ${METHODS[found.method]}, alignment: ${found.alignment}.
-      ${found.notes.join(" ")} Signed: across the surfaces, + = the map lies in front of the
-      reference, on the side it was seen from. Walls that face each other cancel there; the shift
-      [cm] is the common translation of the map.
+      ${t("against", {
+        reference: found.reference,
+        method: METHODS[found.method],
+        alignment: found.alignment,
+      })}
+      ${found.notes.join(" ")} ${t("signed-is")}
     </p>`,
     histogram(found),
-    html`<a class="button" href=${csvUrl} download="">Download CSV</a>`,
+    html`<a class="button" href=${csvUrl} download="">${t("download-csv")}</a>`,
   ];
 }
 
@@ -83,12 +84,12 @@ function histogram(
   const middle = classes.length / 2;
   const cm = (end * 100).toFixed(0);
   return html`<figure class="histogram">
-    <figcaption>Points by signed distance, classes of ${(step * 1000).toFixed(0)} mm</figcaption>
+    <figcaption>${t("histogram-of", { mm: (step * 1000).toFixed(0) })}</figcaption>
     <svg
       viewBox="0 0 ${classes.length} ${HEIGHT}"
       preserveAspectRatio="none"
       role="img"
-      aria-label="Histogram of the signed distances"
+      aria-label=${t("histogram")}
     >
       ${bars(classes).map((bar) => rect("bar", bar))}
       ${rect("zero", [middle - 0.15, 0, 0.3, HEIGHT])}

@@ -21,10 +21,11 @@ import {
   within,
 } from "../shared/dom.js";
 import { askFirst } from "../shared/download.js";
+import { decimal, t } from "../shared/texts.js";
 import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { combined } from "./measured.js";
-import { figures, residualCells } from "./residual_table.js";
+import { figures, residualCells, roleText } from "./residual_table.js";
 import { siteSection } from "./site.js";
 
 /**
@@ -47,8 +48,8 @@ const MOST_BYTES = 600_000;
 /** @type {Record<string, Columns[number]>} */
 const SWAPPED = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
 const HEADS = [
-  ...["Point", "Role", "dE", "dN", "dU", "2D", "3D", "Across"],
-  ...["1 σ stated [cm]", "Residual / σ", ""],
+  ...[t("point"), t("role"), "dE", "dN", "dU", "2D", "3D", t("across")],
+  ...[t("stated"), t("residual-sigma"), ""],
 ];
 
 /**
@@ -61,22 +62,25 @@ const without = (record, key) =>
   /** @type {T} */ (Object.fromEntries(Object.entries(record).filter(([name]) => name !== key)));
 
 const named = (/** @type {string[]} */ ids) =>
-  ids.slice(0, MAX_NAMED).join(", ") +
-  (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
+  ids.length > MAX_NAMED
+    ? t("named-more", {
+        names: ids.slice(0, MAX_NAMED).join(", "),
+        count: ids.length - MAX_NAMED,
+      })
+    : ids.join(", ");
 
 /** How many points were read, and where the first of them lies. */
 function firstPoint(/** @type {ControlPreview} */ { points, crs }) {
   const [one] = points;
   if (!one) return "";
-  const put = crs ? ` (degrees, put into ${crs}: its code for Try)` : "";
-  const [x, y, z] = one.xyz_m.map((value) => value.toFixed(3));
-  return `${points.length} points; the first, ${one.id}: east ${x}, north ${y}, up ${z} m${put}`;
+  const put = crs ? ` ${t("degrees-put", { crs })}` : "";
+  const [x = "", y = "", z = ""] = one.xyz_m.map((value) => decimal(value, 3));
+  return t("first-point", { count: points.length, name: one.id, x, y, z, put });
 }
 
 async function base64Of(/** @type {File} */ file) {
   const data = new Uint8Array(await file.arrayBuffer());
-  if (data.length > MOST_BYTES)
-    throw new Error("The file has more than 600 kB; a list of points is smaller");
+  if (data.length > MOST_BYTES) throw new Error(t("list-too-large"));
   return btoa(Array.from(data, (one) => String.fromCharCode(one)).join(""));
 }
 
@@ -148,9 +152,9 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
       <p>${firstPoint(found)}</p>
       ${found.skipped.slice(0, 5).map((text) => html`<p class="error">${text}</p>`)}
       <div class="buttons">
-        ${button("Swap east and north", () => look(file, columns, unit))}
-        ${some ? button("Use, in the map's frame", use("map")) : nothing}
-        ${some && state.georeferenced ? button("Use, in the map's CRS", use("crs")) : nothing}
+        ${button(t("swap"), () => look(file, columns, unit))}
+        ${some ? button(t("use-map"), use("map")) : nothing}
+        ${some && state.georeferenced ? button(t("use-crs"), use("crs")) : nothing}
       </div>`;
   }
 
@@ -177,7 +181,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
       await readKept();
       if (tries) return write(edit, tries - 1);
       await report();
-      throw new Error("Others change these points too: they are read again, do it once more");
+      throw new Error(t("others-change"));
     }
     state.preview = null;
     return report();
@@ -232,7 +236,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
       set({ searching: "" });
     }
     await put(places);
-    if (none.length) say(message(), `No flat surface within 30 cm of ${named(none)}`);
+    if (none.length) say(message(), t("no-surface-of", { names: named(none) }));
   }
 
   /**
@@ -255,21 +259,24 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
     return html`<tr>
       <th scope="row">${one.id}</th>
       <td>
-        <select aria-label="Role of ${one.id}" @change=${setRole}>
+        <select aria-label=${t("role-of", { name: one.id })} @change=${setRole}>
           ${["check", "control"].map(
-            (role) => html`<option .selected=${role === one.role}>${role}</option>`,
+            (role) =>
+              html`<option value=${role} .selected=${role === one.role}>${roleText(role)}</option>`,
           )}
         </select>
       </td>
       ${residualCells(residual, earlier)}
       <td>
         <span class="buttons"
-          >${act("Go", `Go to ${one.id}`, () => go(one))}${act(
-            "Here",
-            `${one.id} is the picked point`,
+          >${act(t("go"), t("go-to-point", { name: one.id }), () => go(one))}${act(
+            t("here"),
+            t("is-picked", { name: one.id }),
             () => pick(one),
-          )}${act("Surface", `${one.id} on the nearest surface`, () => surface(one))}${
-            residual || earlier ? act("Clear", `Clear ${one.id}`, () => drop(one.id)) : nothing
+          )}${act(t("surface"), t("on-surface", { name: one.id }), () => surface(one))}${
+            residual || earlier
+              ? act(t("clear"), t("clear-point", { name: one.id }), () => drop(one.id))
+              : nothing
           }</span
         >
       </td>
@@ -284,14 +291,13 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
 
   async function pick(/** @type {ControlSpec} */ one) {
     const picked = measured();
-    if (!picked) throw new Error(`Pick ${one.id} in the slice first`);
+    if (!picked) throw new Error(t("pick-first", { name: one.id }));
     await put({ [one.id]: { p: picked.p_map, along: picked.along } });
   }
 
   async function surface(/** @type {ControlSpec} */ one) {
     const { surface: at, normal } = await readSurface(id, one.id);
-    if (!at || !normal)
-      throw new Error(`No flat surface within 30 cm of ${one.id}: pick it in the slice, then Here`);
+    if (!at || !normal) throw new Error(t("no-surface-pick", { name: one.id }));
     await put({ [one.id]: { p: at, along: [normal] } });
   }
 
@@ -301,11 +307,9 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
       const [file] = targetOf(event).files ?? [];
       if (file) attempt(message(), () => look(file));
     };
-    const none = html`<p class="quiet">
-      No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma; lat, lon; DXF.
-    </p>`;
+    const none = html`<p class="quiet">${t("no-points-yet")}</p>`;
     render(
-      html`<input type="file" accept=${FILES} aria-label="Survey file" @change=${pickFile} />
+      html`<input type="file" accept=${FILES} aria-label=${t("survey-file")} @change=${pickFile} />
         <div>${preview ? previewed(preview) : nothing}</div>
         <p class="quiet status" role="status"></p>
         <p class="error problem" role="alert"></p>
@@ -327,14 +331,11 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
     const earlier = new Set(found.outdated);
     const file = (/** @type {string} */ ending) => controlFileUrl(id, ending, refused);
-    const draft = refused ? ", as a draft" : "";
+    const draft = refused ? t("as-draft") : "";
     return html`<p class="verdict ${found.verdict.level}">${found.verdict.text}</p>
       ${
         earlier.size
-          ? html`<p>
-              Measured in an earlier map or version only, not counted: ${named(found.outdated)}.
-              Measure them again.
-            </p>`
+          ? html`<p>${t("measured-earlier", { names: named(found.outdated) })}</p>`
           : nothing
       }
       ${limitsForm(limits, found.limits, setLimits)}
@@ -358,27 +359,23 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
           </tbody>
         </table>
       </div>
-      <p class="quiet">
-        Map minus survey [cm]. – = not measured, counts nowhere: a point on a surface is measured
-        across it only (Across); a point picked in a slice, in the plane of the slice. Pick it in a
-        second slice for the third component.
-      </p>
+      <p class="quiet">${t("residuals-are")}</p>
       ${
         points.length > MAX_ROWS
           ? html`<p class="quiet">
-              The first ${MAX_ROWS} of ${points.length} points; the files have all.
+              ${t("first-of-points", { shown: MAX_ROWS, count: points.length })}
             </p>`
           : nothing
       }
       <div class="buttons">
-        ${button(searching ? `${searching}…` : "All on the nearest surface", everySurface, {
+        ${button(searching ? `${searching}…` : t("all-surfaces"), everySurface, {
           disabled: searching !== "",
         })}
         <a class="button" download href=${file("csv")} @click=${askFirst(places)}
-          >Residuals as CSV${draft}</a
+          >${t("residuals-csv")}${draft}</a
         >
         <a class="button" target="_blank" rel="noopener" href=${file("html")}
-          >Sheet to print and sign${draft}</a
+          >${t("sheet-to-sign")}${draft}</a
         >
       </div>`;
   }

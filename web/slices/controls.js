@@ -1,6 +1,7 @@
 // Where to cut and what to show: the fields beside the slice. No network.
 
 import { html, nothing, targetOf } from "../shared/dom.js";
+import { language, t } from "../shared/texts.js";
 import { choice } from "./columns.js";
 import { anglesOf, COLORS, normalFrom, SURFACES } from "./state.js";
 
@@ -15,9 +16,9 @@ import { anglesOf, COLORS, normalFrom, SURFACES } from "./state.js";
 
 /** @type {Array<[Kind, string, string]>} */
 const KINDS = [
-  ["horizontal", "Horizontal", "H"],
-  ["vertical", "Vertical", "V"],
-  ["free", "Free", "F"],
+  ["horizontal", t("horizontal"), "H"],
+  ["vertical", t("vertical"), "V"],
+  ["free", t("free"), "F"],
 ];
 const ALL_COLORS = /** @type {Array<[Color, string]>} */ (Object.entries(COLORS));
 const ALL_SURFACES = /** @type {Array<[Surface, string]>} */ (Object.entries(SURFACES));
@@ -83,7 +84,7 @@ const segmented = (label, options, chosen, choose) =>
  */
 export const controls = (state, facts, act) =>
   html`${segmented(
-      "Kind of slice",
+      t("kind-of-slice"),
       KINDS.map(([value, text, key]) => ({ value, text, title: `${text}  ${key}` })),
       state.kind,
       act.toKind,
@@ -99,13 +100,13 @@ const PLACES = {
   horizontal({ z }, facts, { change }) {
     const [low, high] = facts ? facts.bounds_m.map((p) => p[2]) : [-5, 5];
     const slide = (/** @type {Event} */ event) => change({ z: Number(targetOf(event).value) });
-    return html`${number("Height z [m]", z, 0.01, (value) => change({ z: value }))}
+    return html`${number(t("height-z"), z, 0.01, (value) => change({ z: value }))}
       <input
         type="range"
         min=${low ?? nothing}
         max=${high ?? nothing}
         step="0.01"
-        aria-label="Height"
+        aria-label=${t("height")}
         .value=${String(z)}
         @input=${slide}
       />`;
@@ -126,8 +127,8 @@ const PLACES = {
         change({ o: o.map((old, k) => (k === axis ? x : old)) }),
       );
     return html`<div class="pair">
-      ${number("Azimuth of the normal [°]", angles.azimuth, 1, turn("azimuth"))}
-      ${number("Tilt from level [°]", angles.tilt, 1, turn("tilt"))}
+      ${number(t("azimuth"), angles.azimuth, 1, turn("azimuth"))}
+      ${number(t("tilt-from-level"), angles.tilt, 1, turn("tilt"))}
       ${through(0)}${through(1)}${through(2)}
     </div>`;
   },
@@ -150,14 +151,14 @@ function looks(state, facts, { change }) {
   const setThickness = (/** @type {number} */ cm) => cm > 0 && change({ t: cm / 100 }, keep);
   const setStep = (/** @type {number} */ step) => step > 0 && change({ step }, keep);
   return html`<div class="pair">
-      ${number("Thickness [cm]", state.t * 100, 1, setThickness)}
-      ${number("Step [m]", state.step, 0.01, setStep)}
+      ${number(t("thickness"), state.t * 100, 1, setThickness)}
+      ${number(t("step"), state.step, 0.01, setStep)}
     </div>
     ${segmented(
-      "Usual thickness",
+      t("usual-thickness"),
       [
-        { value: 0.02, text: "Thin, 2 cm" },
-        { value: 0.1, text: "Thick, 10 cm" },
+        { value: 0.02, text: t("thin") },
+        { value: 0.1, text: t("thick") },
       ],
       state.t,
       (t) => change({ t }, keep),
@@ -165,18 +166,18 @@ function looks(state, facts, { change }) {
     ${
       facts?.surface === "fitted"
         ? segmented(
-            "Where points are drawn",
+            t("where-drawn"),
             ALL_SURFACES.map(([value, text]) => ({
               value,
-              text: `Points ${text}`,
-              title: `Points ${text}  R`,
+              text: t("points-where", { surface: text }),
+              title: `${t("points-where", { surface: text })}  R`,
             })),
             state.surface,
             (surface) => change({ surface }, keep),
           )
         : nothing
     }
-    ${field("Color by", choice("Color by", colors, state.color, setColor))}
+    ${field(t("color-by"), choice(t("color-by"), colors, state.color, setColor))}
     ${facts?.references.length ? referenceField(state, facts, change) : nothing}`;
 }
 
@@ -191,9 +192,9 @@ function referenceField({ ref: chosen, color: before }, { references }, change) 
     change({ ref, color, lo: null, hi: null }, { keep: true });
   };
   /** @type {Array<[string, string]>} */
-  const options = [["", "None"]];
+  const options = [["", t("no-reference")]];
   for (const one of references) options.push([one.id, one.name]);
-  return field("Reference", choice("Reference", options, chosen, set));
+  return field(t("reference"), choice(t("reference"), options, chosen, set));
 }
 
 /**
@@ -204,15 +205,19 @@ function referenceField({ ref: chosen, color: before }, { references }, change) 
  */
 export function besideFields(state, facts, { change }) {
   /** @type {Array<[string, string]>} */
-  const sources = [["", "This map"]];
+  const sources = [["", t("this-map")]];
   for (const one of facts?.sources ?? []) sources.push([one.id, one.label]);
   /** @type {Array<[string, string]>} */
-  const colors = [["", state.beside ? "Same color" : "One slice"]];
+  const colors = [["", state.beside ? t("same-color") : t("one-slice")]];
   for (const [key, text] of ALL_COLORS)
-    if (key !== "distance" || state.ref) colors.push([key, `Beside: ${text.toLowerCase()}`]);
+    if (key !== "distance" || state.ref)
+      colors.push([
+        key,
+        t("beside-color", { color: language() === "en" ? text.toLowerCase() : text }),
+      ]);
   return [
-    choice("Map beside", sources, state.beside, (beside) => change({ beside }, { keep: true })),
-    choice("Color beside", colors, state.besideColor, (color) =>
+    choice(t("map-beside"), sources, state.beside, (beside) => change({ beside }, { keep: true })),
+    choice(t("color-beside"), colors, state.besideColor, (color) =>
       change({ besideColor: /** @type {Color | ""} */ (color) }, { keep: true }),
     ),
   ];

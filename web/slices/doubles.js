@@ -12,6 +12,7 @@ import {
   within,
 } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { decimal, t } from "../shared/texts.js";
 import { choice } from "./columns.js";
 import { distanceFrom } from "./state.js";
 
@@ -25,7 +26,7 @@ import { distanceFrom } from "./state.js";
 const REACH_M = 0.75;
 const MAX_ROWS = 50;
 
-const cm = (/** @type {number | null} */ m) => (m === null ? "–" : `${(m * 100).toFixed(1)} cm`);
+const cm = (/** @type {number | null} */ m) => (m === null ? "–" : `${decimal(m * 100, 1)} cm`);
 const range = (/** @type {number[]} */ [from, to]) => `${from}–${to}`;
 const span = (/** @type {number[]} */ [from, to]) => `${from.toFixed(0)}–${to.toFixed(0)} s`;
 
@@ -84,13 +85,15 @@ export function doublesPanel(host, { id, change, point, state }) {
     const asked = found.which === "all" ? [...walls, ...surfaces] : walls;
     if (!asked.length) return nothing;
     const meant = found.where === "slice" ? asked.filter(inSlice) : asked;
-    const most = meant.length > MAX_ROWS ? `, the ${MAX_ROWS} worst are listed` : "";
+    const counts = { meant: meant.length, count: asked.length, most: MAX_ROWS };
     const rows = repeat(
       meant.slice(0, MAX_ROWS),
       (wall) => wall,
       (wall) => row(wall, walls.includes(wall), () => go(wall)),
     );
-    return html`<p class="quiet" role="status">${meant.length} of ${asked.length} places${most}</p>
+    return html`<p class="quiet" role="status">
+        ${t(meant.length > MAX_ROWS ? "places-worst" : "places-of", counts)}
+      </p>
       ${meant.length ? table(rows) : nothing}`;
   }
 
@@ -98,22 +101,20 @@ export function doublesPanel(host, { id, change, point, state }) {
     const { searching, report, which, where } = found;
     const any = report !== null && report.walls.length + report.surfaces.length > 0;
     render(
-      html`<p class="quiet">
-          A wall is double where two visits put one surface at two places. The whole map is checked.
-        </p>
+      html`<p class="quiet">${t("double-is")}</p>
         <div class="row">
           <button
             type="button"
             ?disabled=${searching}
             @click=${() => attempt(within(host, ".error"), look)}
           >
-            ${searching ? "Searching…" : "Find double walls"}
+            ${searching ? t("searching") : t("find-double")}
           </button>
           ${
             any
               ? [
-                  choice("Which surfaces", WHICH, which, (one) => set({ which: one })),
-                  choice("Where", WHERE, where, (one) => set({ where: one })),
+                  choice(t("which-surfaces"), WHICH, which, (one) => set({ which: one })),
+                  choice(t("where"), WHERE, where, (one) => set({ where: one })),
                 ]
               : nothing
           }
@@ -130,31 +131,32 @@ export function doublesPanel(host, { id, change, point, state }) {
 
 /** @type {Array<[string, string]>} */
 const WHICH = [
-  ["double", "Only double ones"],
-  ["all", "All visited twice, worst first"],
+  ["double", t("only-double")],
+  ["all", t("all-twice")],
 ];
 /** @type {Array<[string, string]>} */
 const WHERE = [
-  ["all", "Whole map"],
-  ["slice", "In this slice"],
+  ["all", t("whole-map")],
+  ["slice", t("in-this-slice")],
 ];
 const HEADS = [
-  ...["Place", "", "Separation", "Limit", "Thickness σ as measured"],
-  ...["D = separation / σ", "Weaker layer", "Visits"],
+  ...[t("place"), "", t("separation"), t("limit"), t("thickness-measured")],
+  ...[t("d-is"), t("weaker-layer"), t("visits")],
 ];
 
 function verdict(/** @type {DoubleReport} */ found) {
   const seen = found.patches
-    ? `${count(found.patches)} patches were visited twice; distance between the visits ` +
-      `${cm(found.median_separation_m)} (median), ${cm(found.p95_separation_m)} (95 %); ` +
-      `thickness σ as measured ${cm(found.median_sigma_m)}.`
-    : "No surface was visited twice: double walls cannot be detected.";
+    ? t("twice-is", {
+        patches: count(found.patches),
+        median: cm(found.median_separation_m),
+        most: cm(found.p95_separation_m),
+        sigma: cm(found.median_sigma_m),
+      })
+    : t("none-twice");
   return html`${
       found.walls.length
-        ? html`<p class="verdict bad">✕ ${found.walls.length} double walls</p>`
-        : html`<p class="verdict good">
-            ${found.patches ? "✓ No double wall found" : "– Not checked"}
-          </p>`
+        ? html`<p class="verdict bad">${t("double-found", { count: found.walls.length })}</p>`
+        : html`<p class="verdict good">${found.patches ? t("no-double") : t("not-checked")}</p>`
     }
     <p class="quiet">${seen}</p>`;
 }
@@ -177,18 +179,20 @@ const table = (/** @type {unknown} */ rows) =>
  * @param {() => void} go
  */
 function row(wall, double, go) {
-  const place = wall.middle_m.map((x) => x.toFixed(1)).join(" ");
-  const times = wall.spans_s.map(span).join(" and ");
+  const place = wall.middle_m.map((x) => decimal(x, 1)).join(" ");
+  const times = wall.spans_s.map(span).join(` ${t("and")} `);
   return html`<tr>
     <td>
-      <button type="button" class="go" @click=${go} aria-label="Go to ${place}">${place}</button>
+      <button type="button" class="go" @click=${go} aria-label=${t("go-to", { place })}>
+        ${place}
+      </button>
     </td>
-    <td class=${double ? "bad" : "good"}>${double ? "✕ double" : "✓ single"}</td>
+    <td class=${double ? "bad" : "good"}>${double ? t("double") : t("single")}</td>
     <td class="number">${cm(wall.separation_m)}</td>
     <td class="number">${cm(wall.limit_m)}</td>
     <td class="number">${cm(wall.sigma_m)}</td>
-    <td class="number">${wall.bimodality.toFixed(1)}</td>
+    <td class="number">${decimal(wall.bimodality, 1)}</td>
     <td class="number">${(wall.share * 100).toFixed(0)} %</td>
-    <td>${times}; multiframes ${wall.frames.map(range).join(" and ")}</td>
+    <td>${times}; ${t("multiframes")} ${wall.frames.map(range).join(` ${t("and")} `)}</td>
   </tr>`;
 }

@@ -5,6 +5,7 @@ import { mapUrl } from "../shared/api.js";
 import { approvalFact } from "../shared/approval_lines.js";
 import { byId, html, nothing, render, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { t, written } from "../shared/texts.js";
 import { cutText } from "./captions.js";
 import { besideFields, controls } from "./controls.js";
 import { legend } from "./legend.js";
@@ -72,31 +73,36 @@ function drawTools(/** @type {Act} */ act) {
     </button>`;
   render(
     html`<span class="moves"
-        >${button("◂ Step", () => step(-1), "One step back  [", "Step back")}${button(
-          "Step ▸",
+        >${button(
+          t("step-back-short"),
+          () => step(-1),
+          `${t("step-back-title")}  [`,
+          t("step-back"),
+        )}${button(
+          t("step-forward-short"),
           () => step(1),
-          "One step forward  ]",
-          "Step forward",
-        )}${button("−", () => first.zoom(1.5), "Zoom out")}${button(
+          `${t("step-forward-title")}  ]`,
+          t("step-forward"),
+        )}${button("−", () => first.zoom(1.5), t("zoom-out"))}${button(
           "+",
           () => first.zoom(1 / 1.5),
-          "Zoom in",
-        )}<button type="button" title="Whole slice  0" @click=${showAll}>All</button
+          t("zoom-in"),
+        )}<button type="button" title="${t("whole-slice")}  0" @click=${showAll}>${t("all")}</button
         ><button
           type="button"
           id="measure"
           aria-pressed=${page.measuring}
-          title="Distance between two points  M"
+          title="${t("measure-title")}  M"
           @click=${measure}
         >
-          Measure
+          ${t("measure")}
         </button></span
       ><span class="beside"
-        >${besideFields(page.state, page.facts, act)}${mode("Split", "split")}${mode(
-          "Swipe",
+        >${besideFields(page.state, page.facts, act)}${mode(t("split"), "split")}${mode(
+          t("swipe"),
           "swipe",
         )}</span
-      >${button("?", showHelp, "Keys  ?", "Help")}`,
+      >${button("?", showHelp, `${t("keys")}  ?`, t("help"))}`,
     byId("tools"),
   );
 }
@@ -128,7 +134,7 @@ function drawViews() {
         type="range"
         min="0"
         max="100"
-        aria-label="Swipe between the two slices"
+        aria-label=${t("swipe-between")}
         ?hidden=${!swiping}
         .value=${String(swipe)}
         @input=${slide}
@@ -155,13 +161,15 @@ function drawUnder(/** @type {Act} */ { change }) {
  * @param {SliceFacts} facts
  */
 function facing({ name, points, surface }, { strays, frame, approval }) {
-  const { kind, t } = page.state;
+  const { kind, t: thickness } = page.state;
   return html`<strong>${cutText(kind, name)}</strong
-    ><span>${Number((t * 100).toFixed(1))} cm thick</span
-    ><span>${count(points)} points ${SURFACES[surface]}</span>
+    ><span>${t("cm-thick", { cm: written(String(Number((thickness * 100).toFixed(1)))) })}</span
+    ><span>${t("points-on", { points: count(points), surface: SURFACES[surface] })}</span>
     ${
-      strays && surface !== "strays" ? html`<span>${count(strays)} points left out</span>` : nothing
+      strays && surface !== "strays"
+        ? html`<span>${t("points-left-out", { points: count(strays) })}</span>`
+        : nothing
     }
     <span class="frame">${frame}</span>${approvalFact(approval)}
-    <a href=${mapUrl(idHere()) + mapQuery(page.state)}>Show in 3-D</a>`;
+    <a href=${mapUrl(idHere()) + mapQuery(page.state)}>${t("show-in-3d")}</a>`;
 }

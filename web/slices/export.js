@@ -4,6 +4,7 @@ import { sliceFileUrl } from "../shared/api.js";
 import { approvalLines } from "../shared/approval_lines.js";
 import { html, messagePlace, nothing, render, targetOf, within } from "../shared/dom.js";
 import { askFirst } from "../shared/download.js";
+import { t } from "../shared/texts.js";
 import { choice } from "./columns.js";
 
 /**
@@ -13,18 +14,18 @@ import { choice } from "./columns.js";
 
 /** @type {Array<[string, string, string]>} */
 const KINDS = [
-  ["png", "PNG", "sheet, 300 dpi"],
-  ["svg", "SVG", "sheet"],
-  ["pdf", "PDF", "sheet"],
-  ["dxf", "DXF", "points, one layer per slice, meters"],
-  ["tif", "GeoTIFF", "georeferenced image"],
-  ["laz", "LAZ", "points, all fields"],
-  ["csv", "CSV", "points"],
+  ["png", "PNG", t("file-png")],
+  ["svg", "SVG", t("file-sheet")],
+  ["pdf", "PDF", t("file-sheet")],
+  ["dxf", "DXF", t("file-dxf")],
+  ["tif", "GeoTIFF", t("file-tif")],
+  ["laz", "LAZ", t("file-laz")],
+  ["csv", "CSV", t("file-csv")],
 ];
 /** @type {Array<[string, string]>} */
 const PARTS = [
-  ["all", "Whole slice"],
-  ["seen", "What is seen"],
+  ["all", t("part-all")],
+  ["seen", t("part-seen")],
 ];
 /** @type {Array<[string, string]>} */
 const SIZES = [
@@ -35,7 +36,7 @@ const SIZES = [
 ];
 /** @type {Array<[string, string]>} */
 const SCALES = [
-  ["0", "Largest scale that fits"],
+  ["0", t("largest-scale")],
   .../** @type {Array<[string, string]>} */ (
     [10, 20, 25, 50, 100, 200, 250, 500, 1000].map((one) => [String(one), `1 : ${one}`])
   ),
@@ -97,43 +98,43 @@ export function exportPanel(host, { id, change, state, ask }) {
     render(
       html`<div class="row">
           <label
-            ><span>Part</span>${choice("What is exported", PARTS, part, (one) =>
+            ><span>${t("part")}</span>${choice(t("what-exported"), PARTS, part, (one) =>
               choose({ part: one }),
             )}</label
           >
           <label
-            ><span>Paper</span>${choice("Paper", SIZES, size, (one) =>
+            ><span>${t("paper")}</span>${choice(t("paper"), SIZES, size, (one) =>
               choose({ size: one }),
             )}</label
           >
           <label
-            ><span>Scale</span>${choice("Scale", SCALES, scale, (one) =>
+            ><span>${t("scale")}</span>${choice(t("scale"), SCALES, scale, (one) =>
               choose({ scale: one }),
             )}</label
           >
           <label
-            ><span>Slices</span
+            ><span>${t("slices-label")}</span
             ><input
               type="number"
               min="1"
               max="200"
-              aria-label="Number of slices"
+              aria-label=${t("number-of-slices")}
               .value=${String(state().count)}
               @change=${setCount}
           /></label>
           <label
-            ><span>Spacing [m]</span
+            ><span>${t("spacing")}</span
             ><input
               type="number"
               step="0.05"
-              aria-label="Spacing of slices"
+              aria-label=${t("spacing-label")}
               .value=${String(state().spacing)}
               @change=${setSpacing}
           /></label>
         </div>
-        ${check("flat", "DXF laid flat: u, v instead of coordinates")}
+        ${check("flat", t("dxf-flat"))}
         <div>${map.facts ? approvalLines(map.facts.approval) : nothing}</div>
-        ${check("draft", "As a draft, without the approval of the map")}
+        ${check("draft", t("draft"))}
         <ul class="files">
           ${KINDS.map(
             ([ending, name, about]) =>

@@ -6,6 +6,7 @@ import { doublesPanel } from "./doubles.js";
 import { exportPanel } from "./export.js";
 import { referencePanel } from "./reference.js";
 import { html, render } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {PickView, SliceFacts, SliceImageRequest} from "../shared/http_types"
@@ -29,11 +30,11 @@ import { html, render } from "../shared/dom.js";
 
 /** @type {Array<[string, (host: HTMLElement, page: SlicesPage) => Panel]>} */
 const PANELS = [
-  ["Double walls", doublesPanel],
-  ["Compare with a reference", referencePanel],
-  ["Control and check points", controlPanel],
-  ["Correct classes", classesPanel],
-  ["Export", exportPanel],
+  [t("double-walls"), doublesPanel],
+  [t("compare-reference"), referencePanel],
+  [t("control-points"), controlPanel],
+  [t("correct-classes"), classesPanel],
+  [t("export"), exportPanel],
 ];
 
 /**

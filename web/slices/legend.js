@@ -1,6 +1,7 @@
 // The legend of a slice: colors with their range, which may be changed. No network.
 
 import { html, nothing, targetOf } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { COLORS } from "./state.js";
 
 /**
@@ -21,7 +22,8 @@ const UNITS = { height: "m", time: "s", distance: "cm" };
  */
 export function legend(state, shown, facts, onRange) {
   const unit = UNITS[state.color] ? ` [${UNITS[state.color]}]` : "";
-  const reference = facts.references.find((one) => one.id === state.ref)?.name ?? "Reference";
+  const reference =
+    facts.references.find((one) => one.id === state.ref)?.name ?? t("reference-name");
   return html`<span class="what">${COLORS[state.color]}${unit}</span>
     ${state.color === "sensor" ? swatches(shown, facts) : ramp(state, shown, onRange)}
     ${state.ref ? html`<span class="reference"><i></i>${reference}</span>` : nothing}`;
@@ -70,14 +72,16 @@ function ramp({ color, lo, hi }, { colors, low, high }, onRange) {
       @change=${change}
     />`;
   };
-  return html`${end("Low end of the colors", low, (x) => [x, hi ?? high])}<span
+  return html`${end(t("low-end"), low, (x) => [x, hi ?? high])}<span
       class="ramp"
       .style=${`background: linear-gradient(90deg, ${colors.join(", ")})`}
     ></span
-    >${end("High end of the colors", high, (x) => [lo ?? low, x])}
+    >${end(t("high-end"), high, (x) => [lo ?? low, x])}
     ${
       lo !== null || hi !== null
-        ? html`<button type="button" @click=${() => onRange(null, null)}>Usual range</button>`
+        ? html`<button type="button" @click=${() => onRange(null, null)}>
+            ${t("usual-range")}
+          </button>`
         : nothing
     }`;
 }

@@ -1,17 +1,18 @@
 // The limits of a job at its control and check points. No network.
 
 import { fields, html } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /** @import {LimitsSpec} from "../shared/http_types" */
 
 /** @type {Array<[keyof LimitsSpec, string]>} */
 const FIELDS = [
-  ["mean_horizontal_m", "Mean horizontal"],
-  ["mean_height_m", "Mean height"],
-  ["max_horizontal_m", "Largest horizontal"],
-  ["max_height_m", "Largest height"],
-  ["distances_m", "Distances between points"],
-  ["survey_sd_m", "Standard deviation of survey and picking"],
+  ["mean_horizontal_m", t("mean-horizontal")],
+  ["mean_height_m", t("mean-height")],
+  ["max_horizontal_m", t("largest-horizontal")],
+  ["max_height_m", t("largest-height")],
+  ["distances_m", t("distances-between")],
+  ["survey_sd_m", t("sd-survey")],
 ];
 
 const centimeters = (/** @type {number | null | undefined} */ limit) =>
@@ -42,22 +43,19 @@ export function limitsForm(limits, text, keep) {
         max="10000"
         step="any"
         name=${key}
-        placeholder="not required"
+        placeholder=${t("not-required")}
         aria-label="${label} [cm]"
         ?required=${key === "survey_sd_m"}
         .value=${centimeters(limits[key])}
     /></label>`;
   return html`<details>
-    <summary>Limits: ${text}</summary>
-    <p class="quiet">
-      They hold for this project, and stand on the sheet and in the CSV. Empty = not required. A
-      residual more than 3 standard deviations of survey and map together is flagged.
-    </p>
+    <summary>${t("limits", { limits: text })}</summary>
+    <p class="quiet">${t("limits-hold")}</p>
     <form class="limits" @submit=${submit}>
       ${FIELDS.map(([key, label]) => input(key, label))}
       <div class="buttons">
-        <button>Set limits</button
-        ><button type="button" @click=${() => keep(null)}>Usual limits</button>
+        <button>${t("set-limits")}</button
+        ><button type="button" @click=${() => keep(null)}>${t("usual-limits")}</button>
       </div>
     </form>
   </details>`;

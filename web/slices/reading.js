@@ -2,6 +2,7 @@
 
 import { addReference, previewReference } from "../shared/api.js";
 import { attempt, html, nothing } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { choice, columnTable, missing, UNITS } from "./columns.js";
 
 /**
@@ -13,9 +14,9 @@ import { choice, columnTable, missing, UNITS } from "./columns.js";
 
 /** @type {Array<[string, string]>} */
 const FRAMES = [
-  ["auto", "Frame: as the file says"],
-  ["map", "In the map's frame"],
-  ["crs", "In the map's CRS"],
+  ["auto", t("frame-auto")],
+  ["map", t("frame-map")],
+  ["crs", t("frame-crs")],
 ];
 
 /** Reads files as references. */
@@ -47,8 +48,8 @@ export class ReferenceReader {
     const setUnit = (/** @type {string} */ value) =>
       this.#change({ unit: /** @type {Unit | ""} */ (value) });
     return [
-      choice("Coordinates of the reference", FRAMES, frame, setFrame),
-      choice("Unit of the reference", [["", "Unit: as the file says"], ...UNITS], unit, setUnit),
+      choice(t("coordinates-of-reference"), FRAMES, frame, setFrame),
+      choice(t("unit-of-reference"), [["", t("unit-auto")], ...UNITS], unit, setUnit),
     ];
   }
 
@@ -73,8 +74,10 @@ export class ReferenceReader {
     return html`<p><strong>${file.path.split("/").at(-1)}</strong></p>
       ${columnTable(table, (columns, unit) => this.#again(reading, columns, unit))}
       <div class="buttons">
-        <button type="button" ?disabled=${blocked} @click=${use}>Use these columns</button
-        ><button type="button" @click=${() => this.#change({ reading: null })}>Cancel</button>
+        <button type="button" ?disabled=${blocked} @click=${use}>${t("use-columns")}</button
+        ><button type="button" @click=${() => this.#change({ reading: null })}>
+          ${t("cancel")}
+        </button>
       </div>`;
   }
 

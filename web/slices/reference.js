@@ -9,6 +9,7 @@ import {
 } from "../shared/api.js";
 import { attempt, html, nothing, render, repeat, targetOf, within } from "../shared/dom.js";
 import { bytes, count } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 import { Sending, sorted } from "../projects/resumable_upload.js";
 import { openAlignment } from "./align.js";
 import { choice } from "./columns.js";
@@ -35,12 +36,12 @@ import { planeOf, moved } from "./state.js";
 const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
 /** @type {Array<[string, string]>} */
 const WHICH = [
-  ["usual", "8 slices over the map, 2 cm"],
-  ["this", "This slice"],
-  ["repeated", "This slice, repeated"],
+  ["usual", t("usual-slices")],
+  ["this", t("this-slice")],
+  ["repeated", t("this-repeated")],
 ];
 const METHOD_CHOICES = /** @type {Array<[string, string]>} */ (
-  Object.entries(METHODS).map(([key, text]) => [key, `Distances ${text}`])
+  Object.entries(METHODS).map(([key, text]) => [key, t("distances", { method: text })])
 );
 
 /**
@@ -92,8 +93,8 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
     try {
       await sending.start();
       if (sending.state === "failed") {
-        const reason = sending.error instanceof Error ? sending.error.message : "It failed";
-        throw new Error(`${reason}; choose the same file again to go on`);
+        const reason = sending.error instanceof Error ? sending.error.message : t("it-failed");
+        throw new Error(t("choose-again", { reason }));
       }
       if (sending.state !== "done") return;
       set({ path: sending.recording });
@@ -142,7 +143,7 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
   async function compare() {
     const { method } = state;
     const { ref: reference, source } = slice();
-    if (!reference) throw new Error("Choose a reference first");
+    if (!reference) throw new Error(t("choose-reference"));
     const ask = { reference, method, planes: planes(), source };
     change({ method }, { keep: true });
     const found = await compareSlices(id, ask);
@@ -150,11 +151,14 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
   }
 
   function row(/** @type {ListedReference} */ one) {
-    const size = one.points ? `${count(one.points)} points` : `${count(one.triangles)} triangles`;
+    const size = one.points
+      ? t("points-many", { count: count(one.points) })
+      : t("triangles", { count: count(one.triangles) });
     const show = () =>
       change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true });
     return html`<div class="reference-row">
-      <strong>${one.name}</strong><span class="quiet">${size}, alignment: ${one.alignment}</span>
+      <strong>${one.name}</strong
+      ><span class="quiet"> ${t("size-alignment", { size, alignment: one.alignment })}</span>
       ${one.notes.length ? html`<small class="quiet">${one.notes.join(" ")}</small>` : nothing}
       ${
         one.fit
@@ -162,13 +166,13 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
           : nothing
       }
       <span class="buttons"
-        >${button("Show", show)}${button("Align by ICP", () => align(one, "icp"))}${button(
-          "Align by pairs",
+        >${button(t("show"), show)}${button(t("align-icp"), () => align(one, "icp"))}${button(
+          t("align-pairs"),
           () => openAlignment(id, one, realigned),
-        )}${one.can_undo ? button("Undo alignment", () => align(one, "undo")) : nothing}${button(
-          "No alignment",
+        )}${one.can_undo ? button(t("undo-alignment"), () => align(one, "undo")) : nothing}${button(
+          t("no-alignment"),
           () => align(one, "none"),
-        )}${button("Remove", () => remove(one))}</span
+        )}${button(t("remove"), () => remove(one))}</span
       >
     </div>`;
   }
@@ -193,34 +197,32 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
           )}
         </div>
         <div class="row">
-          <button type="button" ?disabled=${busy} @click=${choose}>Upload file…</button
+          <button type="button" ?disabled=${busy} @click=${choose}>${t("upload-file")}</button
           ><input
             type="file"
             hidden
             accept=${KINDS}
-            aria-label="Reference file"
+            aria-label=${t("reference-file")}
             @change=${pick}
           /><input
-            placeholder="Path on this computer"
-            aria-label="Path of the reference"
+            placeholder=${t("path-here")}
+            aria-label=${t("path-of-reference")}
             autocomplete="off"
             spellcheck="false"
             .value=${path}
             @input=${type}
-          />${button("Browse…", () => openFolder(""))}${reader.fields}${button(
-            "Add reference",
+          />${button(t("browse"), () => openFolder(""))}${reader.fields}${button(
+            t("add-reference"),
             () => reader.read(state.path),
           )}
         </div>
         ${sending ? progress(sending) : nothing} ${folderList()}
         <div>${reader.element}</div>
-        <p class="quiet">
-          PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it.
-        </p>
+        <p class="quiet">${t("reference-formats")}</p>
         <div class="row">
-          ${choice("Slices to compare", WHICH, which, (one) => set({ which: one }))}
-          ${choice("Method of the distances", METHOD_CHOICES, method, setMethod)}
-          ${button("Compare", compare)}
+          ${choice(t("slices-to-compare"), WHICH, which, (one) => set({ which: one }))}
+          ${choice(t("method-of-distances"), METHOD_CHOICES, method, setMethod)}
+          ${button(t("compare"), compare)}
         </div>
         <p class="error problem" role="alert"></p>
         <div>${compared ? comparison(compared.found, compared.url) : nothing}</div>`,
@@ -233,16 +235,16 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
     const stop = () => attempt(message(), () => sending.remove());
     const words =
       at === "done"
-        ? `${name} is being read`
-        : text || `${name}: ${bytes(sent)} of ${bytes(total)}`;
+        ? t("being-read", { name })
+        : text || t("sent-of", { name, sent: bytes(sent), total: bytes(total) });
     return html`<div class="row">
       <span role="status">${words}</span
       ><progress
         max="1"
-        aria-label="Upload of the reference"
+        aria-label=${t("upload-of-reference")}
         .value=${total ? sent / total : 1}
       ></progress
-      ><button type="button" @click=${stop}>Stop</button>
+      ><button type="button" @click=${stop}>${t("stop")}</button>
     </div>`;
   }
 
@@ -253,7 +255,9 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
     const open = (/** @type {string} */ to) => () => attempt(message(), () => openFolder(to));
     const up = folder.split("/").slice(0, -1).join("/");
     return html`<div class="folder">
-      ${folder ? html`<button type="button" @click=${open(up)}>‥ Up</button>` : nothing}
+      ${
+        folder ? html`<button type="button" @click=${open(up)}>${t("folder-up")}</button>` : nothing
+      }
       ${entries.map((entry) =>
         entry.folder
           ? html`<button type="button" @click=${open(entry.path)}>

@@ -1,5 +1,6 @@
 // Rows of the residuals and of the limits at control and check points. No network.
 
+import { decimal, t } from "../shared/texts.js";
 import { html } from "../shared/dom.js";
 
 /** @import {ErrorEllipse, Requirement, Residual, ResidualStatistics} from "../shared/http_types" */
@@ -7,19 +8,28 @@ import { html } from "../shared/dom.js";
 const UNKNOWN = "–"; // not measured
 const COLUMNS = 8;
 
-const cm = (/** @type {number | null} */ m) => (m === null ? UNKNOWN : (m * 100).toFixed(1));
+const cm = (/** @type {number | null} */ m) => (m === null ? UNKNOWN : decimal(m * 100, 1));
 const cell = (/** @type {string} */ text, className = "") =>
   html`<td class="number ${className}">${text}</td>`;
+
+/** Control or check. */
+export const roleText = (/** @type {string} */ role) =>
+  t(role === "control" ? "role-control" : "role-check");
 
 /** Error ellipse and height: long axis x short axis at the azimuth of the long one, height. */
 const stated = (/** @type {ErrorEllipse | null} */ one) =>
   one
-    ? `${cm(one.major_m)} × ${cm(one.minor_m)} at ${one.azimuth_deg.toFixed(0)}°, ${cm(one.up_m)}`
+    ? t("ellipse", {
+        major: cm(one.major_m),
+        minor: cm(one.minor_m),
+        azimuth: one.azimuth_deg.toFixed(0),
+        up: cm(one.up_m),
+      })
     : UNKNOWN;
 
 function sigmas(/** @type {Pick<Residual, "sigmas" | "outlier">} */ { sigmas: found, outlier }) {
   if (found === null) return cell(UNKNOWN);
-  return outlier ? cell(`⚠ ${found.toFixed(1)}`, "bad") : cell(found.toFixed(1));
+  return outlier ? cell(`⚠ ${decimal(found, 1)}`, "bad") : cell(decimal(found, 1));
 }
 
 /**
@@ -28,7 +38,7 @@ function sigmas(/** @type {Pick<Residual, "sigmas" | "outlier">} */ { sigmas: fo
  * @param {boolean} earlier
  */
 export function residualCells(residual, earlier) {
-  if (earlier) return [html`<td colspan=${COLUMNS} class="quiet">found in an earlier map</td>`];
+  if (earlier) return [html`<td colspan=${COLUMNS} class="quiet">${t("found-earlier")}</td>`];
   if (!residual) return Array.from({ length: COLUMNS }, () => cell(""));
   const { east_m, north_m, up_m, d2_m, d3_m } = residual;
   return [
@@ -58,11 +68,11 @@ const axes = (figures, key) =>
 /** The limits of one role, with what was measured. */
 export function figures(/** @type {ResidualStatistics} */ one) {
   const head = [
-    `${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`,
-    "Result",
-    "Points",
-    "Measured [cm]",
-    "Limit",
+    t("points-of-role", { points: one.points, role: roleText(one.role) }),
+    t("result"),
+    t("points"),
+    t("measured-cm"),
+    t("limit"),
   ].map((text, k) => html`<th scope="col" class=${k > 1 ? "number" : ""}>${text}</th>`);
   return html`<div class="figures">
     <div class="scroll">
@@ -77,7 +87,7 @@ export function figures(/** @type {ResidualStatistics} */ one) {
         </tbody>
       </table>
     </div>
-    <p class="quiet">RMSE (points) ${axes(one, "rmse_m")} 3D ${cm(one.rmse_3d_m)} cm</p>
-    <p class="quiet">Mean ${axes(one, "mean_m")} cm</p>
+    <p class="quiet">${t("rmse", { axes: axes(one, "rmse_m"), all: cm(one.rmse_3d_m) })}</p>
+    <p class="quiet">${t("mean-axes", { axes: axes(one, "mean_m") })}</p>
   </div>`;
 }

@@ -2,6 +2,7 @@
 
 import { putOnSite, remakeMap, takeOffSite, trySite } from "../shared/api.js";
 import { attempt, html, nothing, render, within } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /** @import {SiteTrial} from "../shared/http_types" */
 
@@ -31,7 +32,7 @@ export function siteSection(host, id) {
     await attempt(within(host, ".error"), work);
     set({ busy: "" });
   }
-  const tried = () => run("Trying…", async () => set({ trial: await trySite(id, crs()) }));
+  const tried = () => run(t("trying"), async () => set({ trial: await trySite(id, crs()) }));
   /**
    * @param {string} what shown meanwhile
    * @param {() => Promise<unknown>} decide
@@ -42,18 +43,22 @@ export function siteSection(host, id) {
       await remakeMap(id);
       set({ done: true });
     });
-  const put = () => remade("Putting the map on the points…", () => putOnSite(id, crs()));
-  const takeOff = () => remade("Taking the map off the points…", () => takeOffSite(id));
+  const put = () => remade(t("putting"), () => putOnSite(id, crs()));
+  const takeOff = () => remade(t("taking-off"), () => takeOffSite(id));
 
   function outcome(/** @type {SiteTrial} */ { text, forbidden, unseen }) {
     return html`${forbidden.map((one) => html`<p class="bad">✕ ${one}</p>`)}
-      ${unseen.length ? html`<p>Not measured in this map: ${unseen.join(", ")}.</p>` : nothing}
-      <pre class="scroll" tabindex="0" aria-label="Residuals after the rigid fit">${text}</pre>
+      ${
+        unseen.length
+          ? html`<p>${t("not-measured-here", { names: unseen.join(", ") })}</p>`
+          : nothing
+      }
+      <pre class="scroll" tabindex="0" aria-label=${t("residuals-after-fit")}>${text}</pre>
       ${
         forbidden.length
           ? nothing
           : html`<button type="button" ?disabled=${state.busy !== ""} @click=${put}>
-              Put the map on these points
+              ${t("put-on-points")}
             </button>`
       }`;
   }
@@ -61,23 +66,20 @@ export function siteSection(host, id) {
   function draw() {
     const { trial, busy, done } = state;
     render(
-      html`<h3>Site coordinates</h3>
-        <p class="quiet">
-          Three or more control points place the map. They are tested first; check points only
-          judge. The map is made again, and the places of points are measured in it again.
-        </p>
-        <label>EPSG <input size="12" placeholder="site grid" aria-label="EPSG code" /></label>
+      html`<h3>${t("site-coordinates")}</h3>
+        <p class="quiet">${t("site-is")}</p>
+        <label
+          >EPSG <input size="12" placeholder=${t("site-grid")} aria-label=${t("epsg-code")}
+        /></label>
         <div class="buttons">
-          <button type="button" ?disabled=${busy !== ""} @click=${tried}>Try</button>
-          <button type="button" ?disabled=${busy !== ""} @click=${takeOff}>
-            Take the map off control points
-          </button>
+          <button type="button" ?disabled=${busy !== ""} @click=${tried}>${t("try")}</button>
+          <button type="button" ?disabled=${busy !== ""} @click=${takeOff}>${t("take-off")}</button>
         </div>
         <p class="quiet" role="status">${busy}</p>
         <p class="error" role="alert"></p>
         ${
           done
-            ? html`<p>The map is made again: <a href="../">its progress</a>.</p>`
+            ? html`<p>${t("map-remade")} <a href="../">${t("its-progress")}</a>.</p>`
             : trial
               ? outcome(trial)
               : nothing

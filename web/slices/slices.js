@@ -21,6 +21,7 @@ import { help } from "./help.js";
 import { isPlan, showPlan } from "./plan.js";
 import { endsOf, stretchMarks, timesOf } from "./stretch_mark.js";
 import { COLORS, SURFACES, format, moved, planeOf, startOf, parse, unframed } from "./state.js";
+import { t } from "../shared/texts.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
@@ -139,8 +140,12 @@ function describe() {
   const { name, surface } = shown;
   const points = count(shown.points);
   page.caption = imageText({ source, color, points, surface }, facts.sources);
-  const where = `${points} points ${SURFACES[surface]}`;
-  first.label = `Slice ${name}, ${where}, colored by ${COLORS[color]}`;
+  first.label = t("slice-label", {
+    name,
+    points,
+    surface: SURFACES[surface],
+    color: COLORS[color],
+  });
   second.label = page.secondCaption;
   draw();
   mark();
@@ -158,7 +163,7 @@ async function place(/** @type {Place} */ { u, v, reach }) {
     source: state.source,
     surface: state.surface,
   });
-  if (!answer.found || !facts) return read("No point of the map here");
+  if (!answer.found || !facts) return read(t("no-point-here"));
   page.picked = answer;
   if (measuring) page.measured = measured.length >= 2 ? [answer] : [...measured, answer];
   mark();
@@ -204,7 +209,7 @@ function outline(/** @type {"draw" | "back" | "clear" | undefined} */ action = u
     back: { corners: corners.slice(0, -1), drawing },
     clear: { corners: [], drawing: false },
   }[action];
-  read(page.outline.drawing ? "Click the corners of the polygon" : "");
+  read(page.outline.drawing ? t("click-corners") : "");
   mark();
   found.show();
   return page.outline;
@@ -212,7 +217,7 @@ function outline(/** @type {"draw" | "back" | "clear" | undefined} */ action = u
 
 function clearMeasure() {
   Object.assign(page, { measured: [], picked: null });
-  page.reading = page.measuring ? "Click two points" : "";
+  page.reading = page.measuring ? t("click-two") : "";
 }
 
 function measure(on = !page.measuring) {
@@ -360,7 +365,7 @@ async function begin() {
     if (!isGuest(me)) Object.assign(found, fillFindings());
     only("page-head").name = project.name;
     only("map-verdict").facts = factsIn(project.summary);
-    document.title = `Slices · ${project.name} · recon4`;
+    document.title = t("title-of", { project: project.name });
     if (isPlan(project)) return showPlan(id, project, isGuest(me));
     await reload();
     above.walk = page.stretch = await stretchOf();

@@ -1,5 +1,6 @@
 // What is cut and how it is shown; the address of the page is this state. No DOM, no network.
 
+import { t } from "../shared/texts.js";
 /**
  * @import {SliceImageRequest, SlicePlaneSpec} from "../shared/http_types"
  * @typedef {"horizontal" | "vertical" | "free"} Kind of a slice
@@ -53,12 +54,12 @@ const MAYBE = ["lo", "hi", "u", "v", "m"];
 
 /** @type {Record<Color, string>} */
 export const COLORS = {
-  height: "Height",
-  intensity: "Intensity",
-  normalized: "Normalized intensity",
-  time: "Time",
-  sensor: "Sensor",
-  distance: "Distance to reference",
+  height: t("color-height"),
+  intensity: t("color-intensity"),
+  normalized: t("color-normalized"),
+  time: t("color-time"),
+  sensor: t("color-sensor"),
+  distance: t("color-distance"),
 };
 
 /**
@@ -66,9 +67,9 @@ export const COLORS = {
  * @type {Record<Surface, string>}
  */
 export const SURFACES = {
-  fitted: "on fitted surfaces",
-  raw: "as measured",
-  strays: "left out of the map",
+  fitted: t("surface-fitted"),
+  raw: t("surface-raw"),
+  strays: t("surface-strays"),
 };
 
 /** The state in the query of an address; an invalid value becomes the default. */

@@ -6,6 +6,7 @@
 import { render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar, roundStep } from "../shared/scale_bar.js";
+import { t } from "../shared/texts.js";
 import { imageSize } from "./state.js";
 
 const EDGE = { left: 56, bottom: 26 };
@@ -64,7 +65,7 @@ export class SliceView extends HTMLElement {
 
   /** The label for screen readers. */
   set label(/** @type {string} */ text) {
-    this.#canvas.setAttribute("aria-label", text || "Slice");
+    this.#canvas.setAttribute("aria-label", text || t("slice"));
   }
 
   /** Middle [m] and meters per pixel; null before the first image. */

@@ -1,0 +1,345 @@
+### Die Seite der Schnitte: Schnitte durch die Karte, und was in ihnen gefunden wird.
+
+
+## Seite
+
+title = Schnitte · recon4
+slices = Schnitte
+cut = Schneiden
+slice = Schnitt
+findings = Befunde
+slice-label = Schnitt { $name }, { $points } Punkte { $surface }, gefärbt nach { $color }
+no-point-here = Hier ist kein Punkt der Karte
+click-corners = Die Ecken des Polygons anklicken
+click-two = Zwei Punkte anklicken
+title-of = Schnitte · { $project } · recon4
+
+## Beschriftungen
+
+kind-horizontal = Horizontal
+kind-vertical = Vertikal
+kind-free = Freie Ebene
+this-map = Diese Karte
+image-text = { $name } · { $color } · { $points } Punkte { $surface }
+intensity-of = Intensität { $value }
+sensor-of = Sensor { $number }
+time-of = { DECIMAL($s, digits: 1) } s, Multiframe { $frame }
+distance = Strecke { DECIMAL($m, digits: 3) } m
+horizontal-part = horizontal { DECIMAL($m, digits: 3) } m
+vertical-part = vertikal { DECIMAL($m, digits: 3) } m
+from-to = von { $from } bis { $to }
+color-height = Höhe
+color-intensity = Intensität
+color-normalized = Normierte Intensität
+color-time = Zeit
+color-sensor = Sensor
+color-distance = Abstand von der Referenz
+surface-fitted = auf eingepassten Flächen
+surface-raw = wie gemessen
+surface-strays = nicht in der Karte
+
+## Felder
+
+horizontal = Horizontal
+vertical = Vertikal
+free = Frei
+kind-of-slice = Art des Schnitts
+height-z = Höhe z [m]
+height = Höhe
+azimuth = Azimut der Normalen [°]
+tilt-from-level = Neigung zur Waagrechten [°]
+thickness = Dicke [cm]
+step = Schritt [m]
+usual-thickness = Übliche Dicke
+thin = Dünn, 2 cm
+thick = Dick, 10 cm
+where-drawn = Wo Punkte gezeichnet werden
+points-where = Punkte { $surface }
+color-by = Färben nach
+no-reference = Keine
+reference = Referenz
+same-color = Gleiche Farbe
+one-slice = Ein Schnitt
+beside-color = Daneben: { $color }
+map-beside = Karte daneben
+color-beside = Farbe daneben
+step-back-short = ◂ Schritt
+step-back-title = Ein Schritt zurück
+step-back = Schritt zurück
+step-forward-short = Schritt ▸
+step-forward-title = Ein Schritt vor
+step-forward = Schritt vor
+zoom-out = Verkleinern
+zoom-in = Vergrößern
+split = Nebeneinander
+swipe = Wischen
+help = Hilfe
+keys = Tasten
+whole-slice = Ganzer Schnitt
+all = Alles
+measure-title = Strecke zwischen zwei Punkten
+measure = Messen
+swipe-between = Zwischen den beiden Schnitten wischen
+cm-thick = { $cm } cm dick
+points-on = { $points } Punkte { $surface }
+points-left-out = { $points } Punkte ausgelassen
+show-in-3d = In 3-D zeigen
+reference-name = Referenz
+low-end = Unteres Ende der Farben
+high-end = Oberes Ende der Farben
+usual-range = Üblicher Bereich
+above-label = Die Karte von oben, mit dem Schnitt
+
+## Tasten
+
+key-back = { "[" } oder Bild ab
+do-back = Ein Schritt zurück
+key-forward = ] oder Bild auf
+do-forward = Ein Schritt vor
+do-kinds = Horizontale, vertikale, freie Ebene
+do-thick = Doppelt so dick, halb so dick
+do-color = Nächste Farbe
+do-measure = Messen: zwei Punkte
+do-points = Punkte auf eingepassten Flächen, wie gemessen oder nur die ausgelassenen
+do-whole = Ganzer Schnitt
+key-pan = Pfeile
+do-pan = Den Schnitt verschieben, wenn er den Fokus hat
+do-pick = Den Punkt in der Mitte wählen
+do-end = Messen und Zeichnen eines Polygons beenden
+above-help = Auf der Karte von oben: ziehen für einen vertikalen Schnitt, seine Linie oder seine Enden A und B ziehen. Der Pfeil zeigt die Blickrichtung.
+plan-is = Dies ist eine 2-D-Karte: ein Schnitt in Höhe des Lasers, daher lässt sich kein anderer schneiden. Ein Pixel ist { $cm } cm.
+plan-finer = Die Datei map.png hat Pixel von { $cm } cm.
+page-project = Die Seite Projekt zeigt Orte und Strecken.
+plan-alt = Grundriss: Wände schwarz, frei weiß, nicht gesehen grau
+
+## Doppelte Wände
+
+double-walls = Doppelte Wände
+compare-reference = Vergleich mit einer Referenz
+control-points = Pass- und Kontrollpunkte
+correct-classes = Klassen korrigieren
+export = Export
+places-of = { $meant } von { $count } Stellen
+places-worst = { $meant } von { $count } Stellen, die { $most } schlechtesten sind aufgeführt
+double-is = Eine Wand ist doppelt, wo zwei Besuche eine Fläche an zwei Stellen legen. Die ganze Karte wird geprüft.
+in-this-slice = In diesem Schnitt
+searching = Wird gesucht…
+find-double = Doppelte Wände suchen
+which-surfaces = Welche Flächen
+where = Wo
+only-double = Nur doppelte
+all-twice = Alle zweimal besuchten, schlechteste zuerst
+whole-map = Ganze Karte
+place = Stelle
+separation = Abstand
+limit = Grenze
+thickness-measured = Dicke σ wie gemessen
+d-is = D = Abstand / σ
+weaker-layer = Schwächere Lage
+visits = Besuche
+twice-is = { $patches } Flächenstücke wurden zweimal besucht; Abstand zwischen den Besuchen { $median } (Median), { $most } (95 %); Dicke σ wie gemessen { $sigma }.
+none-twice = Keine Fläche wurde zweimal besucht: doppelte Wände sind nicht erkennbar.
+double-found = ✕ { $count } doppelte Wände
+no-double = ✓ Keine doppelte Wand gefunden
+not-checked = – Nicht geprüft
+and = und
+multiframes = Multiframes
+go-to = Zu { $place }
+double = ✕ doppelt
+single = ✓ einfach
+
+## Referenzen
+
+usual-slices = 8 Schnitte über die Karte, 2 cm
+this-slice = Dieser Schnitt
+this-repeated = Dieser Schnitt, wiederholt
+distances = Abstände { $method }
+it-failed = Fehlgeschlagen
+choose-again = { $reason }; dieselbe Datei noch einmal wählen, um fortzufahren
+choose-reference = Zuerst eine Referenz wählen
+points-many = { $count } Punkte
+triangles = { $count } Dreiecke
+size-alignment = { $size }, Ausrichtung: { $alignment }
+show = Zeigen
+align-icp = Mit ICP ausrichten
+align-pairs = Mit Paaren ausrichten
+undo-alignment = Ausrichtung rückgängig
+no-alignment = Keine Ausrichtung
+remove = Entfernen
+upload-file = Datei hochladen…
+reference-file = Referenzdatei
+path-here = Pfad auf diesem Rechner
+path-of-reference = Pfad der Referenz
+browse = Durchsuchen…
+add-reference = Referenz hinzufügen
+reference-formats = PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ oder STL. Nichts wird ausgerichtet, wenn Sie es nicht verlangen.
+slices-to-compare = Schnitte für den Vergleich
+method-of-distances = Verfahren der Abstände
+compare = Vergleichen
+upload-of-reference = Hochladen der Referenz
+stop = Stopp
+being-read = { $name } wird gelesen
+sent-of = { $name }: { $sent } von { $total }
+folder-up = ‥ Nach oben
+frame-auto = System: wie in der Datei
+frame-map = Im System der Karte
+frame-crs = Im KRS der Karte
+coordinates-of-reference = Koordinaten der Referenz
+unit-of-reference = Einheit der Referenz
+unit-auto = Einheit: wie in der Datei
+use-columns = Diese Spalten verwenden
+column-none = nicht verwendet
+column-id = Name
+column-x = x, Ost
+column-y = y, Nord
+column-z = z, Höhe
+column-minus-x = minus x (nach Westen)
+column-minus-y = minus y (nach Süden)
+column-lat = Breite [°]
+column-lon = Länge [°]
+column-role = Pass- oder Kontrollpunkt
+column-radius = Radius einer Zielmarke
+unit-m = Meter
+unit-mm = Millimeter
+unit-cm = Zentimeter
+unit-dm = Dezimeter
+unit-km = Kilometer
+unit-ft = internationale Fuß
+unit-us-ft = US Survey Feet
+unit-in = Zoll
+choose-columns = Je eine Spalte wählen als { $columns }
+degrees-or-xy = Entweder Grad oder x und y wählen
+column-n = Spalte { $n }
+meaning-of = Bedeutung von { $column }
+not-certain = Nicht sicher: { $question }
+unit-of-coordinates = Einheit der Koordinaten
+first-rows = Die ersten { $rows } Zeilen; getrennt durch „{ $delimiter }“, Dezimalzeichen „{ $decimal }“
+method-plane = zur Fläche der Referenz
+method-point = zu ihrem nächsten Punkt (V)
+head-slice = Schnitt
+head-mean = Mittel [cm]
+head-signed = Mittel mit Vorzeichen [cm]
+head-shift-x = Versatz x
+head-shift-y = Versatz y
+head-shift-z = Versatz z
+head-points = Punkte
+mean-of-slices = Mittel der Schnitte
+mean-of-points = Mittel aller Punkte
+not-one-place = Die Zahlen gehören nicht zu ein und demselben Ort.
+histogram = Histogramm der Abstände mit Vorzeichen
+download-csv = CSV herunterladen
+against = Gegen { $reference }, Abstände { $method }, Ausrichtung: { $alignment }.
+signed-is = Mit Vorzeichen: quer zu den Flächen, + = die Karte liegt vor der Referenz, auf der Seite, von der sie gesehen wurde. Gegenüberliegende Wände heben sich dort auf; der Versatz [cm] ist die gemeinsame Verschiebung der Karte.
+histogram-of = Punkte nach Abstand mit Vorzeichen, Klassen von { $mm } mm
+align-with = { $reference } an der Karte ausrichten
+align-help = Dieselben drei Punkte abwechselnd in der Karte (blau) und der Referenz (orange) wählen, etwa weit voneinander entfernte Wandecken. Oder die Referenz an Griff und Ring verschieben (Oben), dann verfeinern.
+name-map = Karte
+name-reference = Referenz
+pick-pairs = Drei Paare wählen
+refine-icp = Von hier mit ICP verfeinern
+both-level = Beide sind horizontiert: Höhen kommen von den Böden, nicht von den Paaren
+then-icp = Dann mit ICP verfeinern
+alignment-is = Ausrichtung: { $alignment }
+
+## Pass- und Kontrollpunkte
+
+point = Punkt
+role = Rolle
+across = Quer
+stated = 1 σ angegeben [cm]
+residual-sigma = Restfehler / σ
+named-more = { $names } und { $count } weitere
+degrees-put = (Grad, umgerechnet in { $crs }: dessen Code für „Versuchen“)
+first-point = { $count } Punkte; der erste, { $name }: Ost { $x }, Nord { $y }, Höhe { $z } m{ $put }
+list-too-large = Die Datei hat mehr als 600 kB; eine Punktliste ist kleiner
+swap = Ost und Nord tauschen
+use-map = Verwenden, im System der Karte
+use-crs = Verwenden, im KRS der Karte
+others-change = Andere ändern diese Punkte auch: sie werden neu gelesen, bitte noch einmal
+no-surface-of = Keine ebene Fläche näher als 30 cm an { $names }
+role-of = Rolle von { $name }
+role-check = Kontrollpunkt
+role-control = Passpunkt
+go = Hin
+go-to-point = Zu { $name }
+here = Hier
+is-picked = { $name } ist der gewählte Punkt
+surface = Fläche
+on-surface = { $name } auf der nächsten Fläche
+clear = Löschen
+clear-point = { $name } löschen
+pick-first = { $name } zuerst im Schnitt wählen
+no-surface-pick = Keine ebene Fläche näher als 30 cm an { $name }: im Schnitt wählen, dann „Hier“
+no-points-yet = Noch keine Punkte. ID,X,Y,Z[,Radius]; mit ; und Dezimalkomma; lat, lon; DXF.
+survey-file = Vermessungsdatei
+as-draft = , als Entwurf
+measured-earlier = Nur in einer früheren Karte oder Version gemessen, zählt nicht: { $names }. Neu messen.
+residuals-are = Karte minus Vermessung [cm]. – = nicht gemessen, zählt nirgends: ein Punkt auf einer Fläche ist nur quer zu ihr gemessen (Quer), ein im Schnitt gewählter in der Ebene des Schnitts. Für die dritte Komponente in einem zweiten Schnitt wählen.
+first-of-points = Die ersten { $shown } von { $count } Punkten; die Dateien haben alle.
+all-surfaces = Alle auf die nächste Fläche
+residuals-csv = Restfehler als CSV
+sheet-to-sign = Blatt zum Drucken und Unterschreiben
+ellipse = { $major } × { $minor } bei { $azimuth }°, { $up }
+found-earlier = in einer früheren Karte gefunden
+points-of-role = { $points ->
+    [one] { $points } { $role }
+   *[other] { $points } { $role }e
+}
+result = Ergebnis
+points = Punkte
+measured-cm = Gemessen [cm]
+rmse = RMSE (Punkte) { $axes } 3D { $all } cm
+mean-axes = Mittel { $axes } cm
+mean-horizontal = Mittel Lage
+mean-height = Mittel Höhe
+largest-horizontal = Größter Lage
+largest-height = Größter Höhe
+distances-between = Strecken zwischen Punkten
+sd-survey = Standardabweichung von Vermessung und Auswahl
+not-required = nicht verlangt
+limits-hold = Sie gelten für dieses Projekt und stehen auf dem Blatt und in der CSV. Leer = nicht verlangt. Ein Restfehler über 3 Standardabweichungen von Vermessung und Karte zusammen wird markiert.
+set-limits = Grenzen setzen
+usual-limits = Übliche Grenzen
+limits = Grenzen: { $limits }
+trying = Wird versucht…
+putting = Die Karte wird auf die Punkte gelegt…
+taking-off = Die Karte wird von den Punkten gelöst…
+residuals-after-fit = Restfehler nach der starren Einpassung
+put-on-points = Die Karte auf diese Punkte legen
+site-coordinates = Baustellenkoordinaten
+site-is = Drei oder mehr Passpunkte platzieren die Karte. Sie werden zuerst geprüft; Kontrollpunkte urteilen nur. Die Karte wird neu gerechnet, und die Stellen der Punkte werden in ihr neu gemessen.
+site-grid = Baustellennetz
+epsg-code = EPSG-Code
+try = Versuchen
+take-off = Die Karte von den Passpunkten lösen
+not-measured-here = In dieser Karte nicht gemessen: { $names }.
+map-remade = Die Karte wird neu gerechnet:
+its-progress = ihr Fortschritt
+
+## Dateien
+
+file-png = Blatt, 300 dpi
+file-dxf = Punkte, ein Layer je Schnitt, Meter
+file-tif = georeferenziertes Bild
+file-laz = Punkte, alle Felder
+file-csv = Punkte
+part-all = Ganzer Schnitt
+part-seen = Was zu sehen ist
+largest-scale = Größter passender Maßstab
+part = Teil
+what-exported = Was exportiert wird
+slices-label = Schnitte
+number-of-slices = Anzahl der Schnitte
+spacing = Abstand [m]
+spacing-label = Abstand der Schnitte
+dxf-flat = DXF flach gelegt: u, v statt Koordinaten
+draft = Als Entwurf, ohne die Freigabe der Karte
+file-sheet = Blatt
+paper = Papier
+scale = Maßstab
+polygon-is = Ein Polygon durch den Schnitt, so dick wie er, gibt seinen Punkten eine andere Klasse. Die Karte folgt, wenn sie neu gerechnet wird; jeder Punkt bleibt erhalten.
+choose-this-map = „Diese Karte“ wählen: frühere Karten bleiben, wie sie sind.
+draw-polygon = Polygon zeichnen
+remove-corner = Letzte Ecke entfernen
+remove-polygon = Polygon entfernen
+polygon-hint = Ein Polygon um die Punkte zeichnen: seine Ecken im Schnitt anklicken.

@@ -1,0 +1,345 @@
+### The page of slices: cuts through the map, and what is found in them.
+
+
+## Page
+
+title = Slices · recon4
+slices = Slices
+cut = Cut
+slice = Slice
+findings = Findings
+slice-label = Slice { $name }, { $points } points { $surface }, colored by { $color }
+no-point-here = No point of the map here
+click-corners = Click the corners of the polygon
+click-two = Click two points
+title-of = Slices · { $project } · recon4
+
+## Captions
+
+kind-horizontal = Horizontal
+kind-vertical = Vertical
+kind-free = Free plane
+this-map = This map
+image-text = { $name } · { $color } · { $points } points { $surface }
+intensity-of = intensity { $value }
+sensor-of = sensor { $number }
+time-of = { DECIMAL($s, digits: 1) } s, multiframe { $frame }
+distance = Distance { DECIMAL($m, digits: 3) } m
+horizontal-part = horizontal { DECIMAL($m, digits: 3) } m
+vertical-part = vertical { DECIMAL($m, digits: 3) } m
+from-to = from { $from } to { $to }
+color-height = Height
+color-intensity = Intensity
+color-normalized = Normalized intensity
+color-time = Time
+color-sensor = Sensor
+color-distance = Distance to reference
+surface-fitted = on fitted surfaces
+surface-raw = as measured
+surface-strays = left out of the map
+
+## Fields
+
+horizontal = Horizontal
+vertical = Vertical
+free = Free
+kind-of-slice = Kind of slice
+height-z = Height z [m]
+height = Height
+azimuth = Azimuth of the normal [°]
+tilt-from-level = Tilt from level [°]
+thickness = Thickness [cm]
+step = Step [m]
+usual-thickness = Usual thickness
+thin = Thin, 2 cm
+thick = Thick, 10 cm
+where-drawn = Where points are drawn
+points-where = Points { $surface }
+color-by = Color by
+no-reference = None
+reference = Reference
+same-color = Same color
+one-slice = One slice
+beside-color = Beside: { $color }
+map-beside = Map beside
+color-beside = Color beside
+step-back-short = ◂ Step
+step-back-title = One step back
+step-back = Step back
+step-forward-short = Step ▸
+step-forward-title = One step forward
+step-forward = Step forward
+zoom-out = Zoom out
+zoom-in = Zoom in
+split = Split
+swipe = Swipe
+help = Help
+keys = Keys
+whole-slice = Whole slice
+all = All
+measure-title = Distance between two points
+measure = Measure
+swipe-between = Swipe between the two slices
+cm-thick = { $cm } cm thick
+points-on = { $points } points { $surface }
+points-left-out = { $points } points left out
+show-in-3d = Show in 3-D
+reference-name = Reference
+low-end = Low end of the colors
+high-end = High end of the colors
+usual-range = Usual range
+above-label = The map from above, with the slice
+
+## Keys
+
+key-back = { "[" } or Page down
+do-back = One step back
+key-forward = ] or Page up
+do-forward = One step forward
+do-kinds = Horizontal, vertical, free plane
+do-thick = Twice as thick, half as thick
+do-color = Next color
+do-measure = Measure: two points
+do-points = Points on fitted surfaces, as measured, or only those left out
+do-whole = Whole slice
+key-pan = Arrows
+do-pan = Pan the slice, when it has the focus
+do-pick = Pick the point in the middle
+do-end = End measuring, and drawing a polygon
+above-help = On the map from above: drag for a vertical slice, drag its line or its ends A and B. The arrow shows the viewing direction.
+plan-is = This is a 2-D map: one slice at the height of the laser, so no other can be cut. A pixel is { $cm } cm.
+plan-finer = The file map.png has pixels of { $cm } cm.
+page-project = The page Project shows places and distances.
+plan-alt = Floor plan: walls black, free white, not seen gray
+
+## Double walls
+
+double-walls = Double walls
+compare-reference = Compare with a reference
+control-points = Control and check points
+correct-classes = Correct classes
+export = Export
+places-of = { $meant } of { $count } places
+places-worst = { $meant } of { $count } places, the { $most } worst are listed
+double-is = A wall is double where two visits put one surface at two places. The whole map is checked.
+in-this-slice = In this slice
+searching = Searching…
+find-double = Find double walls
+which-surfaces = Which surfaces
+where = Where
+only-double = Only double ones
+all-twice = All visited twice, worst first
+whole-map = Whole map
+place = Place
+separation = Separation
+limit = Limit
+thickness-measured = Thickness σ as measured
+d-is = D = separation / σ
+weaker-layer = Weaker layer
+visits = Visits
+twice-is = { $patches } patches were visited twice; distance between the visits { $median } (median), { $most } (95 %); thickness σ as measured { $sigma }.
+none-twice = No surface was visited twice: double walls cannot be detected.
+double-found = ✕ { $count } double walls
+no-double = ✓ No double wall found
+not-checked = – Not checked
+and = and
+multiframes = multiframes
+go-to = Go to { $place }
+double = ✕ double
+single = ✓ single
+
+## References
+
+usual-slices = 8 slices over the map, 2 cm
+this-slice = This slice
+this-repeated = This slice, repeated
+distances = Distances { $method }
+it-failed = It failed
+choose-again = { $reason }; choose the same file again to go on
+choose-reference = Choose a reference first
+points-many = { $count } points
+triangles = { $count } triangles
+size-alignment = { $size }, alignment: { $alignment }
+show = Show
+align-icp = Align by ICP
+align-pairs = Align by pairs
+undo-alignment = Undo alignment
+no-alignment = No alignment
+remove = Remove
+upload-file = Upload file…
+reference-file = Reference file
+path-here = Path on this computer
+path-of-reference = Path of the reference
+browse = Browse…
+add-reference = Add reference
+reference-formats = PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it.
+slices-to-compare = Slices to compare
+method-of-distances = Method of the distances
+compare = Compare
+upload-of-reference = Upload of the reference
+stop = Stop
+being-read = { $name } is being read
+sent-of = { $name }: { $sent } of { $total }
+folder-up = ‥ Up
+frame-auto = Frame: as the file says
+frame-map = In the map's frame
+frame-crs = In the map's CRS
+coordinates-of-reference = Coordinates of the reference
+unit-of-reference = Unit of the reference
+unit-auto = Unit: as the file says
+use-columns = Use these columns
+column-none = not used
+column-id = name
+column-x = x, east
+column-y = y, north
+column-z = z, height
+column-minus-x = minus x (to the west)
+column-minus-y = minus y (to the south)
+column-lat = latitude [°]
+column-lon = longitude [°]
+column-role = control or check
+column-radius = radius of a target
+unit-m = meters
+unit-mm = millimeters
+unit-cm = centimeters
+unit-dm = decimeters
+unit-km = kilometers
+unit-ft = international feet
+unit-us-ft = US survey feet
+unit-in = inches
+choose-columns = Choose one column each as { $columns }
+degrees-or-xy = Choose either degrees or x and y
+column-n = column { $n }
+meaning-of = Meaning of { $column }
+not-certain = Not certain: { $question }
+unit-of-coordinates = Unit of the coordinates
+first-rows = The first { $rows } rows; separated by "{ $delimiter }", decimal "{ $decimal }"
+method-plane = to the reference's surface
+method-point = to its nearest point (V)
+head-slice = Slice
+head-mean = Mean [cm]
+head-signed = Signed mean [cm]
+head-shift-x = Shift x
+head-shift-y = Shift y
+head-shift-z = Shift z
+head-points = Points
+mean-of-slices = Mean of the slices
+mean-of-points = Mean of all points
+not-one-place = The figures are not those of one and the same place.
+histogram = Histogram of the signed distances
+download-csv = Download CSV
+against = Against { $reference }, distances { $method }, alignment: { $alignment }.
+signed-is = Signed: across the surfaces, + = the map lies in front of the reference, on the side it was seen from. Walls that face each other cancel there; the shift [cm] is the common translation of the map.
+histogram-of = Points by signed distance, classes of { $mm } mm
+align-with = Align { $reference } with the map
+align-help = Pick the same three points in the map (blue) and the reference (orange) by turns, as corners of walls far from each other. Or move the reference by its handle and ring (Above), then refine.
+name-map = map
+name-reference = reference
+pick-pairs = Pick three pairs
+refine-icp = Refine by ICP from here
+both-level = Both are level: heights come from the floors, not from the pairs
+then-icp = Then refine by ICP
+alignment-is = Alignment: { $alignment }
+
+## Control and check points
+
+point = Point
+role = Role
+across = Across
+stated = 1 σ stated [cm]
+residual-sigma = Residual / σ
+named-more = { $names } and { $count } more
+degrees-put = (degrees, put into { $crs }: its code for Try)
+first-point = { $count } points; the first, { $name }: east { $x }, north { $y }, up { $z } m{ $put }
+list-too-large = The file has more than 600 kB; a list of points is smaller
+swap = Swap east and north
+use-map = Use, in the map's frame
+use-crs = Use, in the map's CRS
+others-change = Others change these points too: they are read again, do it once more
+no-surface-of = No flat surface within 30 cm of { $names }
+role-of = Role of { $name }
+role-check = check
+role-control = control
+go = Go
+go-to-point = Go to { $name }
+here = Here
+is-picked = { $name } is the picked point
+surface = Surface
+on-surface = { $name } on the nearest surface
+clear = Clear
+clear-point = Clear { $name }
+pick-first = Pick { $name } in the slice first
+no-surface-pick = No flat surface within 30 cm of { $name }: pick it in the slice, then Here
+no-points-yet = No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma; lat, lon; DXF.
+survey-file = Survey file
+as-draft = , as a draft
+measured-earlier = Measured in an earlier map or version only, not counted: { $names }. Measure them again.
+residuals-are = Map minus survey [cm]. – = not measured, counts nowhere: a point on a surface is measured across it only (Across); a point picked in a slice, in the plane of the slice. Pick it in a second slice for the third component.
+first-of-points = The first { $shown } of { $count } points; the files have all.
+all-surfaces = All on the nearest surface
+residuals-csv = Residuals as CSV
+sheet-to-sign = Sheet to print and sign
+ellipse = { $major } × { $minor } at { $azimuth }°, { $up }
+found-earlier = found in an earlier map
+points-of-role = { $points } { $role } { $points ->
+    [one] point
+   *[other] points
+}
+result = Result
+points = Points
+measured-cm = Measured [cm]
+rmse = RMSE (points) { $axes } 3D { $all } cm
+mean-axes = Mean { $axes } cm
+mean-horizontal = Mean horizontal
+mean-height = Mean height
+largest-horizontal = Largest horizontal
+largest-height = Largest height
+distances-between = Distances between points
+sd-survey = Standard deviation of survey and picking
+not-required = not required
+limits-hold = They hold for this project, and stand on the sheet and in the CSV. Empty = not required. A residual more than 3 standard deviations of survey and map together is flagged.
+set-limits = Set limits
+usual-limits = Usual limits
+limits = Limits: { $limits }
+trying = Trying…
+putting = Putting the map on the points…
+taking-off = Taking the map off the points…
+residuals-after-fit = Residuals after the rigid fit
+put-on-points = Put the map on these points
+site-coordinates = Site coordinates
+site-is = Three or more control points place the map. They are tested first; check points only judge. The map is made again, and the places of points are measured in it again.
+site-grid = site grid
+epsg-code = EPSG code
+try = Try
+take-off = Take the map off control points
+not-measured-here = Not measured in this map: { $names }.
+map-remade = The map is made again:
+its-progress = its progress
+
+## Files
+
+file-png = sheet, 300 dpi
+file-dxf = points, one layer per slice, meters
+file-tif = georeferenced image
+file-laz = points, all fields
+file-csv = points
+part-all = Whole slice
+part-seen = What is seen
+largest-scale = Largest scale that fits
+part = Part
+what-exported = What is exported
+slices-label = Slices
+number-of-slices = Number of slices
+spacing = Spacing [m]
+spacing-label = Spacing of slices
+dxf-flat = DXF laid flat: u, v instead of coordinates
+draft = As a draft, without the approval of the map
+file-sheet = sheet
+paper = Paper
+scale = Scale
+polygon-is = A polygon through the slice, as thick as it, gives its points another class. The map follows when it is made again; every point is kept.
+choose-this-map = Choose This map: earlier maps stay as they are.
+draw-polygon = Draw a polygon
+remove-corner = Remove the last corner
+remove-polygon = Remove the polygon
+polygon-hint = Draw a polygon around the points: click its corners in the slice.
