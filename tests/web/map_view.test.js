@@ -1,4 +1,4 @@
-import "./english.js";
+import "./english.js?map";
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

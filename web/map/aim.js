@@ -1,5 +1,6 @@
 // Tools by keyboard: the cross in the middle of the image is the pointer, Space is the click.
 
+import { t } from "../shared/texts.js";
 import { toScreen } from "./camera.js";
 import { page } from "./page.js";
 import { dragged, onLevel } from "./tools.js";
@@ -29,7 +30,7 @@ export function aimOf(stage, click) {
       const from = begun();
       page.aim.from = from ? null : onLevel(middle(), stage);
       if (from) return dragged(from, middle(), { ...stage, done: true });
-      page.reading = "Move on with the arrows, then press Space again";
+      page.reading = t("move-on");
       return stage.draw();
     },
     /** The pointer is used again. */

@@ -2,6 +2,7 @@
 
 import { html, nothing, render } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 import { KINDS } from "./measure.js";
 import { page } from "./page.js";
 import { VIEWS } from "./views.js";
@@ -35,32 +36,32 @@ import { VIEWS } from "./views.js";
 
 /** @type {Array<[string, string]>} */
 export const KEYS = [
-  ["Drag", "Orbit; when standing, look around"],
-  ["Shift or right drag", "Move sideways"],
-  ["Wheel", "Zoom to the pointer"],
-  ["Double click", "Fly to a point"],
-  ["Two fingers", "Zoom and move"],
-  ["Arrows", "Move"],
-  ["Space", "Pick what is in the middle: every tool by keyboard"],
-  ["+ -", "Nearer, farther"],
-  ["F", "All of the map"],
-  ["5 7 1 2 3 4", "Oblique, top, front, back, right, left"],
-  ["O", "Perspective or parallel"],
-  ["M H A Q I", "Measure a distance, height, angle, area, point"],
-  ["R V", "Profile of a strip, volume over a plane"],
-  ["S", "Snap to corners, edges and planes, or not"],
-  ["Enter", "End the corners of an area or a volume"],
-  ["B", "Clip box: drag a rectangle"],
-  ["X", "Section: drag a line"],
-  ["Z", "With and without ceilings"],
-  ["C", "Next color"],
-  ["N", "Note: click a place"],
-  ["G", "Stand on the walk: click a place"],
-  ["P", "Fly along the walk"],
-  ["W", "Show the walk"],
-  ["L", "Copy the link to this view"],
-  ["T", "Show or hide the panel"],
-  ["Esc", "End any tool"],
+  [t("key-drag"), t("do-drag")],
+  [t("key-sideways"), t("do-sideways")],
+  [t("key-wheel"), t("do-wheel")],
+  [t("key-double"), t("do-double")],
+  [t("key-fingers"), t("do-fingers")],
+  [t("key-arrows"), t("do-arrows")],
+  [t("key-space"), t("do-space")],
+  ["+ -", t("do-zoom")],
+  ["F", t("do-fit")],
+  ["5 7 1 2 3 4", t("do-views")],
+  ["O", t("do-parallel")],
+  ["M H A Q I", t("do-measure")],
+  ["R V", t("do-profile")],
+  ["S", t("do-snap")],
+  ["Enter", t("do-enter")],
+  ["B", t("do-box")],
+  ["X", t("do-section")],
+  ["Z", t("do-ceilings")],
+  ["C", t("do-color")],
+  ["N", t("do-note")],
+  ["G", t("do-stand")],
+  ["P", t("do-fly")],
+  ["W", t("do-walk")],
+  ["L", t("do-link")],
+  ["T", t("do-panel")],
+  ["Esc", t("do-esc")],
 ];
 
 /**
@@ -92,14 +93,14 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
     ["volume", "V"],
   ]);
   render(
-    html`<div role="toolbar" aria-label="View">
-        ${tool("Fit", "F", act.fit)}
+    html`<div role="toolbar" aria-label=${t("view")}>
+        ${tool(t("fit"), "F", act.fit)}
         ${Object.entries(VIEWS).map(([name, { text, key }]) =>
           tool(text, key, () => act.view(name)),
         )}
-        ${tool("Parallel", "O", act.parallel, state.camera?.parallel ?? false)}
+        ${tool(t("parallel"), "O", act.parallel, state.camera?.parallel ?? false)}
       </div>
-      <div role="toolbar" aria-label="Tools">
+      <div role="toolbar" aria-label=${t("tools")}>
         ${kinds.map(([kind, key]) =>
           tool(
             KINDS[kind].text,
@@ -108,17 +109,21 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
             current === "measure" && measuring === kind,
           ),
         )}
-        ${tool("Box", "B", () => act.tool("box"), current === "box")}
-        ${tool("Section", "X", () => act.tool("section"), current === "section")}
-        ${page.notes.may ? tool("Note", "N", () => act.tool("note"), current === "note") : nothing}
-        ${tool("Stand here", "G", () => act.tool("stand"), current === "stand")}
-        ${tool("Fly", "P", act.fly, flight.on)}
+        ${tool(t("box"), "B", () => act.tool("box"), current === "box")}
+        ${tool(t("section"), "X", () => act.tool("section"), current === "section")}
+        ${
+          page.notes.may
+            ? tool(t("note"), "N", () => act.tool("note"), current === "note")
+            : nothing
+        }
+        ${tool(t("stand-here"), "G", () => act.tool("stand"), current === "stand")}
+        ${tool(t("fly"), "P", act.fly, flight.on)}
       </div>
-      <div role="toolbar" aria-label="Page">
-        ${tool("Link", "L", act.share)}
-        ${page.mayShare ? tool("Share…", "with a guest", act.invite) : nothing}
-        ${tool("Full window", "full screen", act.whole)}
-        ${tool("Panel", "T", act.panel, page.panel)} ${tool("?", "keys", act.help)}
+      <div role="toolbar" aria-label=${t("page")}>
+        ${tool(t("link"), "L", act.share)}
+        ${page.mayShare ? tool(t("share"), t("with-guest"), act.invite) : nothing}
+        ${tool(t("full-window"), t("full-screen"), act.whole)}
+        ${tool(t("panel"), "T", act.panel, page.panel)} ${tool("?", t("keys-small"), act.help)}
       </div>`,
     element,
   );
@@ -131,13 +136,18 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
 export function drawStatus(element, { points, rested, scale }) {
   const { index, project, reading, flight } = page;
   if (!index) return;
-  const shown = `${count(points)} of ${count(index.points)} points${rested ? "" : " …"}`;
+  const shown =
+    t("points-shown", { shown: count(points), count: count(index.points) }) + (rested ? "" : " …");
   render(
     html`<div role="status">${reading ? html`<p class="reading">${reading}</p>` : nothing}</div>
       <p class="caption">
         <span class="shown">${shown}</span> · <span>${scale}</span> · <span>${index.frame}</span>
         ${project ? html` · <span>${project.approval.text}</span>` : nothing}
-        ${flight.on ? html` · <span>${flight.time.toFixed(0)} s of the walk</span>` : nothing}
+        ${
+          flight.on
+            ? html` · <span>${t("s-of-walk", { s: flight.time.toFixed(0) })}</span>`
+            : nothing
+        }
       </p>`,
     element,
   );
@@ -145,7 +155,7 @@ export function drawStatus(element, { points, rested, scale }) {
 
 export const drawHelp = (/** @type {HTMLElement} */ dialog) =>
   render(
-    html`<h2 id="help-title">Keys</h2>
+    html`<h2 id="help-title">${t("keys")}</h2>
       <dl class="keys">
         ${KEYS.map(
           ([key, text]) =>
@@ -155,6 +165,6 @@ export const drawHelp = (/** @type {HTMLElement} */ dialog) =>
             </div>`,
         )}
       </dl>
-      <form method="dialog"><button class="primary">Close</button></form>`,
+      <form method="dialog"><button class="primary">${t("close")}</button></form>`,
     dialog,
   );

@@ -1,5 +1,7 @@
 // Colors of points and of their legend. No DOM, no network.
 
+import { decimal } from "../shared/texts.js";
+
 /** @import {ColorBy} from "./state.js" */
 
 const VIRIDIS = [
@@ -73,7 +75,7 @@ export const css = (/** @type {number[]} */ rgb) => `rgb(${rgb.map(Math.round).j
 
 /** Ends of the colors as the captions of a legend. */
 export function endText(/** @type {number} */ value, /** @type {string} */ unit) {
-  if (unit === "m" && Math.abs(value) < 0.1) return `${(1000 * value).toFixed(1)} mm`;
+  if (unit === "m" && Math.abs(value) < 0.1) return `${decimal(1000 * value, 1)} mm`;
   const digits = Math.abs(value) >= 100 ? 0 : unit === "m" ? 2 : 1;
-  return `${value.toFixed(digits)}${unit ? ` ${unit}` : ""}`;
+  return `${decimal(value, digits)}${unit ? ` ${unit}` : ""}`;
 }

@@ -3,6 +3,7 @@
 import { idHere } from "../shared/address.js";
 import "../shared/class_corrections.js";
 import { html } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { page } from "./page.js";
 
 /**
@@ -33,16 +34,12 @@ export function volumeOf({ box, heights: [lowest, highest], section }) {
 }
 
 const hintOf = (/** @type {Clip} */ { box, section }) =>
-  section
-    ? "Remove the section: the points in the clip box are corrected."
-    : box
-      ? "The clip box is empty between the heights that are shown."
-      : "Drag a clip box around the points first.";
+  section ? t("hint-section") : box ? t("hint-empty") : t("hint-box");
 
 /** The section of the panel. */
 export const corrections = (/** @type {MapIndex} */ { key }) =>
   html`<section aria-labelledby="classes-title">
-    <h2 id="classes-title">Correct classes</h2>
+    <h2 id="classes-title">${t("correct-classes")}</h2>
     <class-corrections
       .given=${{
         project: idHere(),

@@ -13,6 +13,7 @@ import {
   stretchUrl,
 } from "../shared/api.js";
 import { attempt, byId, html, only, render, say, showError, svg } from "../shared/dom.js";
+import { decimal, t } from "../shared/texts.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
@@ -174,7 +175,7 @@ function drawCaption() {
   if (!run.canvas) return;
   const { points, rested } = run.canvas.drawn;
   const meters = 100 * pixelM(camera(), screen());
-  const length = meters < 1 ? `${(100 * meters).toFixed(1)} cm` : `${meters.toFixed(2)} m`;
+  const length = meters < 1 ? `${decimal(100 * meters, 1)} cm` : `${decimal(meters, 2)} m`;
   const scale = `100 px = ${length}`;
   drawStatus(byId("status"), { points, rested, scale });
 }
@@ -263,7 +264,7 @@ const act = {
   faceSection: () => face(stage),
   snapping: () => {
     page.snapping = !page.snapping;
-    page.reading = page.snapping ? "Picks snap to corners, edges and planes" : "Picks do not snap";
+    page.reading = t(page.snapping ? "picks-snap" : "picks-do-not-snap");
     draw();
   },
   whole: () =>
@@ -345,8 +346,7 @@ function passOn() {
   if (stretch) return location.replace(stretchUrl(id, stretch));
   say(
     byId("message"),
-    html`This project has no points in 3-D. <a href=${projectUrl(id)}>Its page</a> shows what there
-      is.`,
+    html`${t("no-points-3d")} <a href=${projectUrl(id)}>${t("its-page")}</a> ${t("shows-what-is")}`,
   );
 }
 
@@ -356,7 +356,7 @@ async function begin() {
   Object.assign(page, { project, guest: isGuest(me), mayShare: me.may.includes("share") });
   only("page-head").name = project.name;
   only("map-verdict").facts = factsIn(project.summary);
-  document.title = `Map · ${project.name} · recon4`;
+  document.title = t("title-of", { project: project.name });
   if (!project.stages.some(({ stage: name }) => name === "map")) return passOn();
   const index = (page.index = await readMapIndex(id));
   if (page.state.cutCeiling) page.state.clip.heights = shown.usualHeights(index);
@@ -365,7 +365,7 @@ async function begin() {
   run.canvas.tiles.onProblem = showProblem;
   new ResizeObserver(draw).observe(place());
   listen();
-  if (takeNews()) page.reading = "The map was made again: this is the new one";
+  if (takeNews()) page.reading = t("new-map-shown");
   if (!page.guest) followJobs(byId("news"));
   draw();
   place().focus({ preventScroll: true });

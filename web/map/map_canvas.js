@@ -26,6 +26,7 @@ import {
   Scene,
   WebGLRenderer,
 } from "../shared/vendor/three/three.module.min.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Camera, Screen} from "./camera.js"
@@ -51,10 +52,7 @@ const SHARPEST = 2; // pixels of the canvas per pixel of the page
 function rendererOf(/** @type {HTMLCanvasElement} */ canvas) {
   const context = canvas.getContext("webgl2", { antialias: false });
   if (context) return new WebGLRenderer({ canvas, context, antialias: false, alpha: false });
-  throw new Error(
-    "This browser cannot draw in 3-D: WebGL 2 is missing or switched off. " +
-      "The page Slices shows the map without it.",
-  );
+  throw new Error(t("no-webgl-3d"));
 }
 
 export class MapCanvas {

@@ -1,5 +1,6 @@
 // Measurements on points of the map: mathematics, captions, CSV. No DOM, no network.
 
+import { decimal, t } from "../shared/texts.js";
 import { add, dot, lengthOf, minus } from "./camera.js";
 
 /**
@@ -17,23 +18,23 @@ import { add, dot, lengthOf, minus } from "./camera.js";
 
 /** @type {Record<MeasureKind, {text: string, least: number, most: number, hint: string}>} */
 export const KINDS = {
-  point: { text: "Point", least: 1, most: 1, hint: "Click a point" },
-  distance: { text: "Distance", least: 2, most: 2, hint: "Click two points" },
-  height: { text: "Height", least: 2, most: 2, hint: "Click two points, the lower one first" },
-  angle: { text: "Angle", least: 3, most: 3, hint: "Click an end, the corner, the other end" },
-  area: { text: "Area", least: 3, most: Infinity, hint: "Click the corners, then press Enter" },
-  profile: { text: "Profile", least: 2, most: 2, hint: "Click where it begins and ends" },
+  point: { text: t("kind-point"), least: 1, most: 1, hint: t("hint-point") },
+  distance: { text: t("kind-distance"), least: 2, most: 2, hint: t("hint-distance") },
+  height: { text: t("kind-height"), least: 2, most: 2, hint: t("hint-height") },
+  angle: { text: t("kind-angle"), least: 3, most: 3, hint: t("hint-angle") },
+  area: { text: t("kind-area"), least: 3, most: Infinity, hint: t("hint-area") },
+  profile: { text: t("kind-profile"), least: 2, most: 2, hint: t("hint-profile") },
   volume: {
-    text: "Volume",
+    text: t("kind-volume"),
     least: 3,
     most: 500,
-    hint: "Click the corners around it, then press Enter",
+    hint: t("hint-volume"),
   },
 };
 export const PROFILE_M = 0.2; // usual width of the strip of a profile
 const VOLUME = { above_m3: NaN, below_m3: NaN, sd_m3: NaN };
 
-const meters = (/** @type {number} */ m) => `${(Math.round(1000 * m) / 1000 + 0).toFixed(3)} m`;
+const meters = (/** @type {number} */ m) => `${decimal(Math.round(1000 * m) / 1000 + 0, 3)} m`;
 
 /**
  * The parts of a distance [m].
@@ -81,37 +82,41 @@ export const sdOf = (/** @type {Measurement} */ { sd }) =>
 export function resultOf(measurement, volume = null) {
   const { kind, points } = measurement;
   if (kind === "volume") return volumeText(volume);
-  if (kind === "point") return { value: points[0].map((x) => x.toFixed(3)).join(" "), parts: "" };
-  if (kind === "angle") return { value: `${angleOf(points).toFixed(2)}°`, parts: "" };
+  if (kind === "point") return { value: points[0].map((x) => decimal(x, 3)).join(" "), parts: "" };
+  if (kind === "angle") return { value: `${decimal(angleOf(points), 2)}°`, parts: "" };
   if (kind === "area") {
     const { area, perimeter, plan } = areaOf(points);
-    const parts = `from above ${plan.toFixed(3)} m², perimeter ${meters(perimeter)}`;
-    return { value: `${area.toFixed(3)} m²`, parts };
+    const parts = t("area-parts", { plan, perimeter: meters(perimeter) });
+    return { value: `${decimal(area, 3)} m²`, parts };
   }
   const { length, horizontal, vertical } = distanceParts(points[0], points[1]);
   if (kind === "profile") {
     const width = meters(measurement.figure ?? PROFILE_M);
-    const parts = `strip ${width}, ends ${meters(vertical)} apart in height`;
+    const parts = t("profile-parts", { width, apart: meters(vertical) });
     return { value: meters(horizontal), parts };
   }
   const sd = sdOf(measurement);
-  const known = Number.isFinite(sd) ? `, σ ${(1000 * sd).toFixed(1)} mm` : "";
+  const known = Number.isFinite(sd) ? `, σ ${decimal(1000 * sd, 1)} mm` : "";
   if (kind === "height")
-    return { value: meters(vertical), parts: `horizontal ${meters(horizontal)}${known}` };
-  const parts = `horizontal ${meters(horizontal)}, vertical ${meters(vertical)}${known}`;
+    return {
+      value: meters(vertical),
+      parts: t("height-parts", { horizontal: meters(horizontal) }) + known,
+    };
+  const given = { horizontal: meters(horizontal), vertical: meters(vertical) };
+  const parts = t("distance-parts", given) + known;
   return { value: meters(length), parts };
 }
 
 function volumeText(/** @type {MapVolume | null} */ found) {
   if (!found) return { value: "…", parts: "" };
-  const cubic = (/** @type {number} */ m3) => `${m3.toFixed(Math.abs(m3) < 10 ? 3 : 2)} m³`;
+  const cubic = (/** @type {number} */ m3) => `${decimal(m3, Math.abs(m3) < 10 ? 3 : 2)} m³`;
   const { above_m3, below_m3, sd_m3, area_m2, unseen_m2, base_m, cell_m } = found;
   const parts = [
-    `${cubic(below_m3)} below, σ of the difference ${cubic(sd_m3)}`,
-    `area ${area_m2.toFixed(2)} m², of these ${unseen_m2.toFixed(2)} m² not seen`,
-    `base at ${meters(base_m)}, cells of ${(100 * cell_m).toFixed(0)} cm`,
+    t("volume-below", { below: cubic(below_m3), sd: cubic(sd_m3) }),
+    t("volume-area", { area: area_m2, unseen: unseen_m2 }),
+    t("volume-base", { base: meters(base_m), cm: 100 * cell_m }),
   ];
-  return { value: `${cubic(above_m3)} above`, parts: parts.join(", ") };
+  return { value: t("volume-above", { above: cubic(above_m3) }), parts: parts.join(", ") };
 }
 
 /** A cell of a CSV file; a spreadsheet does not take a name for a formula. */

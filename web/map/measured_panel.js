@@ -2,6 +2,7 @@
 
 import { idHere } from "../shared/address.js";
 import { html, nothing, repeat, targetOf } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { resultOf, toCsv } from "./measure.js";
 import { numberField } from "./number_field.js";
 import { page } from "./page.js";
@@ -30,10 +31,10 @@ export function measuredSection(/** @type {Act} */ act) {
   const set = (/** @type {Measurement[]} */ next) => act.change({ measurements: next });
   const rows = all.map((one, k) => ({ one, k }));
   return html`<section aria-labelledby="measured-title">
-    <h2 id="measured-title">Measurements</h2>
+    <h2 id="measured-title">${t("measurements")}</h2>
     <label class="check"
       ><input type="checkbox" .checked=${page.snapping} @change=${act.snapping} /><span
-        >Snap to corners, edges, planes</span
+        >${t("snap-to")}</span
       ></label
     >
     ${
@@ -46,10 +47,10 @@ export function measuredSection(/** @type {Act} */ act) {
               )}
             </ol>
             <div class="buttons">
-              <button type="button" @click=${act.csv}>Download CSV</button
-              ><button type="button" @click=${() => set([])}>Remove all</button>
+              <button type="button" @click=${act.csv}>${t("download-csv")}</button
+              ><button type="button" @click=${() => set([])}>${t("remove-all")}</button>
             </div>`
-        : html`<p class="quiet">None yet: press M and click two points.</p>`
+        : html`<p class="quiet">${t("no-measurements")}</p>`
     }
   </section>`;
 }
@@ -67,7 +68,7 @@ function row(one, at, act) {
   const problem = volumeProblem(one);
   return html`<li>
     <input
-      aria-label="Name"
+      aria-label=${t("name")}
       .value=${one.name}
       maxlength="80"
       @change=${(/** @type {Event} */ event) => set({ name: targetOf(event).value })}
@@ -79,22 +80,22 @@ function row(one, at, act) {
     }
     ${
       one.kind === "volume"
-        ? numberField("Height of the base [m]", one.figure ?? null, (figure) => set({ figure }), {
-            usual: "plane fitted to the border",
+        ? numberField(t("base-height"), one.figure ?? null, (figure) => set({ figure }), {
+            usual: t("base-fitted"),
           })
         : nothing
     }
     <span class="buttons"
       >${
         one.kind === "profile"
-          ? html`<button type="button" @click=${() => act.profile.show(one)}>Show</button>`
+          ? html`<button type="button" @click=${() => act.profile.show(one)}>${t("show")}</button>`
           : nothing
-      }<button type="button" @click=${() => act.goTo(one.points[0])}>Go to</button
+      }<button type="button" @click=${() => act.goTo(one.points[0])}>${t("go-to")}</button
       ><button
         type="button"
         @click=${() => act.change({ measurements: all.filter((_, k) => k !== at) })}
       >
-        Remove
+        ${t("remove")}
       </button></span
     >
   </li>`;

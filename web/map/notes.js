@@ -13,6 +13,7 @@ import {
 } from "../shared/api.js";
 import { asError, byId, html, nothing, targetOf, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
+import { decimal, t } from "../shared/texts.js";
 import { FIELD_OF_VIEW, axesOf, eyeOf } from "./camera.js";
 import { notePins, notesListed, page } from "./page.js";
 import { smallPhoto } from "./photo.js";
@@ -126,35 +127,40 @@ export function notesSection(/** @type {Act} */ act) {
   const open = all.filter(({ status }) => status === "open").length;
   const listed = notesListed();
   return html`<section aria-labelledby="notes-title" class="notes">
-    <h2 id="notes-title">Notes (${open} open)</h2>
+    <h2 id="notes-title">${t("notes-open", { count: open })}</h2>
     ${draft ? form(draft, act) : nothing} ${problem()}
     ${
       all.length
         ? html`<label
-              ><span>Show</span
+              ><span>${t("show")}</span
               ><select @change=${(/** @type {Event} */ e) => act.notes.filter(targetOf(e).value)}>
-                <option value="" ?selected=${!filter}>All (${all.length})</option>
-                <option value="open" ?selected=${filter === "open"}>Open (${open})</option>
+                <option value="" ?selected=${!filter}>
+                  ${t("all-count", { count: all.length })}
+                </option>
+                <option value="open" ?selected=${filter === "open"}>
+                  ${t("open-count", { count: open })}
+                </option>
                 <option value="done" ?selected=${filter === "done"}>
-                  Done (${all.length - open})
+                  ${t("done-count", { count: all.length - open })}
                 </option>
               </select></label
             >
             <ol class="rows">
               ${listed.map((note) => row(note, act))}
             </ol>`
-        : html`<p class="quiet">None yet${may ? ": press N and click a place." : "."}</p>`
+        : html`<p class="quiet">${t(may ? "no-notes-press" : "no-notes")}</p>`
     }
     <div class="buttons">
       ${
         may
-          ? html`<button type="button" @click=${() => act.tool("note")}>New note</button>`
+          ? html`<button type="button" @click=${() => act.tool("note")}>${t("new-note")}</button>`
           : nothing
       }
       ${
         all.length
-          ? html`<a class="button" href=${notesUrl(id, "geojson")} download>Download GeoJSON</a
-              ><a class="button" href=${notesUrl(id, "bcf")} download>Download BCF</a>`
+          ? html`<a class="button" href=${notesUrl(id, "geojson")} download
+                >${t("download-geojson")}</a
+              ><a class="button" href=${notesUrl(id, "bcf")} download>${t("download-bcf")}</a>`
           : nothing
       }
     </div>
@@ -179,13 +185,16 @@ function form({ id: note, p, text }, act) {
   };
   return html`<form @submit=${submit}>
     <label
-      ><span>${note ? "Note" : `Note at ${p.map((x) => x.toFixed(2)).join(" ")} m`}</span
+      ><span
+        >${note ? t("note") : t("note-at", { place: p.map((x) => decimal(x, 2)).join(" ") })}</span
       ><textarea rows="3" maxlength=${MOST_CHARACTERS} required .value=${text}></textarea>
     </label>
-    <label><span>Photo (optional)</span><input type="file" accept="image/jpeg,image/png" /></label>
+    <label
+      ><span>${t("photo-optional")}</span><input type="file" accept="image/jpeg,image/png"
+    /></label>
     <div class="buttons">
-      <button>Keep the note</button
-      ><button type="button" @click=${() => act.notes.cancel()}>Cancel</button>
+      <button>${t("keep-note")}</button
+      ><button type="button" @click=${() => act.notes.cancel()}>${t("cancel")}</button>
     </div>
   </form>`;
 }
@@ -200,7 +209,7 @@ function row(note, act) {
   const { may } = page.notes;
   const last = changed_by === who ? "" : `; ${changed_by}`;
   const history = `${who}${last}, ${when(changed)}`;
-  const earlier = key === page.index?.key ? "" : " · placed in an earlier map";
+  const earlier = key === page.index?.key ? "" : ` · ${t("earlier-map")}`;
   return html`<li class=${status}>
     <button
       type="button"
@@ -213,11 +222,11 @@ function row(note, act) {
     ${
       note.photo
         ? html`<a class="photo" href=${photoUrl(id, note)} target="_blank" rel="noopener"
-            ><img src=${photoUrl(id, note)} loading="lazy" alt="Photo of: ${text}"
+            ><img src=${photoUrl(id, note)} loading="lazy" alt=${t("photo-of", { text })}
           /></a>`
         : nothing
     }
-    <small>${status === "done" ? "✓ Done" : "Open"} · ${history}${earlier}</small>
+    <small>${t(status === "done" ? "is-done" : "is-open")} · ${history}${earlier}</small>
     ${
       may
         ? html`<span class="buttons"
@@ -227,24 +236,28 @@ function row(note, act) {
               @click=${() => act.notes.mark(note)}
             >
               ${doneText(status)}</button
-            ><button type="button" aria-label="Edit: ${text}" @click=${() => act.notes.edit(note)}>
-              Edit</button
+            ><button
+              type="button"
+              aria-label="${t("edit")}: ${text}"
+              @click=${() => act.notes.edit(note)}
+            >
+              ${t("edit")}</button
             >${
               note.photo
                 ? html`<button
                     type="button"
-                    aria-label="Remove the photo: ${text}"
+                    aria-label=${t("remove-photo-of", { text })}
                     @click=${() => act.notes.removePhoto(note)}
                   >
-                    Remove photo
+                    ${t("remove-photo")}
                   </button>`
                 : nothing
             }<button
               type="button"
-              aria-label="Remove: ${text}"
+              aria-label="${t("remove")}: ${text}"
               @click=${() => act.notes.remove(note)}
             >
-              Remove
+              ${t("remove")}
             </button></span
           >`
         : nothing
@@ -252,4 +265,5 @@ function row(note, act) {
   </li>`;
 }
 
-const doneText = (/** @type {string} */ status) => (status === "open" ? "Mark as done" : "Reopen");
+const doneText = (/** @type {string} */ status) =>
+  status === "open" ? t("mark-done") : t("reopen");

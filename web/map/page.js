@@ -1,5 +1,6 @@
 // What the page of the map knows and shows, and the clip that follows from it.
 
+import { decimal, t } from "../shared/texts.js";
 import { parse } from "./state.js";
 import { planesOf } from "./clip.js";
 import { lineOf } from "./places.js";
@@ -139,7 +140,7 @@ export const operatorPins = () =>
     kind: "mark",
     p: p_map,
     level: "",
-    text: [text || "Mark of the operator", who, `${t_s.toFixed(1)} s`].filter(Boolean).join(" · "),
+    text: [text || t("mark-of-operator"), who, `${decimal(t_s, 1)} s`].filter(Boolean).join(" · "),
     name: String(k),
     mark: { span: [t_s, t_s], place: [p_map, p_map] },
   }));

@@ -3,7 +3,9 @@
 import { html, nothing, render, targetOf } from "../shared/dom.js";
 import { slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
+import { classText } from "../shared/class_corrections.js";
 import { shareText } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
 import { corrections } from "./corrections.js";
@@ -29,15 +31,15 @@ export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */
   if (!index || !panel) return;
   render(
     html`<section aria-labelledby="colors-title">
-        <h2 id="colors-title">Colors</h2>
+        <h2 id="colors-title">${t("colors")}</h2>
         ${colors(index, act)}
       </section>
       <section aria-labelledby="clip-title">
-        <h2 id="clip-title">Shown part</h2>
+        <h2 id="clip-title">${t("shown-part")}</h2>
         ${clip(index, act)}
       </section>
       <section aria-labelledby="layers-title">
-        <h2 id="layers-title">Layers</h2>
+        <h2 id="layers-title">${t("layers")}</h2>
         ${layers(act)}
       </section>
       ${page.guest ? nothing : corrections(index)} ${placesSections(act)} ${measuredSection(act)}
@@ -52,7 +54,7 @@ function colors(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   const choose = (/** @type {Event} */ event) =>
     act.change({ color: /** @type {ColorBy} */ (targetOf(event).value), lo: null, hi: null });
   return html`<label
-      ><span class="unseen">Color by</span
+      ><span class="unseen">${t("color-by")}</span
       ><select @change=${choose}>
         ${colorsOf(index).map(
           (color) =>
@@ -66,10 +68,10 @@ function colors(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
         type="checkbox"
         .checked=${state.depth}
         @change=${() => act.change({ depth: !state.depth })}
-      /><span>Shade edges by depth</span></label
+      /><span>${t("shade-edges")}</span></label
     >
     <label
-      ><span>Point size</span
+      ><span>${t("point-size")}</span
       ><input
         type="range"
         min="-2"
@@ -94,7 +96,9 @@ function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
     return html`<ul class="classes">
       ${Object.entries(index.classes).map(([code, name]) => {
         const color = css(classColor(Number(code)));
-        return html`<li><i .style=${`background: ${color}`}></i>${name}${share(index, code)}</li>`;
+        return html`<li>
+          <i .style=${`background: ${color}`}></i>${classText(name)}${share(index, code)}
+        </li>`;
       })}
     </ul>`;
   const { ends, unit } = endsShown();
@@ -102,10 +106,12 @@ function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   return html`<div class="ramp" .style=${`background: linear-gradient(to right, ${stops})`}></div>
     <p class="ends"><span>${endText(ends[0], unit)}</span><span>${endText(ends[1], unit)}</span></p>
     <details>
-      <summary>Range of the colors</summary>
+      <summary>${t("range-of-colors")}</summary>
       <div class="pair">
-        ${field("Low end", state.lo, (lo) => act.change({ lo }), { usual: ends[0].toPrecision(3) })}
-        ${field("High end", state.hi, (hi) => act.change({ hi }), {
+        ${field(t("low-end"), state.lo, (lo) => act.change({ lo }), {
+          usual: ends[0].toPrecision(3),
+        })}
+        ${field(t("high-end"), state.hi, (hi) => act.change({ hi }), {
           usual: ends[1].toPrecision(3),
         })}
       </div>
@@ -119,25 +125,25 @@ function clip(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   const heights = (/** @type {[number | null, number | null]} */ next) =>
     act.change({ clip: { ...shown, heights: next }, cutCeiling: false });
   return html`<div class="pair">
-      ${field("From height [m]", low, (z) => heights([z, high]), { usual: lowest })}
-      ${field("To height [m]", high, (z) => heights([low, z]), { usual: highest })}
+      ${field(t("from-height"), low, (z) => heights([z, high]), { usual: lowest })}
+      ${field(t("to-height"), high, (z) => heights([low, z]), { usual: highest })}
     </div>
     <div class="buttons">
-      <button type="button" @click=${() => heights([null, null])}>All heights</button>
+      <button type="button" @click=${() => heights([null, null])}>${t("all-heights")}</button>
       ${index.storeys.map(
         (storey) =>
           html`<button
             type="button"
-            title="Floor at ${storey.floor_m.toFixed(2)} m"
+            title=${t("floor-at", { m: storey.floor_m })}
             @click=${() => heights(heightsOf(storey))}
           >
-            Storey ${storey.name}
+            ${t("storey", { name: storey.name })}
           </button>`,
       )}
       <a
         class="button"
         href="${slicesUrl(idHere())}?kind=horizontal&z=${sliceHeight(index).toFixed(3)}"
-        >Slice at this height</a
+        >${t("slice-at-height")}</a
       >
     </div>
     ${boxFields(act)} ${sectionFields(act)}`;
@@ -155,7 +161,7 @@ function boxFields(/** @type {Act} */ act) {
     act.change({ clip: { ...shown, box: { ...box, ...next } } });
   const part = (/** @type {"center" | "size"} */ name, /** @type {number} */ axis) =>
     field(
-      `${name === "center" ? "Middle" : "Size"} ${"xyz"[axis]} [m]`,
+      t(name === "center" ? "middle-axis" : "size-axis", { axis: "xyz"[axis] }),
       box[name][axis],
       (value) => {
         if (value === null || (name === "size" && value <= 0)) return;
@@ -165,14 +171,14 @@ function boxFields(/** @type {Act} */ act) {
       },
     );
   return html`<details open>
-    <summary>Clip box</summary>
+    <summary>${t("clip-box")}</summary>
     <div class="three">
       ${[0, 1, 2].map((axis) => part("center", axis))}
       ${[0, 1, 2].map((axis) => part("size", axis))}
     </div>
     <div class="buttons">
       <button type="button" @click=${() => act.change({ clip: { ...shown, box: null } })}>
-        Remove the box
+        ${t("remove-box")}
       </button>
     </div>
   </details>`;
@@ -198,15 +204,15 @@ function sectionFields(/** @type {Act} */ act) {
   const [from, to] = [places.slice(0, 2).join(","), places.slice(2).join(",")];
   const query = `kind=vertical&a=${from}&b=${to}&t=${Math.min(thickness, 100)}`;
   return html`<details open>
-    <summary>Section</summary>
-    ${field("Thickness [m]", thickness, (t) => t && t > 0 && set({ thickness: t }), { step: 0.05 })}
+    <summary>${t("section")}</summary>
+    ${field(t("thickness"), thickness, (m) => m && m > 0 && set({ thickness: m }), { step: 0.05 })}
     <div class="buttons">
-      <button type="button" @click=${() => move(-1)}>Step back</button
-      ><button type="button" @click=${() => move(1)}>Step forward</button
-      ><button type="button" @click=${act.faceSection}>Look at it</button
-      ><a class="button" href="${slicesUrl(idHere())}?${query}">Open as a slice</a
+      <button type="button" @click=${() => move(-1)}>${t("step-back")}</button
+      ><button type="button" @click=${() => move(1)}>${t("step-forward")}</button
+      ><button type="button" @click=${act.faceSection}>${t("look-at-it")}</button
+      ><a class="button" href="${slicesUrl(idHere())}?${query}">${t("open-as-slice")}</a
       ><button type="button" @click=${() => act.change({ clip: { ...shown, section: null } })}>
-        Remove the section
+        ${t("remove-section")}
       </button>
     </div>
   </details>`;
@@ -235,7 +241,7 @@ function layers(/** @type {Act} */ act) {
   ${
     walk?.t_s.length
       ? html`<label
-          ><span>Along the walk</span
+          ><span>${t("along-walk")}</span
           ><input
             type="range"
             min="0"

@@ -1,5 +1,6 @@
 // A photo of a note, made small enough to send: the server keeps at most 2048 px anyway.
 
+import { t } from "../shared/texts.js";
 const SIDE_PX = 2048;
 const MOST_BYTES = 660_000; // as base64 below the limit of a request
 
@@ -9,13 +10,13 @@ const MOST_BYTES = 660_000; // as base64 below the limit of a request
  */
 export async function smallPhoto(file) {
   const image = await createImageBitmap(file, { imageOrientation: "from-image" }).catch(() => {
-    throw new Error(`${file.name} is no photo that this browser can read: JPEG or PNG`);
+    throw new Error(t("no-photo", { file: file.name }));
   });
   for (let side = SIDE_PX; side >= 256; side /= 1.3) {
     const blob = await drawn(image, Math.min(1, side / Math.max(image.width, image.height)));
     if (blob.size <= MOST_BYTES) return base64Of(await blob.arrayBuffer());
   }
-  throw new Error(`${file.name} cannot be made small enough`);
+  throw new Error(t("photo-too-large", { file: file.name }));
 }
 
 /**

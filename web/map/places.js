@@ -1,6 +1,7 @@
 // Places that the map points at: findings, marks of the operator, a marked stretch of the walk.
 // No DOM, no network.
 
+import { decimal, t } from "../shared/texts.js";
 import { dot, fitted, toScreen } from "./camera.js";
 import { planesOf } from "./clip.js";
 import { positionAt } from "./flight.js";
@@ -97,6 +98,6 @@ export function pinAt(pins, [x, y], { camera, screen }) {
 /** The times of a mark in words; empty = it has none. */
 export function timesOf(/** @type {Mark} */ { span }) {
   if (!span) return "";
-  const [from, to] = span.map((t) => t.toFixed(1));
-  return from === to ? `${from} s` : `${from} s to ${to} s`;
+  const [from, to] = span.map((s) => decimal(s, 1));
+  return from === to ? `${from} s` : t("seconds-to", { from: from ?? "", to: to ?? "" });
 }

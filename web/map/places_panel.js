@@ -3,6 +3,7 @@
 import { html, nothing } from "../shared/dom.js";
 import { stretchUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
+import { t } from "../shared/texts.js";
 import { findingPins, operatorPins, page } from "./page.js";
 import { timesOf } from "./places.js";
 
@@ -18,7 +19,7 @@ export function placesSections(/** @type {Act} */ act) {
   return html`${
     findings.length
       ? html`<section aria-labelledby="findings-title">
-          <h2 id="findings-title">Findings (${findings.length})</h2>
+          <h2 id="findings-title">${t("findings-count", { count: findings.length })}</h2>
           ${list(findings, act)}
         </section>`
       : nothing
@@ -26,11 +27,11 @@ export function placesSections(/** @type {Act} */ act) {
   ${
     marks.length || leftOut
       ? html`<section aria-labelledby="marks-title">
-          <h2 id="marks-title">Operator's marks (${marks.length})</h2>
+          <h2 id="marks-title">${t("marks-count", { count: marks.length })}</h2>
           ${list(marks, act)}
           ${
             leftOut
-              ? html`<p class="quiet">${leftOut} more cannot be placed on the walk.</p>`
+              ? html`<p class="quiet">${t("marks-left-out", { count: leftOut })}</p>`
               : nothing
           }
         </section>`
@@ -56,8 +57,8 @@ const list = (/** @type {Pin[]} */ pins, /** @type {Act} */ act) =>
             ? html`<a
                 class="button"
                 href=${stretchUrl(idHere(), `span=${mark.span.join(",")}`)}
-                aria-label="Show this stretch in the graph"
-                >Graph</a
+                aria-label=${t("stretch-in-graph")}
+                >${t("graph")}</a
               >`
             : nothing
         }

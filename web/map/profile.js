@@ -6,6 +6,7 @@ import { asError, byId, html, nothing, render, svg, targetOf } from "../shared/d
 import { askFirst } from "../shared/download.js";
 import { count } from "../shared/format.js";
 import { roundStep } from "../shared/scale_bar.js";
+import { t, written } from "../shared/texts.js";
 import { PROFILE_M } from "./measure.js";
 import { heightsShown, page } from "./page.js";
 
@@ -95,7 +96,7 @@ export function drawProfile(element, act) {
     html`<h2 id="profile-title">${of.name}</h2>
       <div class="buttons">
         <label
-          ><span>Width of the strip [m]</span
+          ><span>${t("strip-width")}</span
           ><input
             type="number"
             min="0.01"
@@ -108,10 +109,10 @@ export function drawProfile(element, act) {
             }}
         /></label>
         ${link("csv", "CSV")} ${link("dxf", "DXF")}
-        <button type="button" @click=${act.close}>Close</button>
+        <button type="button" @click=${act.close}>${t("close")}</button>
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
-      ${image ? plot(image) : problem ? nothing : html`<p class="quiet">Drawing…</p>`}`,
+      ${image ? plot(image) : problem ? nothing : html`<p class="quiet">${t("drawing")}</p>`}`,
     element,
   );
 }
@@ -134,11 +135,11 @@ function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
     const [first, last] = [Math.ceil(from / step), Math.floor(to / step)];
     return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => (first + k) * step);
   };
-  const text = (/** @type {number} */ value) => Number(value.toPrecision(6));
+  const text = (/** @type {number} */ value) => written(String(Number(value.toPrecision(6))));
   return html`<svg
       viewBox="0 0 ${wide + left + right} ${tall + top + bottom}"
       role="img"
-      aria-label="Profile: ${count(points)} points, ${rangeText(window)}"
+      aria-label=${t("profile-label", { points: count(points), range: rangeText(window) })}
     >
       <image x=${left} y=${top} width=${wide} height=${tall} href="data:image/png;base64,${png}" />
       ${ticks(window.left, window.right, TICKS.across).map(
@@ -152,8 +153,8 @@ function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
             <text x=${left - 8} y=${y(z) + 4} text-anchor="end">${text(z)}</text>`,
       )}
     </svg>
-    <p class="quiet">Distance and height [m]; ${count(points)} points of the strip.</p>`;
+    <p class="quiet">${t("profile-axes", { points: count(points) })}</p>`;
 }
 
 const rangeText = (/** @type {WindowSpec} */ { right, left, bottom, top }) =>
-  `${(right - left).toFixed(2)} m long, heights ${bottom.toFixed(2)} to ${top.toFixed(2)} m`;
+  t("profile-range", { length: right - left, low: bottom, high: top });

@@ -3,6 +3,7 @@
 import { idHere } from "../shared/address.js";
 import { readMapIndex, watchJobs } from "../shared/api.js";
 import { html, only, render } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 import { page } from "./page.js";
 import { format } from "./state.js";
 
@@ -39,8 +40,7 @@ export function followJobs(element) {
     if (key === page.index?.key && version === page.index.version) return render("", element);
     if (!isBusy()) return reload();
     render(
-      html`The map was made again.
-        <button type="button" @click=${reload}>Show the new map</button>`,
+      html`${t("map-was-remade")} <button type="button" @click=${reload}>${t("show-new")}</button>`,
       element,
     );
   }
@@ -49,7 +49,7 @@ export function followJobs(element) {
     if (job.project !== id) return;
     if (!job.finished) {
       followed.running = job.id;
-      render("This map is being made again. You see the one before.", element);
+      render(t("being-remade"), element);
     } else if (followed.running === job.id && followed.ended !== job.id) {
       followed.ended = job.id;
       look().catch(() => render("", element)); // it has no map now: what is shown stays

@@ -4,6 +4,7 @@ import { idHere } from "../shared/address.js";
 import { readMapViews, removeMapView, saveMapView } from "../shared/api.js";
 import { html, nothing, targetOf, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 import { page } from "./page.js";
 import { format } from "./state.js";
 
@@ -38,9 +39,7 @@ export async function share() {
   history.replaceState(null, "", `?${format(page.state)}`);
   // Browsers have a clipboard on https and on this computer only.
   await navigator.clipboard?.writeText(location.href);
-  page.reading = navigator.clipboard
-    ? "The link to this view is copied"
-    : "The address of this page is the link to this view: copy it there";
+  page.reading = navigator.clipboard ? t("link-copied") : t("link-above");
 }
 
 /** The section of the panel. */
@@ -54,7 +53,7 @@ export function savedSection(/** @type {Act} */ act) {
     field.value = "";
   };
   return html`<section aria-labelledby="views-title">
-    <h2 id="views-title">Saved views</h2>
+    <h2 id="views-title">${t("saved-views")}</h2>
     <ul class="rows">
       ${all.map(
         ({ id: view, name, query, who, time }) =>
@@ -65,7 +64,7 @@ export function savedSection(/** @type {Act} */ act) {
               may
                 ? html`<button
                     type="button"
-                    aria-label="Remove ${name}"
+                    aria-label=${t("remove-view", { name })}
                     @click=${() => act.forget(view)}
                   >
                     ×
@@ -79,12 +78,12 @@ export function savedSection(/** @type {Act} */ act) {
       may
         ? html`<form class="line" @submit=${submit}>
             <label
-              ><span>Name of this view</span><input maxlength="100" required autocomplete="off"
+              ><span>${t("name-of-view")}</span><input maxlength="100" required autocomplete="off"
             /></label>
-            <button>Save this view</button>
+            <button>${t("save-view")}</button>
           </form>`
         : nothing
     }
-    <p class="quiet">Kept on the server, for all of this project. A link holds the view, too.</p>
+    <p class="quiet">${t("views-kept")}</p>
   </section>`;
 }

@@ -1,5 +1,6 @@
 // What the page shows; the address of the page is this state. No DOM, no network.
 
+import { t } from "../shared/texts.js";
 import { KINDS } from "./measure.js";
 
 /**
@@ -27,22 +28,22 @@ import { KINDS } from "./measure.js";
 
 /** @type {Record<ColorBy, string>} */
 export const COLORS = {
-  normalized: "Normalized intensity",
-  intensity: "Intensity",
-  height: "Height",
-  class: "Class",
-  time: "Time",
-  uncertainty: "Uncertainty",
-  thickness: "Thickness of surfaces",
-  plain: "Shape only",
+  normalized: t("color-normalized"),
+  intensity: t("color-intensity"),
+  height: t("color-height"),
+  class: t("color-class"),
+  time: t("color-time"),
+  uncertainty: t("color-uncertainty"),
+  thickness: t("color-thickness"),
+  plain: t("color-plain"),
 };
 /** @type {Record<Layer, string>} */
 export const LAYERS = {
-  findings: "Findings",
-  marks: "Operator's marks",
-  notes: "Notes",
-  walk: "Walk",
-  nodes: "Nodes",
+  findings: t("layer-findings"),
+  marks: t("layer-marks"),
+  notes: t("layer-notes"),
+  walk: t("layer-walk"),
+  nodes: t("layer-nodes"),
 };
 /** @type {Layer[]} */
 const USUAL_LAYERS = ["findings", "marks", "notes"];

@@ -2,6 +2,8 @@
 
 import { idHere } from "../shared/address.js";
 import { pickOnMap } from "../shared/api.js";
+import { classText } from "../shared/class_corrections.js";
+import { decimal, t } from "../shared/texts.js";
 import { dot, minus, pixelM, rayAt } from "./camera.js";
 import { boxOver, yawOfSection } from "./clip.js";
 import { nearestTo, standingAt } from "./flight.js";
@@ -30,6 +32,8 @@ const PICK_PX = 2;
 const SNAP_PX = 14; // corners, edges and planes this near to the pointer attract it
 const MOST_SNAP = { rad: 0.1, m: 0.25 };
 const STAND_AWAY = 0.15; // a click beside the walk stands on it up to this angle away [rad]
+/** @type {Record<string, string>} */
+const SNAPPED = { corner: "snapped-corner", edge: "snapped-edge", plane: "snapped-plane" };
 const EYES_M = 1.6;
 
 /**
@@ -58,17 +62,18 @@ async function pointAt(at, { camera, screen }) {
 function pointText(/** @type {HitPoint} */ point) {
   const { p_map, p_crs, classification, t_s, sensor, position_sd_m, surface_sd_m } = point;
   const mm = (/** @type {number | null} */ m, /** @type {string} */ text) =>
-    m === null ? "" : `${text} ${(1000 * m).toFixed(1)} mm`;
-  const place = `x ${p_map[0].toFixed(3)}  y ${p_map[1].toFixed(3)}  z ${p_map[2].toFixed(3)} m`;
-  const [e, n, h] = (p_crs ?? []).map((x) => x.toFixed(3));
+    m === null ? "" : `${text} ${decimal(1000 * m, 1)} mm`;
+  const [x, y, z] = p_map.map((value) => decimal(value, 3));
+  const place = `x ${x}  y ${y}  z ${z} m`;
+  const [e, n, h] = (p_crs ?? []).map((value) => decimal(value, 3));
   const there = p_crs ? `E ${e}  N ${n}  H ${h} (${page.index?.crs})` : "";
   const more = [
-    classification,
-    `intensity ${point.intensity}`,
-    `${t_s.toFixed(1)} s`,
+    classText(classification),
+    t("intensity-of", { value: point.intensity }),
+    `${decimal(t_s, 1)} s`,
     sensor,
-    mm(position_sd_m, "σ of the pose"),
-    mm(surface_sd_m, "thickness"),
+    mm(position_sd_m, t("sd-of-pose")),
+    mm(surface_sd_m, t("thickness-of")),
   ];
   return [place, there, more.filter(Boolean).join(" · ")].filter(Boolean).join("\n");
 }
@@ -110,7 +115,7 @@ function ended(/** @type {HitPoint} */ point, /** @type {SnapPoint | null} */ sn
  * @param {Stage} stage
  */
 function take({ point: found, snap }, stage) {
-  if (!found) return read("No point of the map here", stage);
+  if (!found) return read(t("no-point-here"), stage);
   if (page.tool === "note") {
     choose("", stage);
     return stage.note?.(found);
@@ -121,7 +126,7 @@ function take({ point: found, snap }, stage) {
   if (page.draft.length >= KINDS[page.measuring].most) finishMeasurement(stage);
   else
     read(
-      [one.snap && `Snapped to a ${one.snap}`, pointText(found)].filter(Boolean).join("\n"),
+      [one.snap && t(SNAPPED[one.snap] ?? "snapped"), pointText(found)].filter(Boolean).join("\n"),
       stage,
     );
 }
@@ -238,7 +243,7 @@ async function stand(at, stage) {
   const onWalk = near && (stage.camera().parallel ? near.away * depth < 1 : near.away < STAND_AWAY);
   if (near && onWalk) page.flight.time = near.time;
   const eye = near && onWalk ? near.position : found && [...found.p_map];
-  if (!eye) return read("Click on the walk, or on a floor", stage);
+  if (!eye) return read(t("click-walk"), stage);
   if (!onWalk) eye[2] += EYES_M;
   choose("", stage);
   stage.change({
@@ -256,16 +261,16 @@ async function stand(at, stage) {
  * @param {MeasureKind} [kind]
  */
 export function choose(tool, stage, kind = page.measuring) {
-  if (tool === "note" && !page.notes.may) return read("You may look at this project only", stage);
+  if (tool === "note" && !page.notes.may) return read(t("look-only"), stage);
   const same = tool === page.tool && (tool !== "measure" || kind === page.measuring);
   Object.assign(page, { tool: same ? "" : tool, measuring: kind, draft: [], drag: null });
   const hints = {
     "": "",
     measure: KINDS[kind].hint,
-    box: "Drag a rectangle around what is to stay",
-    section: "Drag the line of the section",
-    stand: "Click a place of the walk to stand there",
-    note: "Click the place of the note",
+    box: t("drag-box"),
+    section: t("drag-section"),
+    stand: t("click-stand"),
+    note: t("click-note"),
   };
   page.reading = hints[page.tool];
   const above = Math.abs(stage.camera().pitch + Math.PI / 2) < 0.02 && stage.camera().parallel;

@@ -23,7 +23,7 @@ import { t, wordOf } from "./texts.js";
 
 const DELIVERED = ""; // all points that the map delivers
 const EVERY = "*"; // and those that it leaves out
-const classText = (/** @type {string} */ title) => wordOf("class", title);
+export const classText = (/** @type {string} */ title) => wordOf("class", title);
 
 export class ClassCorrections extends HTMLElement {
   #given = /** @type {Given | null} */ (null);
