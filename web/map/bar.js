@@ -1,5 +1,6 @@
 // The tool bar of the map, its caption, and the list of keys.
 
+import { approvalWords } from "../shared/approval.js";
 import { html, nothing, render } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { t } from "../shared/texts.js";
@@ -142,7 +143,7 @@ export function drawStatus(element, { points, rested, scale }) {
     html`<div role="status">${reading ? html`<p class="reading">${reading}</p>` : nothing}</div>
       <p class="caption">
         <span class="shown">${shown}</span> · <span>${scale}</span> · <span>${index.frame}</span>
-        ${project ? html` · <span>${project.approval.text}</span>` : nothing}
+        ${project ? html` · <span>${approvalWords(project.approval)}</span>` : nothing}
         ${
           flight.on
             ? html` · <span>${t("s-of-walk", { s: flight.time.toFixed(0) })}</span>`

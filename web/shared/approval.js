@@ -20,13 +20,13 @@ export function approvalLine(
 ) {
   const { kind, checking } = state;
   const [mark, level] = LEVELS[kind];
-  const text = textOf(state);
+  const text = approvalWords(state);
   if (!checking) return { text: `${mark} ${text}`, level };
   return { text: `◷ ${t("approval-checking", { text })}`, level: "" };
 }
 
 /** The line of the server in the language of the page. */
-function textOf(
+export function approvalWords(
   /** @type {Pick<ApprovalState, "text"> & Partial<ApprovalState>} */ {
     text,
     version,

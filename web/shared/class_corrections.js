@@ -23,6 +23,7 @@ import { t, wordOf } from "./texts.js";
 
 const DELIVERED = ""; // all points that the map delivers
 const EVERY = "*"; // and those that it leaves out
+/** A class of points in words. */
 export const classText = (/** @type {string} */ title) => wordOf("class", title);
 
 export class ClassCorrections extends HTMLElement {

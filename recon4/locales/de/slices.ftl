@@ -7,7 +7,6 @@ title = Schnitte · recon4
 slices = Schnitte
 cut = Schneiden
 slice = Schnitt
-findings = Befunde
 slice-label = Schnitt { $name }, { $points } Punkte { $surface }, gefärbt nach { $color }
 no-point-here = Hier ist kein Punkt der Karte
 click-corners = Die Ecken des Polygons anklicken

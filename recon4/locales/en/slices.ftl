@@ -7,7 +7,6 @@ title = Slices · recon4
 slices = Slices
 cut = Cut
 slice = Slice
-findings = Findings
 slice-label = Slice { $name }, { $points } points { $surface }, colored by { $color }
 no-point-here = No point of the map here
 click-corners = Click the corners of the polygon
