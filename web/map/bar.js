@@ -3,6 +3,7 @@
 import { approvalWords } from "../shared/approval.js";
 import { html, nothing, render } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { frameText } from "../shared/frame.js";
 import { t } from "../shared/texts.js";
 import { KINDS } from "./measure.js";
 import { page } from "./page.js";
@@ -142,7 +143,8 @@ export function drawStatus(element, { points, rested, scale }) {
   render(
     html`<div role="status">${reading ? html`<p class="reading">${reading}</p>` : nothing}</div>
       <p class="caption">
-        <span class="shown">${shown}</span> · <span>${scale}</span> · <span>${index.frame}</span>
+        <span class="shown">${shown}</span> · <span>${scale}</span> ·
+        <span>${frameText(index.frame)}</span>
         ${project ? html` · <span>${approvalWords(project.approval)}</span>` : nothing}
         ${
           flight.on

@@ -5,7 +5,7 @@ import { slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
 import { classText } from "../shared/class_corrections.js";
 import { shareText } from "../shared/format.js";
-import { t } from "../shared/texts.js";
+import { decimal, t, written } from "../shared/texts.js";
 import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
 import { corrections } from "./corrections.js";
@@ -109,10 +109,10 @@ function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
       <summary>${t("range-of-colors")}</summary>
       <div class="pair">
         ${field(t("low-end"), state.lo, (lo) => act.change({ lo }), {
-          usual: ends[0].toPrecision(3),
+          usual: written(ends[0].toPrecision(3)),
         })}
         ${field(t("high-end"), state.hi, (hi) => act.change({ hi }), {
-          usual: ends[1].toPrecision(3),
+          usual: written(ends[1].toPrecision(3)),
         })}
       </div>
     </details>`;
@@ -121,7 +121,7 @@ function legend(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
 function clip(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   const { clip: shown } = page.state;
   const [low, high] = shown.heights;
-  const [lowest, highest] = heightsShown().map((z) => z.toFixed(2));
+  const [lowest, highest] = heightsShown().map((z) => decimal(z, 2));
   const heights = (/** @type {[number | null, number | null]} */ next) =>
     act.change({ clip: { ...shown, heights: next }, cutCeiling: false });
   return html`<div class="pair">

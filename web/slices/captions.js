@@ -1,6 +1,6 @@
 // Captions of slices, of points picked on them and of distances. No DOM, no network.
 
-import { decimal, t } from "../shared/texts.js";
+import { decimal, language, t, written } from "../shared/texts.js";
 import { COLORS, SURFACES } from "./state.js";
 
 /** @import {OtherMap, PickView, SliceFacts} from "../shared/http_types" */
@@ -12,12 +12,22 @@ const KINDS = {
 };
 const fixed = (/** @type {number[]} */ xs) => xs.map((x) => decimal(x, 3)).join("  ");
 
+/** The position of a plane as the server writes it, in words of the page. */
+export function planeText(/** @type {string} */ name) {
+  const [, azimuth, along = ""] = name.match(/^azimuth (\S+)°, offset (\S+) m$/) ?? [];
+  if (azimuth) return t("plane-vertical", { azimuth: written(azimuth), offset: written(along) });
+  const [, normal, offset = ""] = name.match(/^normal \((.+)\), offset (\S+) m$/) ?? [];
+  if (!normal) return written(name);
+  const axes = normal.split(", ").map(written).join("; ");
+  return t("plane-free", { normal: language() === "en" ? normal : axes, offset: written(offset) });
+}
+
 /**
  * The kind of the slice and its name.
  * @param {import("./state.js").Kind} kind
  * @param {string} name
  */
-export const cutText = (kind, name) => `${KINDS[kind]} ${name}`;
+export const cutText = (kind, name) => `${KINDS[kind]} ${planeText(name)}`;
 
 /**
  * What a slice image shows.

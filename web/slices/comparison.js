@@ -4,6 +4,7 @@ import { count } from "../shared/format.js";
 import { html, nothing, svg } from "../shared/dom.js";
 import { t, written } from "../shared/texts.js";
 import { HEIGHT, bars } from "./bars.js";
+import { planeText } from "./captions.js";
 
 /** @import {ComparedSlice, Comparison} from "../shared/http_types" */
 
@@ -44,7 +45,7 @@ export function comparison(found, csvUrl) {
     ${figure(found.plain_mean_m)}
   </tr>`;
   const rows = [
-    ...found.slices.map((one) => row(one.name, one)),
+    ...found.slices.map((one) => row(planeText(one.name), one)),
     row(t("mean-of-points"), found.point_weighted),
     plain,
   ];

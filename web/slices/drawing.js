@@ -5,6 +5,7 @@ import { mapUrl } from "../shared/api.js";
 import { approvalFact } from "../shared/approval_lines.js";
 import { byId, html, nothing, render, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { frameText } from "../shared/frame.js";
 import { t, written } from "../shared/texts.js";
 import { cutText } from "./captions.js";
 import { besideFields, controls } from "./controls.js";
@@ -170,6 +171,6 @@ function facing({ name, points, surface }, { strays, frame, approval }) {
         ? html`<span>${t("points-left-out", { points: count(strays) })}</span>`
         : nothing
     }
-    <span class="frame">${frame}</span>${approvalFact(approval)}
+    <span class="frame">${frameText(frame)}</span>${approvalFact(approval)}
     <a href=${mapUrl(idHere()) + mapQuery(page.state)}>${t("show-in-3d")}</a>`;
 }

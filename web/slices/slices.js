@@ -15,7 +15,7 @@ import {
 } from "../shared/api.js";
 import { attempt, byId, detailOf, only, say, showError, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
-import { distanceText, imageText, lengthText, pointText } from "./captions.js";
+import { distanceText, imageText, lengthText, planeText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
 import { help } from "./help.js";
 import { isPlan, showPlan } from "./plan.js";
@@ -141,7 +141,7 @@ function describe() {
   const points = count(shown.points);
   page.caption = imageText({ source, color, points, surface }, facts.sources);
   first.label = t("slice-label", {
-    name,
+    name: planeText(name),
     points,
     surface: SURFACES[surface],
     color: COLORS[color],

@@ -6,7 +6,7 @@
 import { render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar, roundStep } from "../shared/scale_bar.js";
-import { t } from "../shared/texts.js";
+import { decimal, t } from "../shared/texts.js";
 import { imageSize } from "./state.js";
 
 const EDGE = { left: 56, bottom: 26 };
@@ -229,7 +229,7 @@ export class SliceView extends HTMLElement {
     const { width, height } = this.#size();
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
     const text = (/** @type {number} */ x) =>
-      (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−");
+      decimal(Math.abs(x) < step / 2 ? 0 : x, digits).replace("-", "−");
     pen.fillStyle = color("--paper-edge");
     pen.fillRect(0, height - EDGE.bottom, width, EDGE.bottom);
     pen.fillRect(0, 0, EDGE.left, height);
@@ -237,7 +237,7 @@ export class SliceView extends HTMLElement {
     pen.font = "12px system-ui, sans-serif";
     pen.textAlign = "center";
     pen.textBaseline = "middle";
-    const across = this.#axes[0].replace("along the section", "section");
+    const across = this.#axes[0].replace("along the section", t("axis-section"));
     const free = width - pen.measureText(across).width - 32;
     for (const u of this.#lines(step, 0)) {
       const x = this.#toPx([u, 0])[0];
@@ -302,7 +302,7 @@ export class SliceView extends HTMLElement {
     if (!this.#center || event.pointerType !== "mouse") return;
     const digits = this.#metersPerPx < 0.005 ? 3 : 2;
     this.#hover.value = this.#toPlane(at)
-      .map((x, k) => `${["u", "v"][k]} ${x.toFixed(digits)}`)
+      .map((x, k) => `${["u", "v"][k]} ${decimal(x, digits)}`)
       .join("  ");
   }
 

@@ -227,3 +227,8 @@ approval-signed-by-unknown-key-not-counted-as-approved = Signiert mit unbekannte
 approval-not-approved-older-than-what-this-server-approved = Nicht freigegeben: älter als das, was dieser Server freigegeben hat
 approval-not-approved-an-approval-is-missing-in-the-journal = Nicht freigegeben: im Journal fehlt eine Freigabe
 approval-not-approved-the-approval-is-not-valid = Nicht freigegeben: die Freigabe ist ungültig
+
+## Systeme von Karten
+
+frame-local = System der Karte (lokal), x y z, z nach oben, Meter
+frame-placed = System der Karte (Ursprung bei E { $east } N { $north } H { $up } in { $crs }), x y z, z nach oben, Meter

@@ -227,3 +227,8 @@ approval-signed-by-unknown-key-not-counted-as-approved = Signed by unknown key {
 approval-not-approved-older-than-what-this-server-approved = Not approved: older than what this server approved
 approval-not-approved-an-approval-is-missing-in-the-journal = Not approved: an approval is missing in the journal
 approval-not-approved-the-approval-is-not-valid = Not approved: the approval is not valid
+
+## Frames of maps
+
+frame-local = map frame (local), x y z, z up, meters
+frame-placed = map frame (origin at E { $east } N { $north } H { $up } in { $crs }), x y z, z up, meters

@@ -1,0 +1,63 @@
+"""Pages in German: nothing of what they show is English."""
+
+import pytest
+from playwright.sync_api import expect
+
+from recon4.locales.languages import ENGLISH, ROOT
+from recon4.locales.texts import messages_of, texts
+from recon4_app.pages import LANGUAGE_COOKIE, html_of, text_files
+from tests.e2e.conftest import looks, on_both_screens
+from tests.e2e.review.review_page import page_fits
+from tests.project_builder import build_project
+from tests.served import served
+
+pytestmark = pytest.mark.e2e
+
+SHOWN = """() => [document.title, ...[...document.querySelectorAll("body *:not(script)")].flatMap(
+  (one) => [
+    ...[...one.childNodes].filter((node) => node.nodeType === Node.TEXT_NODE)
+      .map((node) => node.data.replace(/\\s+/g, " ").trim()),
+    ...["title", "aria-label", "placeholder", "alt"].map((name) => one.getAttribute(name)),
+  ]).filter(Boolean)]"""
+"""All texts of a page, also of what is closed, and those that a screen reader says."""
+OF_THE_PAGE = {
+    "review": ("Prüfung von office · recon4", "#pair h2", "Multiframes"),
+    "map": ("Karte · office · recon4", "#status .shown", "Punkten"),
+    "slices": ("Schnitte · office · recon4", ".caption", "Diese Karte"),
+}
+"""Its title, and where it has which word once it is drawn."""
+
+server = served(lambda root: build_project(root / "office", points=6_000, normals=True))
+
+
+def english_of(files):
+    """English texts that are others in German and quote nothing."""
+    english, german = texts(ENGLISH, *files), texts("de", *files)
+    found = set()
+    for name in (one for file in files for one in messages_of(ROOT / ENGLISH / f"{file}.ftl")):
+        try:
+            found |= {english(name)} - {german(name)}
+        except KeyError:  # it quotes a value, or has parts only
+            continue
+    return found
+
+
+@looks("desktop light")
+@pytest.mark.parametrize("name", OF_THE_PAGE)
+def test_a_german_page_has_no_english_text(server, page, name):
+    title, place, word = OF_THE_PAGE[name]
+    url = f"{server.url}/projects/office/{name}/"
+    page.context.add_cookies([{"name": LANGUAGE_COOKIE, "value": "de", "url": server.url}])
+    page.goto(url)
+    if name == "review":
+        expect(page.locator("review-queue li").first).to_be_visible()
+        page.keyboard.press("j")
+    expect(page.locator(place).first).to_contain_text(word)
+    expect(page).to_have_title(title)
+
+    english = english_of(text_files(html_of(f"{name}/{name}.html")))
+
+    assert len(english) > 200
+    assert sorted(english & set(page.evaluate(SHOWN))) == []
+    if name != "map":  # its bar is as high as its window allows
+        on_both_screens(page, page_fits)
