@@ -16,6 +16,8 @@ import numpy as np
 from numba import types
 from numba.core import event
 
+from recon4.comparison.m3c2 import differences
+from recon4.comparison.records import M3C2Scales
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.signatures import SIGNATURES, kernel_name, spelled
 from recon4.live.mapper.live_map import LiveMap
@@ -104,6 +106,7 @@ def _lidars(folder: Path) -> None:
     made = read_artifacts(project)
     tiles = TileSet.open(made["map"])
     find_double_walls(tiles)
+    list(differences(tiles, tiles, SE3.identity(), scales=M3C2Scales()))
     plane = SlicePlane.horizontal(1.0)
     paper = RasterGrid(extent(tiles, plane), PIXEL_M)
     draw(tiles, plane, paper, color="height")
