@@ -55,11 +55,13 @@ def build_project(
     with_map: bool = True,
     strays: int = 0,
     normals: bool = False,
+    moved_m: float = 0.0,
 ) -> None:
     """Make a finished project in an empty folder (or one that has come as far as odometry).
 
     The map has that many stray returns in the middle of each tile, beside its points, and normals
-    of the room's walls if asked for.
+    of the room's walls if asked for. Its wall at the largest x may have been moved out. Built again
+    in the same folder, it has an earlier map.
     """
     with Project.open(root) as project:
         project.describe(preset="indoor", rig="4RECON")
@@ -73,11 +75,13 @@ def build_project(
         count = Input(f"points {points}", points)
         loose = Input(f"strays {strays}", strays)
         faces = Input(f"normals {normals}", normals)
+        moved = Input(f"moved {moved_m}", moved_m) if moved_m else None
         runner.run(
             Stage("map", 1, ReadsNothing, _map, MapFigures),
             points=count,
             strays=loose,
             normals=faces,
+            moved=moved,
         )
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
     (root / "report.html").write_text(
@@ -256,16 +260,21 @@ def _level(context: StageContext, *, walk: Trajectory) -> LevelFigures:
     return LevelFigures(leveled_by="imu", tilt_deg=0.0, crs="", local="no positions")
 
 
-def _map(context: StageContext, *, points: int, strays: int, normals: bool) -> MapFigures:
+def _map(
+    context: StageContext, *, points: int, strays: int, normals: bool, moved: float | None
+) -> MapFigures:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
+    faces = _room_normals(p)
+    p[p[:, 0] == ROOM_M[0], 0] += moved or 0.0
     walk = loop_walk()
     paths = SensorPaths(walk.t_ns, walk.t_ns, np.stack([walk.T_a_b.t, walk.T_a_b.t]))
     with TileWriter(context.out, STORED, tile_m=TILE_M, paths=paths) as writer:
         writer.notes = MapNotes(voxel_m=0.01)
         ijk = np.floor(p / TILE_M).astype(np.int64)
         for key in np.unique(ijk, axis=0):
-            mine = p[np.all(ijk == key, axis=1)]
+            here = np.all(ijk == key, axis=1)
+            mine = p[here]
             xyz = np.vstack(
                 [mine - key * TILE_M, np.tile([0.5 * TILE_M, 0.5 * TILE_M, 1.5], (strays, 1))]
             )
@@ -273,7 +282,7 @@ def _map(context: StageContext, *, points: int, strays: int, normals: bool) -> M
             columns["classification"] = np.full(len(xyz), PointClass.UNCLASSIFIED, np.uint8)
             columns["classification"][len(mine) :] = PointClass.LOW_NOISE
             if normals:
-                columns["normal"] = _room_normals(xyz + key * TILE_M)
+                columns["normal"][: len(mine)] = faces[here]
             writer.append(tuple(int(k) for k in key), columns, strays=strays)
     low, high = (tuple(corner.tolist()) for corner in (p.min(axis=0), p.max(axis=0)))
     return MapFigures(points=points, bounds_m=(low, high))

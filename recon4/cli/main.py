@@ -21,6 +21,7 @@ from recon4.cli.backup import backups
 from recon4.cli.batch import batches
 from recon4.cli.calibration import calibration
 from recon4.cli.classify import classify
+from recon4.cli.compare import comparison
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.control import control
 from recon4.cli.delivery import delivery, is_delivery, show_checked
@@ -56,7 +57,7 @@ app = typer.Typer(
 
 app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
-for _part in (server, assistant, live, simulation, slices, backups, space):
+for _part in (server, assistant, live, simulation, slices, backups, space, comparison):
     app.add_typer(_part)
 for _part in (
     calibration,

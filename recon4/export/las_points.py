@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import laspy
@@ -152,6 +152,47 @@ def add_records(account: PointAccount, records: NDArray[np.void], header: Any) -
     )
     xyz = np.stack([points.x, points.y, points.z], axis=1)
     account.add(xyz, np.asarray(points.classification))
+
+
+def values_header(values: Mapping[str, str], crs: str, offset_m: NDArray[np.float64]) -> Any:
+    """The header of a file of points with values of their own, without points.
+
+    Args:
+        values: Name of each extra dimension -> its type, as ``f4``.
+        crs: WKT or code of the CRS; empty = a local frame.
+        offset_m: Of the coordinates, (3,).
+
+    Raises:
+        GeoreferenceError: If the CRS is not understood.
+    """
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.scales, header.offsets = np.full(3, LAZ.scale_m), offset_m
+    header.generating_software = f"recon4 {recon4.__version__}"
+    header.uuid, header.creation_date = uuid.UUID(int=0), day_of(0)
+    header.add_extra_dims([laspy.ExtraBytesParams(name, kind) for name, kind in values.items()])
+    header.global_encoding.wkt = True
+    if crs:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(crs)))
+    return header
+
+
+def value_records(header: Any, xyz: NDArray[np.float64], values: Mapping[str, NDArray[Any]]) -> Any:
+    """Points with values as records of a file of `values_header`.
+
+    Args:
+        header: Of the file.
+        xyz: Coordinates of the file [m], (N, 3).
+        values: Of each extra dimension, (N,).
+    """
+    points = laspy.ScaleAwarePointRecord(
+        las_records(len(xyz), header), header.point_format, header.scales, header.offsets
+    )
+    steps = np.rint((xyz - header.offsets) / header.scales)
+    points.X[:], points.Y[:], points.Z[:] = steps.T.astype(np.int32)
+    points.array["bit_fields"] = 1 | (1 << 4)
+    for name, of in values.items():
+        points.array[name] = of
+    return points
 
 
 def crs_text(header: Any) -> str:

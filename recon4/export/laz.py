@@ -7,15 +7,19 @@ spawned.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
 import laspy
 import lazrs  # type: ignore[import-untyped]
+import numpy as np
+from numpy.typing import NDArray
 
-from recon4.errors import StoreError
+from recon4.errors import ConfigError, StoreError
 from recon4.export.account import PointAccount
 from recon4.export.las_points import (
     add_records,
@@ -24,11 +28,14 @@ from recon4.export.las_points import (
     las_header,
     las_points,
     las_records,
+    value_records,
+    values_header,
 )
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import LAZ, REREAD
+from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
@@ -172,3 +179,61 @@ def _check(path: Path, meant: PointAccount, name: str) -> None:
     rounded_m = LAZ.scale_m / 2.0 + REREAD.bounds_m
     for one in (stated, found):
         meant.compare(one, name, within_m=rounded_m)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ValuePoints:
+    """Points with values of their own."""
+
+    xyz: Array
+    """Coordinates of the file [m], (N, 3)."""
+    values: Mapping[str, NDArray[Any]]
+    """Name of an extra dimension -> its values, (N,); the same names and types in all parts."""
+
+
+def write_values(
+    parts: Iterable[ValuePoints], path: Path, *, crs: str, offset_m: NDArray[np.float64]
+) -> int:
+    """Write points with values as LAZ 1.4, streaming.
+
+    Args:
+        parts: The points.
+        path: File to write, ``.laz``.
+        crs: WKT or code of the CRS; empty = a local frame.
+        offset_m: Of the coordinates in the file, whole meters, (3,).
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If there are no points, or the name is not one of a LAZ file.
+        GeoreferenceError: If the CRS is not understood.
+        StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
+    """
+    check_name(path, ".laz")
+    stream = iter(parts)
+    first = next((part for part in stream if len(part.xyz)), None)
+    if first is None:
+        raise ConfigError("there are no points to write")
+    header = values_header(
+        {name: values.dtype.str[1:] for name, values in first.values.items()}, crs, offset_m
+    )
+    count = 0
+    with atomic_file(path) as temporary:
+        with (
+            writing_las(temporary, path.name) as file,
+            laspy.open(
+                file,
+                mode="w",
+                header=header,
+                laz_backend=laspy.LazBackend.LazrsParallel,
+                closefd=False,
+            ) as out,
+        ):
+            for part in chain([first], stream):
+                out.write_points(value_records(header, part.xyz, part.values))
+                count += len(part.xyz)
+        with reading_las(path.name), laspy.open(temporary) as written:
+            if sum(len(points) for points in written.chunk_iterator(LAZ.together)) != count:
+                raise StoreError(f"{path.name} reads back wrong: expected {count} points")
+    return count

@@ -137,6 +137,9 @@ MAY_IMPORT = {
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
+    "recon4/comparison": STAGE
+    | {"recon4.comparison", "recon4.export.laz", "recon4.mapping", "recon4.review.approved"}
+    | {f"recon4.slices.{name}" for name in ("align", "map_crs", "reference")},
     "recon4/products": STAGE
     | {f"recon4.{room}" for room in ("mapping", "products", "slices")}
     | {"recon4.review.stamp"},
