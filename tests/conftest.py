@@ -28,17 +28,17 @@ DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
 CAPTURE = "recording.pcap"
 
 
-E2E = "pytest.mark.e2e"
-
-
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Import no file without a test that is asked for: all of them take ten seconds."""
     asked = config.option.markexpr
-    if asked not in {"e2e", "not e2e"} or collection_path.suffix != ".py":
+    if not asked or collection_path.suffix != ".py":
         return None
     text = collection_path.read_text("utf-8")
-    unwanted = f"pytestmark = {E2E}" in text if asked == "not e2e" else E2E not in text
-    return True if unwanted else None
+    for mark in ("e2e", "study"):
+        whole = f"pytestmark = pytest.mark.{mark}\n" in text
+        if whole if f"not {mark}" in asked else mark in asked and mark[:4] not in text:
+            return True
+    return None
 
 
 def pytest_configure() -> None:
