@@ -35,8 +35,8 @@ RETIRED = {
     r"\bguess(?:es|ed|ing)?\b|_guess(?:es)?\b|\bguess_": "prediction, hypothesis, detect",
     r"\bbeliev\w*|\bunbeliev\w*": "consistent, plausible, accepted, trusted",
     r"\blet(?:s|ting)? (?:somebody |them |it |him |in )?in\b": "sign in, admit, accept",
-    r"\bpictures?\b|_pictures?\b|\bpictures?_|(?<=\w)Picture\b": "preview, thumbnail, image, chart",
-    r"(?<!\")\blevell\w*|\bmetre\b|metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
+    r"\bpictures?\b|_pictures?\b|\bpictures?_|(?<=\w)picture\b": "preview, thumbnail, image, chart",
+    r"\b(?<!\")levell\w*|\bmetre\b|metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
     r"|\bneighbour\w*|\bbehaviour\w*|\banalys(?:e|ed|es|ing)\b": "American spelling",
     r"\bway_m\b|\bthe way\b(?! (?:to|it|they|that|a|in which)\b)|\bof way\b": "path, path length",
     r"\bwhoever\b": "the person who, anyone who",
@@ -61,8 +61,8 @@ def listed(paths: list[str]) -> list[str]:
 
 def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:
     """File, line number, the word found and what to use instead."""
-    everywhere = [(re.compile(word, re.IGNORECASE), fix) for word, fix in RETIRED.items()]
-    local = [(re.compile(word, re.IGNORECASE), places) for word, places in IN_FOLDER.items()]
+    everywhere = [(re.compile(word), fix) for word, fix in RETIRED.items()]
+    local = [(re.compile(word), places) for word, places in IN_FOLDER.items()]
     for name in listed(paths):
         if name in ALLOWED or Path(name).suffix not in SUFFIXES:
             continue
@@ -70,6 +70,7 @@ def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:
         text = (ROOT / name).read_text("utf-8")
         for own_name in FOREIGN:
             text = text.replace(own_name, "")
+        text = text.lower()  # twice as fast as to ignore case
         rules = [(rx, fix) for rx, fix in rules if rx.search(text)]
         for number, line in enumerate(text.splitlines() if rules else (), 1):
             for rx, fix in rules:
