@@ -8,8 +8,9 @@ from collections.abc import Mapping
 from functools import cache
 from html import escape
 from pathlib import Path
+from typing import Annotated
 
-from fastapi import Request
+from fastapi import Depends, Request
 from fastapi.responses import HTMLResponse
 from starlette.requests import HTTPConnection
 
@@ -73,6 +74,10 @@ def language_of(connection: HTTPConnection) -> str:
     if chosen in languages():
         return chosen
     return best_of(connection.headers.get("accept-language", ""))
+
+
+Language = Annotated[str, Depends(language_of)]
+"""The language that the person who requests something reads."""
 
 
 def text_files(page: str) -> tuple[str, ...]:

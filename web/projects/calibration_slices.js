@@ -1,6 +1,7 @@
 // Slices through a walk before and after a calibration, side by side.
 
 import { html } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /** @import {CalibrationSlices} from "../shared/http_types" */
 /** @typedef {Array<[number, number]>} Points of a slice [m] */
@@ -10,8 +11,8 @@ const SIZE = 480; // pixels of a drawing
 const DOT = 1.6;
 /** @type {Array<["before" | "after", string]>} */
 const SIDES = [
-  ["before", "Rig file"],
-  ["after", "Calibrated"],
+  ["before", t("rig-file")],
+  ["after", t("rig-calibrated")],
 ];
 
 const colorOf = (/** @type {number} */ k) => COLORS[k % COLORS.length] ?? "";
@@ -26,20 +27,20 @@ export function calibrationSlices(
     1,
     ...lidars.flatMap(({ before, after }) => [...before, ...after].flat().map(Math.abs)),
   );
-  const names = lidars.map((one) => one.name).join(" and ");
-  const thick = `${Math.round(100 * thickness)} cm thick`;
+  const names = lidars.map((one) => one.name).join(t("and"));
+  const cm = String(Math.round(100 * thickness));
   return html`<div class="calibration-slices">
     ${SIDES.map(([side, text]) => {
       const clouds = lidars.map((one) => one[side]);
-      const label = `Slice ${thick}, ${text.toLowerCase()}, ${names}`;
+      const label = t("rig-slice", { cm, which: text, lidars: names });
       return html`<figure>
         ${drawing(clouds, reach, label)}
         <figcaption>${text}</figcaption>
       </figure>`;
     })}
     <p class="quiet">
-      ${lidars.map((one, k) => [swatch(k), ` ${one.name} `])}· a slice ${thick},
-      ${(2 * reach).toFixed(0)} m wide
+      ${lidars.map((one, k) => [swatch(k), ` ${one.name} `])}·
+      ${t("rig-slice-size", { cm, m: (2 * reach).toFixed(0) })}
     </p>
   </div>`;
 }

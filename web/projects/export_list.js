@@ -1,10 +1,13 @@
 // What was exported of a map: rows that stay when their files are removed.
 
 import { exportUrl } from "../shared/api.js";
+import { approvalWords } from "../shared/approval.js";
 import { badge } from "../shared/badge.js";
 import { html, nothing, repeat } from "../shared/dom.js";
 import { bytes, when } from "../shared/format.js";
+import { t, wordOf } from "../shared/texts.js";
 import { optionWords } from "./export_options.js";
+import { noteText, stepText } from "./steps.js";
 
 /**
  * @import {ExportChoices, ExportView} from "../shared/http_types"
@@ -21,7 +24,7 @@ import { optionWords } from "./export_options.js";
  */
 export const exportList = (project, rows, known, actions) =>
   rows.length === 0
-    ? html`<p class="quiet">Nothing was exported yet.</p>`
+    ? html`<p class="quiet">${t("export-nothing")}</p>`
     : html`<ul class="exports">
         ${repeat(
           rows,
@@ -40,14 +43,13 @@ function exportRow(project, row, known, actions) {
   const open = row.state === "queued" || row.state === "running";
   const words = optionWords(row.options, known.classes);
   const { made } = row;
+  const name = wordOf("export", row.title);
   const title =
     made && row.kept
-      ? html`<a href=${exportUrl(project, row.id)} download>${row.title}</a>`
-      : html`<strong>${row.title}</strong>`;
+      ? html`<a href=${exportUrl(project, row.id)} download>${name}</a>`
+      : html`<strong>${name}</strong>`;
   const button = (/** @type {string} */ text, /** @type {() => unknown} */ action) =>
-    html`<button type="button" aria-label=${`${text}: ${row.title}`} @click=${action}>
-      ${text}
-    </button>`;
+    html`<button type="button" aria-label=${`${text}: ${name}`} @click=${action}>${text}</button>`;
   return html`<li class=${row.kept ? "kept" : ""}>
     <div class="export-head">
       ${title} ${made ? html`<span class="quiet">${bytes(made.bytes)}</span>` : badge(row.state)}
@@ -57,34 +59,42 @@ function exportRow(project, row, known, actions) {
     <p class="quiet">
       ${[made?.text, row.person, when(row.finished || row.created)].filter(Boolean).join(" · ")}
     </p>
-    ${made ? details(row) : nothing} ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
+    ${made ? details(row) : nothing}
+    ${row.note ? html`<p class="quiet">${noteText(row.note)}</p>` : nothing}
     <div class="buttons">
-      ${open && known.mine(row) ? button("Cancel", () => actions.cancel(row)) : nothing}
-      ${row.kept && known.mine(row) ? button("Remove file", () => actions.remove(row)) : nothing}
+      ${open && known.mine(row) ? button(t("cancel"), () => actions.cancel(row)) : nothing}
+      ${row.kept && known.mine(row) ? button(t("remove-file"), () => actions.remove(row)) : nothing}
     </div>
   </li>`;
 }
 
+const stepName = (/** @type {string} */ what) =>
+  what ? wordOf("export", stepText(what)) : t("starting");
+
 const progress = (/** @type {ExportView} */ { state, what, fraction }) =>
   html`<progress
       max="1"
-      aria-label="Progress of this file"
+      aria-label=${t("progress-file")}
       .value=${fraction ?? 0}
       ?hidden=${state !== "running"}
     ></progress>
-    <p class="quiet">${state === "running" ? what || "Starting" : "Waits for other exports"}</p>`;
+    <p class="quiet">${state === "running" ? stepName(what) : t("export-waits")}</p>`;
 
 const details = (/** @type {ExportView} */ { made, kept, of_this_map }) =>
   made
     ? html`<p class="quiet">
-          ${made.approval}${of_this_map ? nothing : " · of an earlier map"}${
-            kept ? nothing : " · the file was removed: order it again"
-          }
+          ${[
+            approvalWords({ text: made.approval }),
+            of_this_map ? "" : t("export-earlier"),
+            kept ? "" : t("export-removed"),
+          ]
+            .filter(Boolean)
+            .join(" · ")}
         </p>
         <details>
-          <summary>Hash and version</summary>
+          <summary>${t("hash-and-version")}</summary>
           <dl class="hashes">
-            <dt>File</dt>
+            <dt>${t("file")}</dt>
             <dd>${made.name}</dd>
             <dt>SHA-256</dt>
             <dd><code>${made.sha256}</code></dd>

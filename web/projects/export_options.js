@@ -1,5 +1,7 @@
 // What is chosen of an export, as the server takes it. No DOM, no network.
 
+import { asWritten, t, wordOf } from "../shared/texts.js";
+
 /**
  * @import {ExportChoices, ExportKind, ExportOptions, NewExport} from "../shared/http_types"
  * @typedef {object} Chosen what the fields hold
@@ -48,26 +50,26 @@ export function orderOf(chosen, kind) {
   if (takes("all_points") && chosen.points === "all") options.all_points = true;
   if (takes("classes") && chosen.points === "some") options.classes = someClasses(chosen.classes);
   if (takes("box_m") && chosen.box.some(Boolean)) options.box_m = boxOf(chosen.box);
-  if (takes("thin_m") && chosen.thin) options.thin_m = number(chosen.thin, "Thin out") / 1000;
-  if (takes("pixel_m")) options.pixel_m = number(chosen.pixel, "Pixel") / 1000;
-  if (takes("cell_m")) options.cell_m = number(chosen.cell, "Cell");
+  if (takes("thin_m") && chosen.thin)
+    options.thin_m = number(chosen.thin, t("thin-out-brief")) / 1000;
+  if (takes("pixel_m")) options.pixel_m = number(chosen.pixel, t("pixel")) / 1000;
+  if (takes("cell_m")) options.cell_m = number(chosen.cell, t("cell"));
   return { file: kind.name, options };
 }
 
 function someClasses(/** @type {number[]} */ classes) {
-  if (!classes.length) throw new Error("Choose at least one class.");
+  if (!classes.length) throw new Error(t("classes-choose"));
   return [...classes].sort((a, b) => a - b);
 }
 
 function boxOf(/** @type {string[]} */ texts) {
-  const box = texts.map((text) => number(text, "Box"));
+  const box = texts.map((text) => number(text, t("box")));
   return /** @type {[number, number, number, number, number, number]} */ (box);
 }
 
 function number(/** @type {string} */ text, /** @type {string} */ field) {
   const value = Number(text.trim().replace(",", "."));
-  if (!text.trim() || !Number.isFinite(value))
-    throw new Error(`${field}: expected a number, got “${text}”.`);
+  if (!text.trim() || !Number.isFinite(value)) throw new Error(t("not-a-number", { field, text }));
   return value;
 }
 
@@ -86,15 +88,18 @@ export function optionWords(
   /** @type {ExportChoices["classes"]} */ known,
 ) {
   const title = (/** @type {number} */ code) =>
-    known.find((one) => one.code === code)?.title ?? `class ${code}`;
+    wordOf(
+      "class",
+      known.find((one) => one.code === code)?.title ?? t("class-number", { code: String(code) }),
+    );
   return [
     crs,
-    storey && `storey ${storey}`,
-    box_m && `box ${box_m.map((one) => one.toString()).join(", ")}`,
-    all_points && "all points",
+    storey && t("option-storey", { storey }),
+    box_m && t("option-box", { corners: box_m.map(asWritten).join(t("list-gap")) }),
+    all_points && t("option-all"),
     classes.length > 0 && classes.map(title).join(", "),
-    thin_m > 0 && `one point each ${+(thin_m * 1000).toFixed(3)} mm`,
-    raw && "as measured",
-    draft && "draft",
+    thin_m > 0 && t("option-thin", { mm: asWritten(+(thin_m * 1000).toFixed(3)) }),
+    raw && t("option-raw"),
+    draft && t("option-draft"),
   ].filter(Boolean);
 }

@@ -21,7 +21,8 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
-import { bytes, count, shareText } from "../shared/format.js";
+import { bytes, shareText } from "../shared/format.js";
+import { t, wordOf } from "../shared/texts.js";
 import { exportList } from "./export_list.js";
 import { orderOf, usual } from "./export_options.js";
 
@@ -31,8 +32,7 @@ import { orderOf, usual } from "./export_options.js";
  */
 
 const ESTIMATE_AFTER_MS = 500;
-const CORNERS = ["from x", "y", "z", "to x", "y", "z"];
-const THIN_OUT = "Thin out: one point each … mm";
+const CORNERS = [t("box-from-x"), "y", "z", t("box-to-x"), "y", "z"];
 
 export class ExportPanel extends HTMLElement {
   #chosen = usual();
@@ -94,10 +94,10 @@ export class ExportPanel extends HTMLElement {
       html`${
           this.#choices && this.#kind
             ? this.#form(this.#choices, this.#kind)
-            : html`<p class="quiet">Looking at the map…</p>`
+            : html`<p class="quiet">${t("export-looking")}</p>`
         }
         ${messagePlace()}
-        <h3>What was exported</h3>
+        <h3>${t("export-list")}</h3>
         ${exportList(idHere(), this.#rows, known, {
           cancel: (row) => this.#act(() => cancelExport(idHere(), row.id)),
           remove: (row) => this.#act(() => removeExport(idHere(), row.id)),
@@ -114,14 +114,16 @@ export class ExportPanel extends HTMLElement {
     const takes = (/** @type {string} */ name) => kind.takes.includes(name);
     const groups = [...new Set(choices.kinds.map((one) => one.group))];
     const option = (/** @type {ExportKind} */ { name, title, programs }) =>
-      html`<option value=${name} ?selected=${name === kind.name}>${title}: ${programs}</option>`;
+      html`<option value=${name} ?selected=${name === kind.name}>
+        ${wordOf("export", title)}: ${wordOf("program", programs)}
+      </option>`;
     return html`<form @input=${this.#change} @submit=${this.#submit}>
       <label>
-        <span>File</span>
+        <span>${t("file")}</span>
         <select name="file">
           ${groups.map(
             (group) =>
-              html`<optgroup label=${group}>
+              html`<optgroup label=${wordOf("export", group)}>
                 ${choices.kinds.filter((one) => one.group === group).map(option)}
               </optgroup>`,
           )}
@@ -129,12 +131,12 @@ export class ExportPanel extends HTMLElement {
       </label>
       ${takes("classes") ? this.#points(choices, takes("all_points")) : nothing}
       ${takes("storey") && choices.storeys.length ? this.#storey(choices, kind) : nothing}
-      ${takes("thin_m") ? this.#number("thin", THIN_OUT, "all points") : nothing}
-      ${takes("pixel_m") ? this.#number("pixel", "Pixel, mm", "") : nothing}
-      ${takes("cell_m") ? this.#number("cell", "Cell, m", "") : nothing}
+      ${takes("thin_m") ? this.#number("thin", t("thin-out"), t("thin-all")) : nothing}
+      ${takes("pixel_m") ? this.#number("pixel", t("pixel-mm"), "") : nothing}
+      ${takes("cell_m") ? this.#number("cell", t("cell-m"), "") : nothing}
       ${this.#more(choices, takes)}
       <p class="estimate" role="status">${this.#estimate}</p>
-      <button class="primary">Make file</button>
+      <button class="primary">${t("make-file")}</button>
     </form>`;
   }
 
@@ -147,18 +149,17 @@ export class ExportPanel extends HTMLElement {
     const option = (/** @type {Chosen["points"]} */ value, /** @type {string} */ label) =>
       html`<option value=${value} ?selected=${value === points}>${label}</option>`;
     return html`<label>
-        <span>Points</span>
+        <span>${t("points")}</span>
         <select name="points">
-          ${option("map", "those of the map")}
-          ${mayAll ? option("all", "all: also noise, the carrier, what moves") : nothing}
-          ${option("some", "some classes…")}
+          ${option("map", t("points-map"))} ${mayAll ? option("all", t("points-all")) : nothing}
+          ${option("some", t("points-some"))}
         </select>
       </label>
       ${
         points !== "some"
           ? nothing
           : html`<fieldset class="classes">
-              <legend>Classes</legend>
+              <legend>${t("classes")}</legend>
               ${classes
                 .filter((one) => mayAll || one.delivered)
                 .map(
@@ -170,7 +171,7 @@ export class ExportPanel extends HTMLElement {
                         value=${code}
                         .checked=${chosen.includes(code)}
                       />
-                      <span>${title}, ${shareText(percent)}</span>
+                      <span>${wordOf("class", title)}, ${shareText(percent)}</span>
                     </label>`,
                 )}
             </fieldset>`
@@ -182,15 +183,15 @@ export class ExportPanel extends HTMLElement {
    * @param {ExportKind} kind
    */
   #storey({ storeys }, kind) {
-    const all = kind.takes.includes("pixel_m") ? "0" : "all";
+    const all = kind.takes.includes("pixel_m") ? "0" : t("storeys-all");
     return html`<label>
-      <span>Storey</span>
+      <span>${t("storey")}</span>
       <select name="storey">
         <option value="">${all}</option>
         ${storeys.map(
           ({ name, floor_m }) =>
             html`<option value=${name} ?selected=${name === this.#chosen.storey}>
-              ${name}: floor at ${floor_m.toFixed(2)} m
+              ${t("storey-at", { name, m: floor_m })}
             </option>`,
         )}
       </select>
@@ -227,14 +228,14 @@ export class ExportPanel extends HTMLElement {
       </label>`;
     if (!["crs", "box_m", "raw", "draft"].some(takes)) return nothing;
     return html`<details>
-      <summary>Coordinates, box and more</summary>
+      <summary>${t("export-more")}</summary>
       ${
         takes("crs")
           ? html`<label>
-              <span>CRS</span>
+              <span>${t("crs")}</span>
               <input
                 name="crs"
-                placeholder=${crs ? `${crs}, that of the map` : "local frame of the map"}
+                placeholder=${crs ? t("crs-of-map", { crs }) : t("crs-local")}
                 autocomplete="off"
                 maxlength="100"
                 .value=${this.#chosen.crs}
@@ -245,7 +246,7 @@ export class ExportPanel extends HTMLElement {
       ${
         takes("box_m")
           ? html`<fieldset class="box">
-              <legend>Only a box, in the coordinates of the file, m</legend>
+              <legend>${t("box-only")}</legend>
               ${CORNERS.map(
                 (label, k) =>
                   html`<label>
@@ -253,7 +254,7 @@ export class ExportPanel extends HTMLElement {
                     <input
                       name="box"
                       data-corner=${k}
-                      aria-label=${`Box ${k < 3 ? "from" : "to"} ${"xyz"[k % 3]}`}
+                      aria-label=${t(k < 3 ? "box-from" : "box-to", { axis: "xyz"[k % 3] ?? "" })}
                       inputmode="decimal"
                       autocomplete="off"
                       .value=${this.#chosen.box[k]}
@@ -263,8 +264,8 @@ export class ExportPanel extends HTMLElement {
             </fieldset>`
           : nothing
       }
-      ${takes("raw") ? check("raw", "Points as measured, not on fitted surfaces") : nothing}
-      ${takes("draft") ? check("draft", "As a draft, without the approval") : nothing}
+      ${takes("raw") ? check("raw", t("export-raw")) : nothing}
+      ${takes("draft") ? check("draft", t("export-draft")) : nothing}
     </details>`;
   }
 
@@ -300,12 +301,11 @@ export class ExportPanel extends HTMLElement {
     try {
       const found = await estimateExport(idHere(), orderOf(this.#chosen, kind));
       if (asked === this.#asked) say(this.#message(), "");
-      const points = found.points ? [`about ${count(found.points)} points`] : [];
-      const size = found.bytes
-        ? [`${found.is_most ? "at most" : "about"} ${bytes(found.bytes)}`]
-        : [];
+      const points = found.points ? [t("estimate-points", { points: found.points })] : [];
+      const most = found.is_most ? "estimate-most" : "estimate-size";
+      const size = found.bytes ? [t(most, { size: bytes(found.bytes) })] : [];
       const none = kind.point_bytes && !found.points;
-      estimate = none ? "no point of the map is chosen" : [...points, ...size].join(", ");
+      estimate = none ? t("estimate-none") : [...points, ...size].join(", ");
     } catch (error) {
       if (asked === this.#asked) showError(this.#message(), error);
     }

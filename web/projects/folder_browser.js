@@ -3,6 +3,7 @@
 import { browse } from "../shared/api.js";
 import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import { bytes } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 
 /** @import {FolderEntry} from "../shared/http_types" */
 
@@ -34,10 +35,10 @@ export class FolderBrowser extends HTMLElement {
     if (!entries) return;
     const up = path.split("/").slice(0, -1).join("/");
     render(
-      html`<p class="path">${path || "Folders of this server"}</p>
-        ${path ? row("↩ All folders", () => this.#open("")) : nothing}
-        ${path ? row("Use this folder", () => this.#pick(path)) : nothing}
-        ${up ? row("↑ Up", () => this.#open(up)) : nothing}
+      html`<p class="path">${path || t("folders")}</p>
+        ${path ? row(`↩ ${t("folders-all")}`, () => this.#open("")) : nothing}
+        ${path ? row(t("folder-use"), () => this.#pick(path)) : nothing}
+        ${up ? row(`↑ ${t("folder-up")}`, () => this.#open(up)) : nothing}
         ${entries.map((entry) => this.#entry(entry))}`,
       list,
     );

@@ -33,6 +33,7 @@ import "./new_job.js";
 import { organize, spaceText } from "./organize.js";
 import { ORDERS, chosen, searchOf, tagCounts, twinsOf, wantedIn } from "./project_list.js";
 import "../shared/page_head.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Deleted, JobView, ProjectCard, ProjectSpace} from "../shared/http_types"
@@ -78,11 +79,13 @@ function card(id, project) {
       ${project && project.name !== id ? html`<p class="quiet">${id}</p>` : nothing}
       <p class="quiet">${factsOf(project, view)}</p>
       ${project ? placeOf(project) : nothing}
-      ${project?.problem ? html`<p class="error">Damaged: ${project.problem}</p>` : nothing}
+      ${project?.problem ? html`<p class="error">${damageOf(project)}</p>` : nothing}
     </div>
     ${open ? html`<job-status .view=${view}></job-status>` : nothing}
   </li>`;
 }
+
+const damageOf = (/** @type {ProjectCard} */ { problem }) => t("damaged", { problem });
 
 /** Tags, archive, space and other projects of the same recording. */
 function placeOf(/** @type {ProjectCard} */ project) {
@@ -93,7 +96,7 @@ function placeOf(/** @type {ProjectCard} */ project) {
   return html`${
     tags.length || archived
       ? html`<p class="tags">
-          ${archived ? html`<span class="tag">Archived</span>` : nothing}
+          ${archived ? html`<span class="tag">${t("archived")}</span>` : nothing}
           ${tags.map(
             (tag) =>
               html`<button type="button" class="tag" @click=${() => show(`tag:${tag}`)}>
@@ -103,13 +106,17 @@ function placeOf(/** @type {ProjectCard} */ project) {
         </p>`
       : nothing
   }
-  ${twins ? html`<p class="quiet">Same recording as ${others}</p>` : nothing}
+  ${twins ? html`<p class="quiet">${t("same-recording", { others })}</p>` : nothing}
   ${
     state.processes
       ? html`<p class="organizing">
           <span class="quiet">${space ? spaceText(space) : nothing}</span>
-          <button type="button" aria-label="Organize ${name}" @click=${() => ask(project)}>
-            Organize
+          <button
+            type="button"
+            aria-label=${t("organize-of", { name })}
+            @click=${() => ask(project)}
+          >
+            ${t("organize")}
           </button>
         </p>`
       : nothing
@@ -130,7 +137,7 @@ const thumbnail = (/** @type {ProjectCard | undefined} */ project) =>
         width="320"
         height="180"
       />`
-    : html`<div class="no-thumbnail" aria-hidden="true">No map yet</div>`;
+    : html`<div class="no-thumbnail" aria-hidden="true">${t("no-map-yet")}</div>`;
 
 /**
  * In one line what is known of a project, or of the job that makes it.
@@ -165,7 +172,7 @@ function draw() {
   byId("empty").hidden = projects.length + waiting.length > 0;
   byId("none").hidden = cards.length > 0 || !projects.length;
   byId("more").hidden = shown.length === found.length;
-  byId("more").textContent = `Show more: ${found.length - shown.length} are left`;
+  byId("more").textContent = t("show-more", { count: String(found.length - shown.length) });
   drawTools();
 }
 
@@ -177,10 +184,10 @@ function drawTools() {
   byId("tools").hidden = projects.length <= MANY && !asked;
   /** @type {Array<[string, string]>} */
   const choices = [
-    ["", `All (${projects.length - archived})`],
+    ["", t("show-all", { count: String(projects.length - archived) })],
     ...tags.map(([tag, n]) => /** @type {[string, string]} */ ([`tag:${tag}`, `${tag} (${n})`])),
-    ["twins", `Same recording twice (${twins.size})`],
-    ["archived", `Archived (${archived})`],
+    ["twins", t("show-twins", { count: String(twins.size) })],
+    ["archived", t("show-archived", { count: String(archived) })],
   ];
   if (!choices.some(([value]) => value === wanted.show))
     choices.push([wanted.show, wanted.show.replace(/^tag:/, "")]);
@@ -251,18 +258,22 @@ async function showTrash() {
   const row = (/** @type {Deleted} */ { id, kind, project, goes }) =>
     html`<li>
       <div>
-        <strong>${kind === "recording" ? `Recording ${project}` : project}</strong
-        ><small> is deleted permanently on ${when(goes)}</small>
+        <strong>${kind === "recording" ? t("trash-recording", { project }) : project}</strong
+        ><small> ${t("trash-goes", { when: when(goes) })}</small>
       </div>
-      <button type="button" aria-label="Restore ${project}" @click=${act(() => restoreProject(id))}>
-        Restore
+      <button
+        type="button"
+        aria-label=${t("restore-of", { project })}
+        @click=${act(() => restoreProject(id))}
+      >
+        ${t("restore")}
       </button>
       <button
         type="button"
-        aria-label="Delete ${project} permanently"
+        aria-label=${t("delete-now-of", { project })}
         @click=${act(() => removeProject(id))}
       >
-        Delete now
+        ${t("delete-now")}
       </button>
     </li>`;
   byId("trash").hidden = deleted.length === 0;

@@ -4,6 +4,8 @@ import { cancelJob, readCurrentUser, retryJob } from "../shared/api.js";
 import { badge } from "../shared/badge.js";
 import { attempt, html, messagePlace, nothing, remedyLink, render, within } from "../shared/dom.js";
 import { runProgressText, progressText } from "../shared/format.js";
+import { t } from "../shared/texts.js";
+import { noteText, stepText } from "./steps.js";
 
 /** @import {JobView} from "../shared/http_types" */
 
@@ -31,15 +33,15 @@ export class JobStatus extends HTMLElement {
     if (!view) return;
     const { job, status } = view;
     const running = job.state === "running";
-    const text = running ? runProgressText(view) : job.note;
+    const text = running ? runProgressText(view) : noteText(job.note);
     const part = running && status.what ? progressText(view) : "";
     render(
       html`<div class="job-line">
-          ${badge(job.state)}${part ? html`<strong>${status.what}</strong>` : nothing}
+          ${badge(job.state)}${part ? html`<strong>${stepText(status.what)}</strong>` : nothing}
         </div>
         <progress
           max="1"
-          aria-label="Progress of the whole run"
+          aria-label=${t("progress-whole")}
           .value=${view.run_progress}
           ?hidden=${!running}
         ></progress>
@@ -60,9 +62,9 @@ export class JobStatus extends HTMLElement {
     const open = job.state === "queued" || job.state === "running";
     const tools = document.querySelector("project-tools"); // on its own page
     return [
-      open ? button("Cancel", () => cancelJob(job.id)) : nothing,
-      resumable ? button("Resume", () => retryJob(job.id)) : nothing,
-      !open && tools ? button("Other settings…", () => tools.runAgain()) : nothing,
+      open ? button(t("cancel"), () => cancelJob(job.id)) : nothing,
+      resumable ? button(t("resume-job"), () => retryJob(job.id)) : nothing,
+      !open && tools ? button(t("other-settings"), () => tools.runAgain()) : nothing,
       remedy ? remedyLink(remedy) : nothing,
     ];
   }

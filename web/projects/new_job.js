@@ -14,6 +14,7 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
+import { hasText, t } from "../shared/texts.js";
 import { FolderBrowser } from "./folder_browser.js";
 import { RecordingLook } from "./recording_summary.js";
 import { SettingEditor } from "./setting_editor.js";
@@ -30,10 +31,6 @@ import "./upload_box.js";
 
 /** @type {Suggested[]} */
 const SUGGESTED = ["project", "preset", "rig", "imu", "gnss"];
-const REPEATS =
-  "The same name runs again in this project, another name makes a new one. " +
-  "Finished stages with unchanged inputs are reused.";
-
 /** The name of a file or folder without its ending. */
 const titleOf = (/** @type {string} */ path) =>
   (path.split("/").at(-1) ?? "").replace(/\.[A-Za-z0-9]+$/, "").slice(0, 90);
@@ -54,8 +51,16 @@ const field = (text, control, hint = nothing) =>
  * @returns {[string, string]}
  */
 function rigOption({ id, path, shipped, version }) {
-  return [path, shipped ? id : `${id}, version ${version}`];
+  return [path, shipped ? id : t("rig-version", { id, version: String(version) })];
 }
+
+/**
+ * What a preset is for.
+ * @param {string} preset
+ * @param {Record<string, string>} texts of the server
+ */
+const presetText = (preset, texts) =>
+  hasText(`preset-${preset}`) ? t(`preset-${preset}`) : texts[preset];
 
 export class NewJob extends HTMLElement {
   #state = {
@@ -100,7 +105,7 @@ export class NewJob extends HTMLElement {
       html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#submit(event)}>
         ${again ? nothing : this.#upload()}
         ${field(
-          again ? "Recording" : "Or a recording on the server",
+          again ? t("job-recording") : t("job-or-recording"),
           html`<input
             name="recording"
             autocomplete="off"
@@ -110,31 +115,31 @@ export class NewJob extends HTMLElement {
             @input=${type}
             @change=${() => this.#look()}
           />`,
-          "File or folder: pcap, bag, mcap, frames",
+          t("job-recording-hint"),
         )}
-        <button type="button" @click=${browse}>Browse…</button>
+        <button type="button" @click=${browse}>${t("browse")}</button>
         <folder-browser @pick=${pick}></folder-browser>
         <recording-look @pick=${pick} @rig=${() => this.#awaitMounts()}></recording-look>
-        ${field("Project name", this.#text("project", true), again ? REPEATS : nothing)}
+        ${field(t("job-name"), this.#text("project", true), again ? t("job-repeats") : nothing)}
         ${field(
-          "Preset",
+          t("job-preset"),
           this.#select(
             "preset",
             presets.map((name) => [name, name]),
           ),
-          html`<span>${presetTexts[values.preset]}</span>`,
+          html`<span>${presetText(values.preset, presetTexts)}</span>`,
         )}
-        ${field("Rig", this.#select("rig", [["", "Detect from the recording"], ...rigs]))}
+        ${field(t("figure-rig"), this.#select("rig", [["", t("rig-detect")], ...rigs]))}
         <details>
-          <summary>IMU and GNSS files</summary>
-          ${field("IMU, CSV", this.#text("imu"), "Empty: from the recording")}
-          ${field("GNSS: CSV, .pos, UBX …", this.#text("gnss"), "Empty: from the recording")}
+          <summary>${t("job-samples")}</summary>
+          ${field(t("job-imu"), this.#text("imu"), t("job-from-recording"))}
+          ${field(t("job-gnss"), this.#text("gnss"), t("job-from-recording"))}
         </details>
         <details class="settings" @toggle=${() => this.#showSettings()}>
-          <summary>All settings</summary>
+          <summary>${t("job-settings")}</summary>
           <setting-editor></setting-editor>
         </details>
-        <button class="primary" ?disabled=${busy !== ""}>${busy || "Start"}</button>
+        <button class="primary" ?disabled=${busy !== ""}>${busy || t("job-start")}</button>
         ${messagePlace()}
       </form>`,
       this,
@@ -309,13 +314,13 @@ export class NewJob extends HTMLElement {
   async #submit(/** @type {SubmitEvent} */ event) {
     event.preventDefault();
     say(this.#message, "");
-    this.#doing("Checking the recording…");
+    this.#doing(t("job-checking"));
     const readable = await this.#isReadable();
     if (!readable) {
-      say(this.#message, "This recording cannot be read, see above: nothing was started");
+      say(this.#message, t("job-unreadable"));
       within(this, "[name=recording]").focus();
     } else {
-      this.#doing("Starting…");
+      this.#doing(t("job-starting"));
       const added = await attempt(this.#message, () => this.#add(this.#job()));
       if (added) location.assign(projectUrl(added.job.project));
     }
@@ -350,8 +355,7 @@ export class NewJob extends HTMLElement {
       if (Object.keys(problems).length) {
         this.#settings.open = true;
         await this.#editor.show(this.#state.values.preset);
-        if (this.#editor.complain(problems))
-          throw new Error("Some settings are invalid, see above");
+        if (this.#editor.complain(problems)) throw new Error(t("job-invalid"));
       }
       throw error;
     }

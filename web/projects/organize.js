@@ -4,20 +4,21 @@ import { changeProject, freeSpace } from "../shared/api.js";
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { attempt, fields, html, messagePlace, nothing, within } from "../shared/dom.js";
 import { bytes } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 
 /** @import {Freeable, ProjectCard, ProjectSpace} from "../shared/http_types" */
 
 /** @type {Record<Freeable, string>} */
 const FREEABLE = {
-  earlier: "Results of earlier runs",
-  frames: "Points as recorded: no new decisions until it was processed again",
-  map: "Tiles of the map: no viewer, slices and exports until it was processed again",
+  earlier: t("free-earlier"),
+  frames: t("free-frames"),
+  map: t("free-map"),
 };
 
 /** Size, and what of it can be freed, in one line. */
 export function spaceText(/** @type {ProjectSpace} */ { bytes: size, freeable }) {
   const free = Object.values(freeable).reduce((sum, one) => sum + one, 0);
-  return free ? `${bytes(size)}, ${bytes(free)} can be freed` : bytes(size);
+  return free ? t("space", { size: bytes(size), free: bytes(free) }) : bytes(size);
 }
 
 /**
@@ -52,10 +53,10 @@ export function organize(project, space, tags, done) {
       ><input type="checkbox" name=${name} /><span>${FREEABLE[name]}: ${bytes(size)}</span></label
     >`;
   const dialog = openDialog(
-    `Organize ${project.name}`,
+    t("organize-of", { name: project.name }),
     html`<form class="organize" @submit=${save}>
       <label
-        ><span>Tags, with commas between</span
+        ><span>${t("tags")}</span
         ><input
           name="tags"
           .value=${project.tags.join(", ")}
@@ -66,19 +67,19 @@ export function organize(project, space, tags, done) {
       <datalist id="all-tags">${tags.map((tag) => html`<option value=${tag}></option>`)}</datalist>
       <label class="check"
         ><input type="checkbox" name="archived" .checked=${project.archived} /><span
-          >Archived: not in the list at first; nothing is moved or deleted</span
+          >${t("archive-it")}</span
         ></label
       >
       ${
         choices.length
           ? html`<fieldset>
-              <legend>Free space; processing the recording again makes it again</legend>
+              <legend>${t("free-space")}</legend>
               ${choices.map(free)}
             </fieldset>`
           : nothing
       }
       ${messagePlace()}
-      <div class="buttons">${closeButton()}<button class="primary">Save</button></div>
+      <div class="buttons">${closeButton()}<button class="primary">${t("save")}</button></div>
     </form>`,
   );
 }

@@ -34,18 +34,24 @@ import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
 import "./export_panel.js";
 import { FindingList } from "../shared/finding_list.js";
+import { t, wordOf } from "../shared/texts.js";
 import { factsIn, firstText } from "../shared/verdict.js";
 import "../shared/page_head.js";
 import { openShare } from "../shared/share.js";
 import "./project_storage.js";
 import "./project_tools.js";
 import "./rig_section.js";
+import { stageText } from "./steps.js";
 
 /** @import {JobView, ProjectView, ResultFile} from "../shared/http_types" */
 
 const COMPARED_AGAIN_MS = 3000;
 /** @type {Record<string, string>} */
-const STAGE_WORDS = { done: "✓ Done", reused: "✓ Reused", running: "▶ Running" };
+const STAGE_WORDS = {
+  done: `✓ ${t("stage-is-done")}`,
+  reused: `✓ ${t("stage-is-reused")}`,
+  running: `▶ ${t("state-running")}`,
+};
 
 /** What the page shows. */
 const state = {
@@ -87,15 +93,20 @@ function draw() {
 /** The delivered points fill a page of their own; beside this text is the graph. */
 const mapLink = (/** @type {string} */ id) =>
   html`<div class="buttons">
-    <a class="button" href=${mapUrl(id)}>Open the map</a>${
+    <a class="button" href=${mapUrl(id)}>${t("open-map")}</a>${
       state.mayShare
-        ? html`<button type="button" @click=${() => openShare(id)}>Share…</button>`
+        ? html`<button type="button" @click=${() => openShare(id)}>${t("share")}</button>`
         : nothing
     }
   </div>`;
 
 const factsOf = (/** @type {ProjectView} */ { preset, rig, bytes: size, updated }) =>
-  [preset && `preset ${preset}`, rig && `rig ${rig}`, bytes(size), when(updated)]
+  [
+    preset && t("fact-preset", { preset }),
+    rig && t("fact-rig", { rig }),
+    bytes(size),
+    when(updated),
+  ]
     .filter(Boolean)
     .join(" · ");
 
@@ -145,8 +156,10 @@ function fileRow(/** @type {ResultFile} */ { name, label, bytes: size }) {
   const { id } = state;
   const link =
     name === "report.html"
-      ? html`<a href=${reportUrl(id)} target="_blank" rel="noopener">${label}</a>`
-      : html`<a href=${fileUrl(id, name)} download @click=${askFirst(filePlaces)}>${label}</a>`;
+      ? html`<a href=${reportUrl(id)} target="_blank" rel="noopener">${wordOf("result", label)}</a>`
+      : html`<a href=${fileUrl(id, name)} download @click=${askFirst(filePlaces)}
+          >${wordOf("result", label)}</a
+        >`;
   return html`<li>${link}<small>${name}, ${bytes(size)}</small></li>`;
 }
 
@@ -156,7 +169,7 @@ const reportPdfName = () => `${state.id}-report.pdf`;
 const reportRow = () =>
   html`<li>
     <a href=${reportPdfUrl(state.id)} download @click=${askOnce(filePlaces, reportPdfName)}
-      >Report for the client, PDF</a
+      >${t("report-pdf")}</a
     ><small>report.pdf</small>
   </li>`;
 
@@ -164,7 +177,7 @@ const reportRow = () =>
 const findingsRow = (/** @type {string} */ ending) =>
   html`<li>
     <a href=${findingsUrl(state.id, ending)} download
-      >Findings, ${ending === "csv" ? "CSV" : "GeoJSON"}</a
+      >${t("findings-as", { format: ending === "csv" ? "CSV" : "GeoJSON" })}</a
     ><small>findings.${ending}</small>
   </li>`;
 
@@ -190,7 +203,7 @@ function drawStages() {
     rows.map(
       ({ stage, state: word, time_s, memory }) =>
         html`<tr>
-          <th scope="row">${stage}</th>
+          <th scope="row">${stageText(stage)}</th>
           <td>${word}</td>
           <td class="number">${typeof time_s === "number" ? seconds(time_s) : nothing}</td>
           <td class="number">${memory ? bytes(memory) : nothing}</td>
@@ -206,7 +219,7 @@ function showMap() {
     view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
   if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
   const viewer = document.createElement("iframe");
-  Object.assign(viewer, { src: viewerUrl(id) + location.hash, title: "Map in 3-D" });
+  Object.assign(viewer, { src: viewerUrl(id) + location.hash, title: t("map-in-3d") });
   // Keys work without a click first: the viewer takes them unless another control has the focus.
   const takeKeys = () => document.activeElement === document.body && viewer.focus();
   viewer.addEventListener("load", takeKeys);
@@ -251,7 +264,7 @@ function drawMessage() {
   const { lacking, view, project } = state;
   const expected = lacking instanceof ApiError && lacking.status === 404 && view;
   if (lacking && !expected) showError(byId("message"), lacking);
-  else say(byId("message"), project?.problem ? `Damaged: ${project.problem}` : "");
+  else say(byId("message"), project?.problem ? t("damaged", { problem: project.problem }) : "");
 }
 
 function onJob(/** @type {JobView} */ fresh) {

@@ -1,5 +1,7 @@
 // Which projects the list shows, and in which order. No DOM, no network.
 
+import { language, t } from "../shared/texts.js";
+
 /**
  * @import {ProjectCard, ProjectSpace} from "../shared/http_types"
  * @typedef {"newest" | "name" | "verdict" | "length" | "size"} Order
@@ -11,16 +13,16 @@
 
 /** @type {Record<Order, string>} */
 export const ORDERS = {
-  newest: "Newest first",
-  name: "Name",
-  verdict: "Worst verdict first",
-  length: "Longest path first",
-  size: "Largest first",
+  newest: t("order-newest"),
+  name: t("order-name"),
+  verdict: t("order-verdict"),
+  length: t("order-length"),
+  size: t("order-size"),
 };
 
 /** @type {Record<string, number>} */
 const SEVERITY = { "do not use": 0, check: 1, "": 2, good: 3 };
-const names = new Intl.Collator("en", { numeric: true, sensitivity: "base" });
+const names = new Intl.Collator(language(), { numeric: true, sensitivity: "base" });
 
 /**
  * What the address of the page asks for.

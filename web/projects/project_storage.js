@@ -5,6 +5,8 @@ import { freeSpace, readCurrentUser, readProjectStorage } from "../shared/api.js
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import { bytes } from "../shared/format.js";
+import { asWritten, t, wordOf } from "../shared/texts.js";
+import { stageText } from "./steps.js";
 
 /** @import {Freeable, ProjectStorage, StoredPart} from "../shared/http_types" */
 
@@ -12,16 +14,16 @@ const DAY_S = 86_400;
 /** @type {Record<Freeable, {label: string, without: string}>} */
 const KINDS = {
   earlier: {
-    label: "Of earlier runs",
-    without: "Going back to their settings or decisions computes them again.",
+    label: t("stored-earlier"),
+    without: t("stored-earlier-without"),
   },
   frames: {
-    label: "Points as recorded",
-    without: "New decisions, and the views of pairs and multiframes, need them.",
+    label: t("stored-frames"),
+    without: t("stored-frames-without"),
   },
   map: {
-    label: "Tiles of the map",
-    without: "The map, slices and exports need them. The LAZ stays.",
+    label: t("stored-map"),
+    without: t("stored-map-without"),
   },
 };
 
@@ -67,7 +69,7 @@ export class ProjectStoragePanel extends HTMLElement {
   #draw() {
     render(
       html`<details @toggle=${() => this.reload()}>
-        <summary>Storage</summary>
+        <summary>${t("head-storage")}</summary>
         ${this.#found ? this.#parts(this.#found) : nothing}
         <p class="quiet" role="status">${this.#freed}</p>
         ${messagePlace()}
@@ -82,9 +84,9 @@ export class ProjectStoragePanel extends HTMLElement {
     return html`<table>
         <thead>
           <tr>
-            <th scope="col">What</th>
-            <th scope="col" class="number">Size</th>
-            <th scope="col">Can be freed</th>
+            <th scope="col">${t("stored-what")}</th>
+            <th scope="col" class="number">${t("size")}</th>
+            <th scope="col">${t("stored-free")}</th>
           </tr>
         </thead>
         <tbody>
@@ -92,14 +94,10 @@ export class ProjectStoragePanel extends HTMLElement {
         </tbody>
       </table>
       <p class="quiet">
-        ${
-          days
-            ? `What only earlier runs needed is freed ${days} days after the last run.`
-            : "Nothing is freed by itself: see recon4 serve --keep-earlier."
-        }
-        What an approval needs stays.
+        ${days ? t("stored-days", { days: asWritten(days) }) : t("stored-stays")}
+        ${t("stored-approved")}
       </p>
-      ${sizes.size ? this.#form(sizes) : html`<p class="quiet">Nothing can be freed.</p>`}`;
+      ${sizes.size ? this.#form(sizes) : html`<p class="quiet">${t("stored-nothing")}</p>`}`;
   }
 
   #form(/** @type {Map<Freeable, number>} */ sizes) {
@@ -112,7 +110,7 @@ export class ProjectStoragePanel extends HTMLElement {
     );
     return html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#ask(event)}>
       ${boxes}
-      <button>Free space…</button>
+      <button>${t("free-it")}</button>
     </form>`;
   }
 
@@ -122,7 +120,7 @@ export class ProjectStoragePanel extends HTMLElement {
     const chosen = new FormData(form);
     const what = /** @type {Freeable[]} */ (Object.keys(KINDS).filter((kind) => chosen.has(kind)));
     if (!what.length) {
-      this.#message.textContent = "Choose what is freed.";
+      this.#message.textContent = t("free-choose");
       return;
     }
     const sizes = freeable(this.#found?.parts ?? []);
@@ -132,13 +130,15 @@ export class ProjectStoragePanel extends HTMLElement {
       this.#free(what);
     };
     const dialog = openDialog(
-      `Free ${bytes(size)}?`,
+      t("free-ask", { size: bytes(size) }),
       html`<ul>
           ${what.map((kind) => html`<li>${KINDS[kind].label}. ${KINDS[kind].without}</li>`)}
         </ul>
-        <p>Running the project again makes it again. That needs the recording.</p>
+        <p>${t("free-again")}</p>
         <div class="buttons">
-          ${closeButton("Keep")}<button type="button" class="danger" @click=${go}>Free</button>
+          ${closeButton(t("keep"))}<button type="button" class="danger" @click=${go}>
+            ${t("free")}
+          </button>
         </div>`,
     );
   }
@@ -147,7 +147,7 @@ export class ProjectStoragePanel extends HTMLElement {
     const before = total(this.#found?.parts ?? []);
     const left = await attempt(this.#message, () => freeSpace(this.#id, what));
     if (!left) return;
-    this.#freed = `Freed: ${bytes(before - left.bytes)}.`;
+    this.#freed = t("freed", { size: bytes(before - left.bytes) });
     this.#draw();
     this.dispatchEvent(new CustomEvent("freed"));
   }
@@ -156,11 +156,17 @@ export class ProjectStoragePanel extends HTMLElement {
 const total = (/** @type {StoredPart[]} */ parts) =>
   parts.reduce((sum, { bytes: size }) => sum + size, 0);
 
+/** Why a part stays, which may name a version. */
+function whyText(/** @type {string} */ why) {
+  const version = why.match(/\d+/)?.[0] ?? "";
+  return version ? t("storing-approved", { version }) : wordOf("storing", why);
+}
+
 const partRow = (/** @type {StoredPart} */ { what, bytes: size, freeable: kind, why }) =>
   html`<tr>
-    <th scope="row">${what}</th>
+    <th scope="row">${stageText(what)}</th>
     <td class="number">${bytes(size)}</td>
-    <td>${kind ? KINDS[kind].label : why || "–"}</td>
+    <td>${kind ? KINDS[kind].label : whyText(why) || "–"}</td>
   </tr>`;
 
 customElements.define("project-storage", ProjectStoragePanel);

@@ -12,6 +12,7 @@ import {
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import "./new_job.js";
+import { t } from "../shared/texts.js";
 
 /** @import {RepeatedJob} from "./new_job.js" */
 
@@ -45,19 +46,21 @@ export class ProjectTools extends HTMLElement {
     if (!mayProcess) return;
     render(
       html`<details class="again" @toggle=${() => this.#form()}>
-          <summary>Run again, with other settings</summary>
+          <summary>${t("run-again")}</summary>
           ${again ? html`<new-job .again=${again}></new-job>` : nothing}
         </details>
         <details>
-          <summary>Rename or delete</summary>
+          <summary>${t("rename-or-delete")}</summary>
           <form @submit=${(/** @type {SubmitEvent} */ event) => this.#rename(event)}>
             <label
-              ><span>Name</span
+              ><span>${t("name")}</span
               ><input name="name" maxlength="100" required autocomplete="off" .value=${name}
             /></label>
             <div class="buttons">
-              <button>Rename</button
-              ><button type="button" @click=${() => this.#askToDelete()}>Delete…</button>
+              <button>${t("rename")}</button
+              ><button type="button" @click=${() => this.#askToDelete()}>
+                ${t("delete-open")}
+              </button>
             </div>
           </form>
         </details>
@@ -103,12 +106,12 @@ export class ProjectTools extends HTMLElement {
       if (await attempt(this.#message, () => deleteProject(this.#id))) location.assign(at("/"));
     };
     const dialog = openDialog(
-      `Delete ${this.#name.value || this.#id}?`,
-      html`<p>
-          It can be restored from the list of projects for a week. The recording is not deleted.
-        </p>
+      t("delete-ask", { name: this.#name.value || this.#id }),
+      html`<p>${t("delete-restorable")}</p>
         <div class="buttons">
-          ${closeButton("Keep")}<button type="button" class="danger" @click=${go}>Delete</button>
+          ${closeButton(t("keep"))}<button type="button" class="danger" @click=${go}>
+            ${t("delete")}
+          </button>
         </div>`,
     );
   }
@@ -129,9 +132,9 @@ export class JobLog extends HTMLElement {
     const { job, text } = this.#state;
     render(
       html`<details @toggle=${() => this.read()}>
-        <summary>Log</summary>
-        <pre tabindex="0" aria-label="Log">${text}</pre>
-        <a download href=${logUrl(job)}>Download the log</a>
+        <summary>${t("log")}</summary>
+        <pre tabindex="0" aria-label=${t("log")}>${text}</pre>
+        <a download href=${logUrl(job)}>${t("log-download")}</a>
       </details>`,
       this,
     );

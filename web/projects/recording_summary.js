@@ -3,6 +3,7 @@
 import { createRig, lookAt, rigUrl } from "../shared/api.js";
 import { asError, html, nothing, render, showError, within } from "../shared/dom.js";
 import { bytes, count, seconds } from "../shared/format.js";
+import { decimal, t, wordOf } from "../shared/texts.js";
 
 /** @import {RecordingSummary, SensorSummary} from "../shared/http_types" */
 
@@ -19,7 +20,7 @@ export class RecordingLook extends HTMLElement {
     const mine = (this.#asked += 1);
     this.hidden = !path;
     if (!path) return null;
-    render(html`<p class="quiet">Reading the recording…</p>`, this);
+    render(html`<p class="quiet">${t("recording-reading")}</p>`, this);
     try {
       const found = await lookAt(path);
       if (mine !== this.#asked) return null;
@@ -35,9 +36,7 @@ export class RecordingLook extends HTMLElement {
   #rigOffer(/** @type {RecordingSummary} */ found) {
     if (!found.first_rig) return nothing;
     return html`<p class="rig-offer">
-      <button type="button" @click=${() => this.#makeRig(found)}>
-        Make a rig of these sensors
-      </button>
+      <button type="button" @click=${() => this.#makeRig(found)}>${t("recording-make-rig")}</button>
       <span class="made"></span><span class="error"></span>
     </p>`;
   }
@@ -49,8 +48,9 @@ export class RecordingLook extends HTMLElement {
     try {
       const saved = await createRig({ id: id.slice(0, 64), toml, note: "made of a recording" });
       render(
-        html`Rig <a href=${rigUrl(saved.id)} target="_blank">${saved.id}</a> is made:
-          <strong>fill in the mounts</strong> on its page, then choose it below.`,
+        html`${t("figure-rig")}
+          <a href=${rigUrl(saved.id)} target="_blank">${saved.id}</a> ${t("recording-rig-made")}
+          <strong>${t("recording-mounts")}</strong> ${t("recording-choose")}`,
         place,
       );
       button.hidden = true;
@@ -76,7 +76,9 @@ export class RecordingLook extends HTMLElement {
         <div class="buttons">
           ${candidates.map(
             (path) =>
-              html`<button type="button" @click=${() => choose(path)}>Use ${label(path)}</button>`,
+              html`<button type="button" @click=${() => choose(path)}>
+                ${t("recording-use", { path: label(path) })}
+              </button>`,
           )}
         </div>`,
       this,
@@ -85,10 +87,16 @@ export class RecordingLook extends HTMLElement {
   }
 }
 
+/** A kind of recording; in parentheses it may name formats. */
+function kindText(/** @type {string} */ kind) {
+  const [, name = kind, formats = ""] = kind.match(/^(.*?)( \(.*\))?$/) ?? [];
+  return `${wordOf("recording-kind", name)}${formats}`;
+}
+
 function summary(/** @type {RecordingSummary} */ found) {
   const { kind, bytes: size, seconds: duration, warnings } = found;
-  const about = found.estimated ? "about " : "";
-  const facts = [kind, bytes(size), duration > 0 ? `${about}${seconds(duration)}` : ""];
+  const about = found.estimated ? t("recording-about") : "";
+  const facts = [kindText(kind), bytes(size), duration > 0 ? `${about}${seconds(duration)}` : ""];
   return html`<p><strong>${facts.filter(Boolean).join(" · ")}</strong></p>
     <dl class="found">
       ${rowsOf(found, about).map(
@@ -99,7 +107,7 @@ function summary(/** @type {RecordingSummary} */ found) {
     </dl>
     ${
       warnings.length
-        ? html`<p class="warn">▲ Warnings</p>
+        ? html`<p class="warn">▲ ${t("recording-warnings")}</p>
             <ul>
               ${warnings.map((text) => html`<li>${text}</li>`)}
             </ul>`
@@ -115,19 +123,21 @@ function summary(/** @type {RecordingSummary} */ found) {
  */
 function rowsOf({ sensors, samples, rig, imu, gnss, derived, missing }, about) {
   const sensor = (/** @type {SensorSummary} */ one) => {
-    const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)}/s`;
-    return `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`;
+    const rate = one.rate_hz === null ? "" : `, ${decimal(one.rate_hz, 1)}/s`;
+    const what = wordOf("content", one.content);
+    return `${one.model} (${one.label}): ${about}${count(one.count)} ${what}${rate}`;
   };
-  const beside = (/** @type {string} */ path) => `${path.split("/").at(-1)}, next to it`;
+  const beside = (/** @type {string} */ path) =>
+    t("recording-beside", { file: path.split("/").at(-1) ?? "" });
   /** @type {Array<[string, string[]]>} */
   const all = [
     ["LiDAR", sensors.map(sensor)],
-    ["Samples", samples],
-    ["Rig", rig ? [beside(rig)] : []],
+    [t("recording-samples"), samples],
+    [t("figure-rig"), rig ? [beside(rig)] : []],
     ["IMU", imu ? [beside(imu)] : []],
     ["GNSS", gnss ? [beside(gnss)] : []],
-    ["Derived", derived],
-    ["Missing", missing],
+    [t("recording-derived"), derived],
+    [t("recording-missing"), missing],
   ];
   return all.flatMap(([term, texts]) =>
     texts.map((text) => /** @type {[string, string]} */ ([term, text])),

@@ -12,6 +12,7 @@ import {
   removeUpload,
   sendBytes,
 } from "../shared/api.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {UploadView} from "../shared/http_types"
@@ -214,7 +215,7 @@ export class Sending extends EventTarget {
         const status = error instanceof ApiError ? error.status : NaN;
         const helps = [0, 409, 423, 429, 460, 502, 503, 504].includes(status);
         if (!helps || signal.aborted) throw error;
-        this.#tell("trying", `${messageOf(error)}; trying again in ${wait} s`);
+        this.#tell("trying", t("upload-again", { why: messageOf(error), seconds: String(wait) }));
         await pauseFor(wait, signal);
       }
     }
@@ -251,7 +252,7 @@ async function readBytes(blob, name) {
   try {
     return await blob.arrayBuffer();
   } catch {
-    throw new Error(`${name} cannot be read any more; select it again`);
+    throw new Error(t("upload-unreadable", { name }));
   }
 }
 

@@ -1,5 +1,7 @@
 // The audit of a rig as text. No DOM, no network.
 
+import { decimal, t, wordOf } from "../shared/texts.js";
+
 /** @import {CalibrationView, JobView, ParameterView} from "../shared/http_types" */
 
 /** @typedef {{factor: number, unit: string, digits: number}} Unit */
@@ -12,19 +14,19 @@ const UNITS = {
 };
 /** @type {Record<ParameterView["status"], {mark: string, word: string, className: string}>} */
 const STATUS = {
-  consistent: { mark: "✓", word: "agrees", className: "good" },
-  off: { mark: "✕", word: "differs", className: "bad" },
-  "not observable": { mark: "–", word: "not observable", className: "quiet" },
+  consistent: { mark: "✓", word: t("rig-agrees"), className: "good" },
+  off: { mark: "✕", word: t("rig-differs"), className: "bad" },
+  "not observable": { mark: "–", word: t("rig-not-observable"), className: "quiet" },
 };
 /** @type {Record<string, string>} */
-const NAMES = { imu: "IMU", gnss: "GNSS antenna" };
+const NAMES = { imu: t("rig-imu"), gnss: t("rig-gnss") };
 const MODE = "calibration.mode=";
 
 /** The rows of the table: texts, and the result as mark and word. */
 export const rowsOf = (/** @type {ParameterView[]} */ parameters) =>
   parameters.map(({ sensor, quantity, axis, unit, change, sd, status }) => ({
     sensor: NAMES[sensor] ?? sensor,
-    quantity: [quantity, axis].filter(Boolean).join(" "),
+    quantity: [wordOf("quantity", quantity), axis].filter(Boolean).join(" "),
     change: status === "not observable" && sd === null ? "–" : amount(change, sd, UNITS[unit]),
     ...STATUS[status],
   }));
@@ -37,8 +39,8 @@ export const rowsOf = (/** @type {ParameterView[]} */ parameters) =>
 function amount(change, sd, { factor, unit, digits }) {
   const value = change * factor;
   const sign = value < 0 ? "−" : "+";
-  const text = `${sign}${Math.abs(value).toFixed(digits)}`;
-  return sd === null ? text + unit : `${text} ± ${(sd * factor).toFixed(digits)}${unit}`;
+  const text = `${sign}${decimal(Math.abs(value), digits)}`;
+  return sd === null ? text + unit : `${text} ± ${decimal(sd * factor, digits)}${unit}`;
 }
 
 /** @type {Record<string, Unit>} */
@@ -59,7 +61,7 @@ export function beamRows(/** @type {ParameterView[]} */ beams) {
     const kind = quantity.replace("beam ", "");
     const unit = BEAM[kind];
     const known = sd !== null && status !== "not observable";
-    row[kind] = known && unit ? amount(change, sd, unit) : "not observable";
+    row[kind] = known && unit ? amount(change, sd, unit) : t("rig-not-observable");
   }
   return [...rows].map(([name, of]) => [name, ...Object.keys(BEAM).map((kind) => of[kind] ?? "–")]);
 }
@@ -68,11 +70,11 @@ export function beamRows(/** @type {ParameterView[]} */ beams) {
 export function outcomeOf(
   /** @type {Pick<CalibrationView, "parameters" | "applied">} */ { parameters, applied },
 ) {
-  if (applied) return { mark: "✓", word: "Calibrated rig used for this map", className: "good" };
-  if (!parameters.length) return { mark: "–", word: "Not compared", className: "quiet" };
+  if (applied) return { mark: "✓", word: t("rig-used"), className: "good" };
+  if (!parameters.length) return { mark: "–", word: t("rig-not-compared"), className: "quiet" };
   const off = parameters.some((one) => one.status === "off");
-  if (off) return { mark: "✕", word: "The rig file differs from the recording", className: "bad" };
-  return { mark: "✓", word: "The rig file agrees with the recording", className: "good" };
+  if (off) return { mark: "✕", word: t("rig-file-differs"), className: "bad" };
+  return { mark: "✓", word: t("rig-file-agrees"), className: "good" };
 }
 
 /**

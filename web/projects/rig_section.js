@@ -23,6 +23,7 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
+import { decimal, t } from "../shared/texts.js";
 import { calibrationSlices } from "./calibration_slices.js";
 import { beamRows, calibratingJob, outcomeOf, rowsOf } from "./rig_audit.js";
 
@@ -31,8 +32,8 @@ import { beamRows, calibratingJob, outcomeOf, rowsOf } from "./rig_audit.js";
  * @import {Content} from "../shared/dom.js"
  */
 
-const BEAM_HEADS = ["LiDAR and ring", "Range", "Elevation", "Azimuth"];
-const HEADS = ["Sensor", "Quantity", "Change ± σ", "Result"];
+const BEAM_HEADS = [t("rig-beam"), t("rig-range"), t("rig-elevation"), t("rig-azimuth")];
+const HEADS = [t("rig-sensor"), t("rig-quantity"), t("rig-change"), t("rig-result")];
 
 export class RigSection extends HTMLElement {
   #id = idHere();
@@ -42,7 +43,7 @@ export class RigSection extends HTMLElement {
   connectedCallback() {
     this.hidden = true;
     render(
-      html`<h2>Rig</h2>
+      html`<h2>${t("figure-rig")}</h2>
         <div></div>
         ${messagePlace()}`,
       this,
@@ -92,14 +93,14 @@ export class RigSection extends HTMLElement {
       ${
         off && !applied
           ? html`<button type="button" @click=${() => this.#calibrate()}>
-              Calibrate and map again
+              ${t("rig-calibrate")}
             </button>`
           : nothing
       }
       ${
         applied && !saved
           ? html`<button type="button" @click=${() => this.#ask(audit)}>
-              Save as a new rig version…
+              ${t("rig-save-open")}
             </button>`
           : nothing
       }
@@ -109,11 +110,7 @@ export class RigSection extends HTMLElement {
   async #calibrate() {
     const added = await attempt(this.#message, async () => {
       const job = calibratingJob(this.#id, await listJobsOf(this.#id));
-      if (!job)
-        throw new Error(
-          "This server made no map of this project: use “Run again, with other settings” below, " +
-            "with calibration.mode=auto",
-        );
+      if (!job) throw new Error(t("rig-no-job"));
       return addJob(job);
     });
     if (added) location.assign(projectUrl(this.#id));
@@ -131,16 +128,16 @@ export class RigSection extends HTMLElement {
       name.disabled = /** @type {HTMLElement} */ (name.closest("label")).hidden = into !== "";
     };
     const dialog = openDialog(
-      "Save the calibrated rig",
+      t("rig-save-title"),
       html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#save(event, dialog)}>
         <label
-          ><span>Save as</span
+          ><span>${t("rig-save-as")}</span
           ><select name="into" @change=${(/** @type {Event} */ e) => choose(targetOf(e).value)}>
-            ${own.map((id) => option(id, `A new version of ${id}`))} ${option("", "A new rig")}
+            ${own.map((id) => option(id, t("rig-new-version", { id })))} ${option("", t("rig-new"))}
           </select></label
         >
         <label
-          ><span>Name of the new rig</span
+          ><span>${t("rig-new-name")}</span
           ><input
             name="rig"
             value=${this.#id}
@@ -149,12 +146,13 @@ export class RigSection extends HTMLElement {
             autocomplete="off"
         /></label>
         <label
-          ><span>Note</span><input name="note" maxlength="500" autocomplete="off" /><small
-            >The changes and their standard deviations are stored with it.</small
+          ><span>${t("rig-note")}</span
+          ><input name="note" maxlength="500" autocomplete="off" /><small
+            >${t("rig-note-hint")}</small
           ></label
         >
         ${messagePlace()}
-        <div class="buttons">${closeButton()}<button class="primary">Save</button></div>
+        <div class="buttons">${closeButton()}<button class="primary">${t("save")}</button></div>
       </form>`,
     );
     choose(mine);
@@ -180,11 +178,13 @@ customElements.define("rig-section", RigSection);
 
 function rigLine(/** @type {CalibrationView} */ { rig, saved }) {
   const link = (/** @type {SavedRig} */ { id, version }) =>
-    html`<a href=${rigUrl(id)}>${version ? `${id}, version ${version}` : id}</a>`;
+    html`<a href=${rigUrl(id)}
+      >${version ? t("rig-version", { id, version: String(version) }) : id}</a
+    >`;
   if (!rig && !saved) return nothing;
   return html`<p class="quiet">
-    ${rig ? html`Rig of the recording: ${link(rig)}. ` : nothing}
-    ${saved ? html`The calibrated rig is saved as ${link(saved)}.` : nothing}
+    ${rig ? html`${t("rig-of-recording")} ${link(rig)}. ` : nothing}
+    ${saved ? html`${t("rig-saved-as")} ${link(saved)}.` : nothing}
   </p>`;
 }
 
@@ -198,31 +198,31 @@ function auditTable(/** @type {CalibrationView} */ { parameters }) {
         <td class="number">${change}</td>
         <td class=${className}>${mark} ${word}</td>`,
   );
-  const summary = `${rows.length} parameters compared`;
-  return folded({ summary, label: "Audit", open: off }, table(HEADS, cells));
+  const summary = t("rig-compared", { count: String(rows.length) });
+  return folded({ summary, label: t("rig-audit"), open: off }, table(HEADS, cells));
 }
 
 function beamTable(/** @type {CalibrationView} */ { beams }) {
   const rows = beamRows(beams);
-  const summary = `Corrections of ${rows.length} single beams`;
-  return folded({ summary, label: "Beams" }, table(BEAM_HEADS, rows.map(numbers)));
+  const summary = t("rig-corrections", { count: String(rows.length) });
+  return folded({ summary, label: t("rig-beams") }, table(BEAM_HEADS, rows.map(numbers)));
 }
 
 /** How well points agree before and after; nothing if that was not worked out. */
 function agreement(/** @type {CalibrationView} */ { before, after }) {
   if (!before || !after) return nothing;
   const text = (/** @type {number | null} */ value) =>
-    value === null ? "–" : `${(1e3 * value).toFixed(1)} mm`;
+    value === null ? "–" : `${decimal(1e3 * value, 1)} mm`;
   /** @type {Array<[string, number | null, number | null]>} */
   const rows = [
-    ["Distance of points from common planes", before.rms_m, after.rms_m],
-    ["One surface seen by two LiDARs", before.offset_m, after.offset_m],
+    [t("rig-distance"), before.rms_m, after.rms_m],
+    [t("rig-surface"), before.offset_m, after.offset_m],
   ];
   const known = rows.filter(([, first, last]) => first !== null || last !== null);
   return table(
-    ["", "Before", "After"],
+    ["", t("rig-before"), t("rig-after")],
     known.map(([name, first, last]) => numbers([name, text(first), text(last)])),
-    "Windows of the walk that were not used",
+    t("rig-windows"),
   );
 }
 

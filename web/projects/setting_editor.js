@@ -13,11 +13,16 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /** @import {GroupView, SettingView} from "../shared/http_types" */
 
 /** @type {Record<string, string>} */
-const TYPES = { int: "whole number", float: "number", text: "text" };
+const TYPES = {
+  int: t("setting-int"),
+  float: t("setting-float"),
+  text: t("setting-text"),
+};
 
 export class SettingEditor extends HTMLElement {
   #state = {
@@ -111,7 +116,7 @@ export class SettingEditor extends HTMLElement {
       change({ onlyChanged: targetOf(event).checked });
     render(
       html`<label
-          ><span>Find a setting</span
+          ><span>${t("setting-find")}</span
           ><input
             type="search"
             placeholder="voxel, odometry, GNSS…"
@@ -119,9 +124,13 @@ export class SettingEditor extends HTMLElement {
             @input=${search}
         /></label>
         <label class="check"
-          ><input type="checkbox" @change=${restrict} /><span>Only changed ones</span></label
+          ><input type="checkbox" @change=${restrict} /><span
+            >${t("setting-only-changed")}</span
+          ></label
         >
-        <p class="quiet" role="status">${changed ? `${changed} changed` : "None changed"}</p>
+        <p class="quiet" role="status">
+          ${changed ? t("setting-changed", { count: String(changed) }) : t("setting-unchanged")}
+        </p>
         <div class="groups">
           ${repeat(
             groups,
@@ -143,7 +152,7 @@ export class SettingEditor extends HTMLElement {
     const fits = settings.map((setting) => this.#fits(setting));
     return html`<details class="group" ?hidden=${!fits.includes(true)}>
       <summary>${name}</summary>
-      <p class="quiet">${text}</p>
+      <p class="quiet" lang="en">${text}</p>
       ${settings.map((setting, k) => this.#setting(setting, !fits[k]))}
     </details>`;
   }
@@ -169,8 +178,8 @@ export class SettingEditor extends HTMLElement {
     const problem = this.#state.problems[path] ?? "";
     const about = [
       TYPES[kind] ?? "",
-      `default ${String(usual) === "" ? "empty" : usual}`,
-      value !== usual ? `preset ${value}` : "",
+      t("setting-default", { value: String(usual) || t("setting-empty") }),
+      value !== usual ? t("fact-preset", { preset: String(value) }) : "",
     ];
     const id = `setting-${path}`;
     const changed = this.#textOf(setting) !== String(value);
@@ -178,7 +187,8 @@ export class SettingEditor extends HTMLElement {
       <label for=${id}><span>${name}${unit ? html`<small> ${unit}</small>` : nothing}</span></label>
       ${this.#input(setting, problem !== "")}
       <p class="hint" id="${id}-hint">
-        ${text} <span class="quiet">(${about.filter(Boolean).join(", ")})</span>
+        <span lang="en">${text}</span>
+        <span class="quiet">(${about.filter(Boolean).join(", ")})</span>
       </p>
       <p class="error" id="${id}-error">${problem}</p>
     </div>`;

@@ -15,7 +15,8 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
-import { bytes, count, seconds, when } from "../shared/format.js";
+import { bytes, seconds, when } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 import { ofDrop, ofInput } from "../slices/picking.js";
 import { Sending, sorted } from "./resumable_upload.js";
 
@@ -27,12 +28,12 @@ import { Sending, sorted } from "./resumable_upload.js";
 
 /** @type {Record<SendingState, string>} */
 const STATES = {
-  waiting: "Begins",
-  sending: "Sending",
-  trying: "Interrupted",
-  paused: "Paused",
-  failed: "Stopped",
-  done: "On the server",
+  waiting: t("upload-waiting"),
+  sending: t("upload-sending"),
+  trying: t("upload-trying"),
+  paused: t("upload-paused"),
+  failed: t("upload-failed"),
+  done: t("upload-done"),
   removed: "",
 };
 /** @type {SendingState[]} */
@@ -77,10 +78,10 @@ export class UploadBox extends HTMLElement {
           @dragleave=${leave}
           @drop=${drop}
         >
-          <p>Drop a file or folder here</p>
+          <p>${t("upload-drop")}</p>
           <div class="buttons">
-            <button type="button" @click=${pick(".one")}>File…</button
-            ><button type="button" @click=${pick(".folder")}>Folder…</button>
+            <button type="button" @click=${pick(".one")}>${t("upload-file")}</button
+            ><button type="button" @click=${pick(".folder")}>${t("upload-folder")}</button>
           </div>
         </div>
         <input class="one" type="file" hidden @change=${take} />
@@ -88,7 +89,7 @@ export class UploadBox extends HTMLElement {
         <div class="upload-now" ?hidden=${!sending || sending.state === "removed"}>
           ${sending ? this.#progress(sending) : nothing}
         </div>
-        <ul class="uploads" aria-label="Unfinished uploads" ?hidden=${open.length === 0}>
+        <ul class="uploads" aria-label=${t("uploads-unfinished")} ?hidden=${open.length === 0}>
           ${repeat(
             open,
             ({ id }) => id,
@@ -102,11 +103,11 @@ export class UploadBox extends HTMLElement {
 
   #progress(/** @type {Sending} */ sending) {
     const { state, name, files, sent, total } = sending;
-    const label = files.length > 1 ? `${name}, ${count(files.length)} files` : name;
+    const label = files.length > 1 ? t("upload-files", { name, count: files.length }) : name;
     return html`<p class="upload-title"><strong>${label}</strong> ${STATES[state]}</p>
       <progress
         max="1"
-        aria-label="Upload"
+        aria-label=${t("upload")}
         .value=${state === "done" || !total ? 1 : sent / total}
       ></progress>
       <p class="job-words" role="status"></p>
@@ -125,9 +126,9 @@ export class UploadBox extends HTMLElement {
           </button>`
         : nothing;
     return [
-      button("Pause", () => sending.pause(), ["sending", "trying"]),
-      button("Continue", () => sending.start(), ["paused", "failed"]),
-      button("Remove", () => sending.remove(), ["paused", "failed", "trying", "done"]),
+      button(t("upload-pause"), () => sending.pause(), ["sending", "trying"]),
+      button(t("upload-continue"), () => sending.start(), ["paused", "failed"]),
+      button(t("remove"), () => sending.remove(), ["paused", "failed", "trying", "done"]),
     ];
   }
 
@@ -149,8 +150,8 @@ export class UploadBox extends HTMLElement {
 
   #take(/** @type {Picked[]} */ picked) {
     const { name, files, leftOut } = sorted(picked);
-    say(this.#message, leftOut ? `${leftOut} hidden files are skipped` : "");
-    if (files.length === 0) return say(this.#message, "It contains no file");
+    say(this.#message, leftOut ? t("upload-hidden", { count: String(leftOut) }) : "");
+    if (files.length === 0) return say(this.#message, t("upload-empty"));
     this.#state.sending?.pause();
     const sending = new Sending({ name, files });
     this.#state.sending = sending;
@@ -185,17 +186,12 @@ export class UploadBox extends HTMLElement {
     const remove = async () => {
       if (await succeeds(this.#message, () => removeUpload(id))) this.#listOpen();
     };
-    const what = name.includes(".") ? "file" : "folder";
+    const again = name.includes(".") ? "upload-same-file" : "upload-same-folder";
+    const values = { received: bytes(received), total: bytes(total), until: when(expires) };
     return html`<li>
-      <div>
-        <strong>${name}</strong
-        ><small>
-          ${bytes(received)} of ${bytes(total)} received. Select the same ${what} again to continue,
-          until ${when(expires)}</small
-        >
-      </div>
-      <button type="button" aria-label="Remove the upload of ${name}" @click=${remove}>
-        Remove
+      <div><strong>${name}</strong><small> ${t(again, values)}</small></div>
+      <button type="button" aria-label=${t("upload-remove-of", { name })} @click=${remove}>
+        ${t("remove")}
       </button>
     </li>`;
   }
@@ -204,8 +200,9 @@ export class UploadBox extends HTMLElement {
 /** How much was sent, and how fast. */
 function figures(/** @type {Sending} */ { state, sent, total, rate, eta }) {
   if (state === "done") return bytes(total);
-  const parts = [`${bytes(sent)} of ${bytes(total)}`];
-  if (state === "sending" && eta !== null) parts.push(`${bytes(rate)}/s`, `${seconds(eta)} left`);
+  const parts = [t("upload-sent", { sent: bytes(sent), total: bytes(total) })];
+  if (state === "sending" && eta !== null)
+    parts.push(`${bytes(rate)}/s`, t("time-left", { time: seconds(eta) }));
   return parts.join(" · ");
 }
 

@@ -16,7 +16,7 @@ const LEVELS = {
 
 /** Mark, line and CSS class; nothing is marked as approved while its bytes are being compared. */
 export function approvalLine(
-  /** @type {Pick<ApprovalState, "kind" | "text" | "checking"> & Partial<ApprovalState>} */ state,
+  /** @type {Pick<ApprovalState, "kind" | "text" | "checking">} */ state,
 ) {
   const { kind, checking } = state;
   const [mark, level] = LEVELS[kind];
@@ -26,19 +26,11 @@ export function approvalLine(
 }
 
 /** The line of the server in the language of the page. */
-export function approvalWords(
-  /** @type {Pick<ApprovalState, "text"> & Partial<ApprovalState>} */ {
-    text,
-    version,
-    who = "",
-    time = "",
-  },
-) {
-  const day = time.slice(0, 10);
-  const signed = `Approved v${version} · ${who} · ${day}`;
-  if (!who || !text.startsWith(signed)) return phrase(text);
-  const line = t("approval-signed", { version: String(version), who, day });
-  return line + phrase(text.slice(signed.length));
+export function approvalWords(/** @type {Pick<ApprovalState, "text">} */ { text }) {
+  const found = text.match(/^Approved v(\d+) · (.*) · (\d{4}-\d\d-\d\d)(.*)$/);
+  if (!found) return phrase(text);
+  const [, version = "", who = "", day = "", more = ""] = found;
+  return t("approval-signed", { version, who, day }) + phrase(more);
 }
 
 /** A part of the line of the server, which may name a version or a key. */

@@ -80,10 +80,9 @@ export class PageHead extends HTMLElement {
       html`<a class="brand" href=${guest ? mapUrl(id) : at("/")}>recon4</a>
         ${id ? [way(name, guest), tabs(id, page, guest ? guestPages(id) : pagesOf(id))] : nothing}
         <span class="link-state" role="status">${problem}</span>
+        <language-choice></language-choice>
         <span class="account"
-          >${me && !guest ? links(me, live) : nothing}<language-choice></language-choice>${
-            me ? this.#person(me) : nothing
-          }</span
+          >${me ? [guest ? nothing : links(me, live), this.#person(me)] : nothing}</span
         >`,
       this,
     );

@@ -6,6 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon4.locales.languages import ENGLISH
 from recon4.untrusted.names import is_unnameable
 from recon4_app.projects.tuning import INSPECTION
 
@@ -69,12 +70,15 @@ def files_beside(path: Path) -> tuple[Path, ...]:
     return tuple(files)
 
 
-def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
+def inspect_recording(
+    path: Path, beside: tuple[Path, ...], language: str = ENGLISH
+) -> RecordingSummary:
     """Inspect a recording.
 
     Args:
         path: File or folder.
         beside: Result of `files_beside`.
+        language: Of its warnings.
 
     Raises:
         RecordingError: If it cannot be read or has an unknown format.
@@ -107,7 +111,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
         derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
         missing=tuple(text for text in info.missing if not _is_in(text, suited)),
         warnings=(
-            *map(whole_text, info.findings),
+            *(whole_text(finding, language) for finding in info.findings),
             *_gap_warnings([gap.seconds for gap in info.gaps]),
         ),
         project=_project_name(path),

@@ -10,6 +10,7 @@ from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, Str
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from recon4.findings.in_language import summary_in
 from recon4.review.acknowledgments import report_with_notes
 from recon4.review.state import artifact_keys
 from recon4_app.access.audit import audit
@@ -20,6 +21,7 @@ from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict
 from recon4_app.names import Name
 from recon4_app.network.request_caller import CalledBy
+from recon4_app.pages import Language
 from recon4_app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
 from recon4_app.projects.model import (
     MAP_IMAGES,
@@ -91,9 +93,13 @@ def list_projects(server: Server) -> list[ProjectCard]:
 
 
 @router.get("/projects/{project_id}", dependencies=SHARED, summary="One project")
-def read_project(project_id: str, server: Server, who: Who) -> ProjectView:
-    """Read a project with its results and finished stages; guests get what their pages show."""
+def read_project(project_id: str, server: Server, who: Who, *, language: Language) -> ProjectView:
+    """Read a project with its results and finished stages; guests get what their pages show.
+
+    The findings in its summary are in the language of the request.
+    """
     project = _compared(server, server.projects.get(project_id))
+    project = replace(project, summary=summary_in(language, project.summary))
     return for_guests(project) if who.project else project
 
 
@@ -235,7 +241,9 @@ def browse(server: Server, folder: str = "") -> list[FolderEntry]:
     responses=problems(403, 422, 503),
     summary="Inspect a recording",
 )
-async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
+async def look(
+    path: str, server: Server, caller: CalledBy, *, language: Language
+) -> RecordingSummary:
     """Inspect a recording on this computer: content and suitable settings."""
     real = await run_in_threadpool(server.projects.importable, path)
     beside = await run_in_threadpool(files_beside, real)
@@ -243,7 +251,9 @@ async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
         person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOKS.look_limit_s
     )
     return await caller.wait(
-        server.compute_pool.run_background(Lane.INSPECT, terms, inspect_recording, real, beside)
+        server.compute_pool.run_background(
+            Lane.INSPECT, terms, inspect_recording, real, beside, language
+        )
     )
 
 

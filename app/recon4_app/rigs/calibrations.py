@@ -12,6 +12,7 @@ from pydantic import BaseModel, Field, ValidationError
 from recon4.errors import StoreError
 from recon4.findings.witnesses.rig import agreement
 from recon4.findings.wording import text_of
+from recon4.locales.languages import ENGLISH
 from recon4.model.calibration_figures import CalibrationOutcome, GnssOutcome, RigOutcome
 from recon4.store.frames import CALIBRATED_RIG, CALIBRATION_SLICES
 from recon4.store.json_files import read_object
@@ -48,12 +49,11 @@ class _Figures(BaseModel):
     parameters: list[ParameterView] = Field(default=[], max_length=1000)
     beams: list[ParameterView] = Field(default=[], max_length=20_000)
 
-    @property
-    def said(self) -> str:
-        """What came of the calibration, in words."""
+    def said(self, language: str) -> str:
+        """What came of the calibration, in words of a language."""
         kept = self.outcome
         outcome = kept if isinstance(kept, str) else CalibrationOutcome(**kept.model_dump())
-        return text_of(agreement(outcome, [row.status for row in self.parameters]))
+        return text_of(agreement(outcome, [row.status for row in self.parameters]), language)
 
 
 class _Stored(BaseModel):
@@ -70,7 +70,7 @@ class Calibrations:
     def __init__(self, projects: ProjectStore, uses: RigUses) -> None:
         self._projects, self._uses = projects, uses
 
-    def of(self, project_id: str) -> CalibrationView | None:
+    def of(self, project_id: str, language: str = ENGLISH) -> CalibrationView | None:
         """The audit of a project's rig; None = its latest run had none.
 
         Raises:
@@ -83,7 +83,7 @@ class Calibrations:
         stored = _parsed(_Stored, folder / "calibration.json")
         calibrated = folder / CALIBRATED_RIG
         return CalibrationView(
-            outcome=visible(stored.figures.said, most=400),
+            outcome=visible(stored.figures.said(language), most=400),
             applied=stored.figures.applied and calibrated.is_file(),
             windows=stored.figures.windows,
             rms_m=stored.figures.rms_m,

@@ -18,7 +18,7 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.pages import page_response
+from recon4_app.pages import Language, page_response
 from recon4_app.rigs import rig_work
 from recon4_app.rigs.calibrations import evidence_of
 from recon4_app.rigs.content import content_of, problems_of, rig_of, warnings_of
@@ -153,9 +153,11 @@ def download_version(rig_id: str, number: int, server: Server) -> Response:
 
 
 @router.get("/projects/{project_id}/calibration", summary="Audit of the rig")
-def read_calibration(project_id: str, server: Server) -> CalibrationView | None:
+def read_calibration(
+    project_id: str, server: Server, *, language: Language
+) -> CalibrationView | None:
     """What the recording says of its rig; null if the latest run had no audit."""
-    return server.calibrations.of(project_id)
+    return server.calibrations.of(project_id, language)
 
 
 @router.get("/projects/{project_id}/calibration/slices", summary="Slices of a calibration")

@@ -92,14 +92,6 @@ walk-name = Begehung { $time }
 loop-is-closed = Die Schleife ist geschlossen.
 loop-is-open = Die Schleife ist noch nicht geschlossen: die Karte wird besser, wenn Sie zuerst zum Start zurückkehren.
 
-## Voreinstellungen
-
-preset-indoor = Räume, Flure, Treppenhäuser, Hallen
-preset-outdoor = Straßen, Plätze, Felder: Voxel von 3 cm, Strecken bis 100 m
-preset-hector = Ein 2-D-Laser, eingepasst wie bei hector_slam; keine Schleifenschlüsse
-preset-wuerzburg = Ein Rucksack mit Profiler, nach den Verfahren seiner Veröffentlichung
-preset-thesis = Das Verfahren der 4RECON-Dissertation, wie veröffentlicht
-
 ## Zustand
 
 state-none = Keine Aufnahme

@@ -6,6 +6,12 @@ cancel = Abbrechen
 close = Schließen
 name = Name
 language = Sprache
+save = Speichern
+delete = Löschen
+delete-open = Löschen…
+remove = Entfernen
+copy = Kopieren
+copied = ✓ Kopiert
 
 ## Leiste am oberen Rand
 
@@ -137,6 +143,17 @@ walk-axis = Zeit der Begehung, 0 bis { $end } s, mit Befunden: { $findings }
 
 ## Freigaben
 
+approval-signed = Freigegeben v{ $version } · { $who } · { $day }
+approval-draft-not-approved = Entwurf: nicht freigegeben
+approval-draft-written-without-approval = Entwurf: ohne Freigabe geschrieben
+approval-draft-changed-since-version = Entwurf: geändert seit Version { $version }
+approval-version-is-newer = ; Version { $version } ist neuer
+approval-changed-since-later-decisions-are-not-in-this-map = ; seither geändert: spätere Entscheidungen sind nicht in dieser Karte
+approval-altered-since-the-approval-of-version = Verändert seit der Freigabe von Version { $version }
+approval-signed-by-unknown-key-not-counted-as-approved = Signiert mit unbekanntem Schlüssel { $key }: gilt nicht als freigegeben
+approval-not-approved-older-than-what-this-server-approved = Nicht freigegeben: älter als das, was dieser Server freigegeben hat
+approval-not-approved-an-approval-is-missing-in-the-journal = Nicht freigegeben: im Journal fehlt eine Freigabe
+approval-not-approved-the-approval-is-not-valid = Nicht freigegeben: die Freigabe ist ungültig
 approval-checking = { $text }; die Bytes werden mit der Signatur verglichen
 in-spite-of = , trotz der Beurteilung „{ $verdict }“
 usability-check = prüfen
@@ -145,6 +162,8 @@ usability-good = gut
 
 ## Dateien
 
+upload-again = { $why }; neuer Versuch in { $seconds } s
+upload-unreadable = { $name } ist nicht mehr lesbar; neu auswählen
 file-being-made = { $name }: die Datei wird erstellt…
 
 ## Gastlinks
@@ -163,8 +182,6 @@ share-days = { $days ->
 }
 share-make = Link erstellen
 share-made = Der Link: jetzt kopieren, er wird nur dieses Mal gezeigt
-copy = Kopieren
-copied = ✓ Kopiert
 share-revoke-of = Link für { $whom } widerrufen
 share-revoke = Widerrufen
 share-revoked = ✕ widerrufen am { $when } von { $who }
@@ -216,19 +233,16 @@ correct-undo = Rückgängig
 correct-remade = Die Karte wird neu gerechnet:
 correct-progress = Fortschritt
 correct-remake = Karte neu rechnen
-approval-signed = Freigegeben v{ $version } · { $who } · { $day }
-approval-draft-not-approved = Entwurf: nicht freigegeben
-approval-draft-written-without-approval = Entwurf: ohne Freigabe geschrieben
-approval-draft-changed-since-version = Entwurf: geändert seit Version { $version }
-approval-version-is-newer = ; Version { $version } ist neuer
-approval-changed-since-later-decisions-are-not-in-this-map = ; seither geändert: spätere Entscheidungen sind nicht in dieser Karte
-approval-altered-since-the-approval-of-version = Verändert seit der Freigabe von Version { $version }
-approval-signed-by-unknown-key-not-counted-as-approved = Signiert mit unbekanntem Schlüssel { $key }: gilt nicht als freigegeben
-approval-not-approved-older-than-what-this-server-approved = Nicht freigegeben: älter als das, was dieser Server freigegeben hat
-approval-not-approved-an-approval-is-missing-in-the-journal = Nicht freigegeben: im Journal fehlt eine Freigabe
-approval-not-approved-the-approval-is-not-valid = Nicht freigegeben: die Freigabe ist ungültig
 
 ## Systeme von Karten
 
 frame-local = System der Karte (lokal), x y z, z nach oben, Meter
 frame-placed = System der Karte (Ursprung bei E { $east } N { $north } H { $up } in { $crs }), x y z, z nach oben, Meter
+
+## Voreinstellungen
+
+preset-indoor = Räume, Flure, Treppenhäuser, Hallen
+preset-outdoor = Straßen, Plätze, Felder: Voxel von 3 cm, Strecken bis 100 m
+preset-hector = Ein 2-D-Laser, eingepasst wie bei hector_slam; keine Schleifenschlüsse
+preset-wuerzburg = Ein Rucksack mit Profiler, nach den Verfahren seiner Veröffentlichung
+preset-thesis = Das Verfahren der 4RECON-Dissertation, wie veröffentlicht

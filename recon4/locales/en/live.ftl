@@ -92,14 +92,6 @@ walk-name = Walk { $time }
 loop-is-closed = The loop is closed.
 loop-is-open = The loop is not closed yet: the map is better if you return to the start first.
 
-## Presets
-
-preset-indoor = Rooms, corridors, staircases, halls
-preset-outdoor = Streets, squares, fields: voxels of 3 cm, ranges up to 100 m
-preset-hector = A 2-D laser, matched as hector_slam does; no loop closures
-preset-wuerzburg = A backpack with a profiler, by the methods of its publication
-preset-thesis = The algorithm of the 4RECON thesis as published
-
 ## State
 
 state-none = Nothing is recorded

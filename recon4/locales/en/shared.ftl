@@ -6,6 +6,12 @@ cancel = Cancel
 close = Close
 name = Name
 language = Language
+save = Save
+delete = Delete
+delete-open = Delete…
+remove = Remove
+copy = Copy
+copied = ✓ Copied
 
 ## Bar at the top
 
@@ -137,6 +143,17 @@ walk-axis = Time of the walk, 0 to { $end } s, with findings: { $findings }
 
 ## Approvals
 
+approval-signed = Approved v{ $version } · { $who } · { $day }
+approval-draft-not-approved = Draft: not approved
+approval-draft-written-without-approval = Draft: written without approval
+approval-draft-changed-since-version = Draft: changed since version { $version }
+approval-version-is-newer = ; version { $version } is newer
+approval-changed-since-later-decisions-are-not-in-this-map = ; changed since: later decisions are not in this map
+approval-altered-since-the-approval-of-version = Altered since the approval of version { $version }
+approval-signed-by-unknown-key-not-counted-as-approved = Signed by unknown key { $key }: not counted as approved
+approval-not-approved-older-than-what-this-server-approved = Not approved: older than what this server approved
+approval-not-approved-an-approval-is-missing-in-the-journal = Not approved: an approval is missing in the journal
+approval-not-approved-the-approval-is-not-valid = Not approved: the approval is not valid
 approval-checking = { $text }; its bytes are being compared with the signature
 in-spite-of = , in spite of the verdict “{ $verdict }”
 usability-check = check
@@ -145,6 +162,8 @@ usability-good = good
 
 ## Files
 
+upload-again = { $why }; trying again in { $seconds } s
+upload-unreadable = { $name } cannot be read any more; select it again
 file-being-made = { $name }: the file is being made…
 
 ## Guest links
@@ -163,8 +182,6 @@ share-days = { $days ->
 }
 share-make = Make a link
 share-made = The link: copy it now, it is shown this once
-copy = Copy
-copied = ✓ Copied
 share-revoke-of = Revoke the link for { $whom }
 share-revoke = Revoke
 share-revoked = ✕ revoked { $when } by { $who }
@@ -216,19 +233,16 @@ correct-undo = Undo
 correct-remade = The map is made again:
 correct-progress = its progress
 correct-remake = Make the map again
-approval-signed = Approved v{ $version } · { $who } · { $day }
-approval-draft-not-approved = Draft: not approved
-approval-draft-written-without-approval = Draft: written without approval
-approval-draft-changed-since-version = Draft: changed since version { $version }
-approval-version-is-newer = ; version { $version } is newer
-approval-changed-since-later-decisions-are-not-in-this-map = ; changed since: later decisions are not in this map
-approval-altered-since-the-approval-of-version = Altered since the approval of version { $version }
-approval-signed-by-unknown-key-not-counted-as-approved = Signed by unknown key { $key }: not counted as approved
-approval-not-approved-older-than-what-this-server-approved = Not approved: older than what this server approved
-approval-not-approved-an-approval-is-missing-in-the-journal = Not approved: an approval is missing in the journal
-approval-not-approved-the-approval-is-not-valid = Not approved: the approval is not valid
 
 ## Frames of maps
 
 frame-local = map frame (local), x y z, z up, meters
 frame-placed = map frame (origin at E { $east } N { $north } H { $up } in { $crs }), x y z, z up, meters
+
+## Presets
+
+preset-indoor = Rooms, corridors, staircases, halls
+preset-outdoor = Streets, squares, fields: voxels of 3 cm, ranges up to 100 m
+preset-hector = A 2-D laser, matched as hector_slam does; no loop closures
+preset-wuerzburg = A backpack with a profiler, by the methods of its publication
+preset-thesis = The algorithm of the 4RECON thesis as published

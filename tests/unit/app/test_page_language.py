@@ -106,7 +106,7 @@ def test_no_page_has_a_name_twice():
 
 
 def test_the_phone_names_presets_as_the_shell_does():
-    say = texts(ENGLISH, "live")
+    say = texts(ENGLISH, "shared")
 
     assert {name: say(f"preset-{name}") for name in PRESET_TEXTS} == PRESET_TEXTS
 
