@@ -1,4 +1,4 @@
-import "./english.js";
+import "./english.js?rigs";
 
 import assert from "node:assert/strict";
 import { test } from "node:test";

@@ -4,13 +4,14 @@ import { changePassword, endMySession, listMySessions, readCurrentUser } from ".
 import { attempt, byId, fields, only, onSubmit } from "../shared/dom.js";
 import "../shared/page_head.js";
 import "./session_list.js";
+import { t, wordOf } from "../shared/texts.js";
 
 const list = only("session-list");
 const form = byId("password", HTMLFormElement);
 
 const me = await attempt(byId("message"), readCurrentUser);
 if (me)
-  byId("title").textContent = me.login ? `${me.name}, ${me.role}` : "This server has no login";
+  byId("title").textContent = me.login ? `${me.name}, ${wordOf("role", me.role)}` : t("no-login");
 for (const section of document.querySelectorAll("section")) section.hidden = !me?.login;
 list.source = { read: listMySessions, end: endMySession };
 
@@ -21,6 +22,6 @@ onSubmit(form, async (event) => {
   if (!(await attempt(byId("password-message"), () => changePassword(old.value, fresh.value))))
     return;
   form.reset();
-  byId("password-done").textContent = "The password is changed; your other sessions have ended";
+  byId("password-done").textContent = t("password-changed");
   list.reload();
 });

@@ -3,6 +3,8 @@
 import { forgetFragment } from "../shared/address.js";
 import { isSignedIn, mapUrl, openGuestLink } from "../shared/api.js";
 import { attempt, byId } from "../shared/dom.js";
+import "../shared/language_choice.js";
+import { t } from "../shared/texts.js";
 
 /** The token, and the view that the link shows: "TOKEN?camera=…". */
 const [token, query] = location.hash.slice(1).split(/\?(.*)/s);
@@ -10,15 +12,12 @@ forgetFragment();
 
 async function open() {
   if (await isSignedIn().catch(() => false)) {
-    byId("words").textContent =
-      "This browser is signed in already: sign out to see what a guest sees.";
+    byId("words").textContent = t("guest-signed-in");
     return;
   }
   const place = token && (await attempt(byId("message"), () => openGuestLink(token)));
   if (place) return location.replace(mapUrl(place.project) + (query ? `?${query}` : ""));
-  byId("words").textContent = token
-    ? "This link opens nothing."
-    : "Open the link that you were given; its address ends with a long word.";
+  byId("words").textContent = token ? t("guest-nothing") : t("guest-no-link");
 }
 
 open();

@@ -3,6 +3,8 @@
 import { forgetFragment, pathInside, wholeUrl } from "../shared/address.js";
 import { isSignedIn, setUp, signIn } from "../shared/api.js";
 import { asError, byId, fields, onSubmit, targetOf } from "../shared/dom.js";
+import "../shared/language_choice.js";
+import { t } from "../shared/texts.js";
 
 const form = byId("login", HTMLFormElement);
 const controls = fields(form);
@@ -15,10 +17,10 @@ forgetFragment();
 const next = () => wholeUrl(pathInside(given.get("next") ?? "/"));
 
 function offerSetup() {
-  document.title = "First admin · recon4";
-  byId("title").textContent = "Create the first admin";
-  byId("words").textContent = "This server has no accounts yet. This link works once";
-  go.textContent = "Create admin and sign in";
+  document.title = t("first-admin-page");
+  byId("title").textContent = t("first-admin");
+  byId("words").textContent = t("first-admin-why");
+  go.textContent = t("first-admin-go");
   byId("words").hidden = byId("hint").hidden = false;
   controls.password.autocomplete = "new-password";
   controls.password.minLength = 12;

@@ -9,6 +9,8 @@ import {
   redeemInvitation,
 } from "../shared/api.js";
 import { asError, attempt, byId, fields, onSubmit, say } from "../shared/dom.js";
+import "../shared/language_choice.js";
+import { t } from "../shared/texts.js";
 
 const CLAIM_EVERY_MS = 2000;
 const AGAIN = "again"; // the session has ended
@@ -18,10 +20,10 @@ const form = byId("ask", HTMLFormElement);
 
 async function useInvitation() {
   byId("ask").hidden = true;
-  byId("words").textContent = "Signing in…";
+  byId("words").textContent = t("signing-in");
   if (await attempt(byId("message"), () => redeemInvitation(token)))
     return location.replace(liveUrl);
-  byId("words").textContent = "Make a new QR code on the laptop, or sign in with a code";
+  byId("words").textContent = t("pair-new-code");
   byId("ask").hidden = false;
 }
 
@@ -30,8 +32,7 @@ async function ask(/** @type {SubmitEvent} */ event) {
   const asked = await attempt(byId("message"), () => requestPairing(fields(form).phone.value));
   if (!asked) return;
   byId("ask").hidden = byId("else").hidden = true;
-  byId("words").textContent =
-    "On a computer that is signed in, open the page Phone and enter this code";
+  byId("words").textContent = t("pair-enter");
   byId("digits").textContent = `${asked.code.slice(0, 3)} ${asked.code.slice(3)}`;
   byId("digits").hidden = byId("left").hidden = false;
   await wait(asked, performance.now() + 1000 * asked.seconds);
@@ -43,8 +44,8 @@ async function ask(/** @type {SubmitEvent} */ event) {
  */
 async function wait(asked, untilMs) {
   const left = Math.max(0, Math.round((untilMs - performance.now()) / 1000));
-  byId("left").textContent =
-    `Waiting, ${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")} left`;
+  const time = `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+  byId("left").textContent = t("pair-waiting", { time });
   try {
     if (await claimPairing(asked.token)) return location.replace(liveUrl);
   } catch (error) {
@@ -65,10 +66,7 @@ function over(/** @type {string} */ text) {
 const isIn = () => isSignedIn().catch(() => false);
 
 onSubmit(form, ask);
-const ended =
-  token === AGAIN ? "The session of this phone has ended; a running capture goes on. " : "";
+const ended = token === AGAIN ? `${t("pair-ended")} ` : "";
 if (await isIn()) location.replace(liveUrl);
 else if (token && !ended) await useInvitation();
-else
-  byId("words").textContent =
-    `${ended}Scan the QR code on the laptop (page Phone), or sign in with a code`;
+else byId("words").textContent = `${ended}${t("pair-scan")}`;

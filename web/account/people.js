@@ -27,17 +27,22 @@ import "./session_list.js";
 import { withPassword } from "./recent_login.js";
 import { showTrustedKeys } from "./trusted_keys.js";
 import { showWebhooks } from "./webhooks.js";
+import { t } from "../shared/texts.js";
 
 /** @import {Account, Changes, Entry, Role} from "../shared/http_types" */
 
 const ROLES = {
-  viewer: "Viewer: looks and measures",
-  operator: "Operator: records and processes",
-  reviewer: "Reviewer: processes, decides, approves",
-  admin: "Admin: everything",
+  viewer: t("role-is-viewer"),
+  operator: t("role-is-operator"),
+  reviewer: t("role-is-reviewer"),
+  admin: t("role-is-admin"),
 };
 /** @type {Record<string, string>} */
-const OUTCOMES = { done: "✓ Done", refused: "✕ Refused", failed: "✕ Failed" };
+const OUTCOMES = {
+  done: `✓ ${t("outcome-done")}`,
+  refused: `✕ ${t("outcome-refused")}`,
+  failed: `✕ ${t("outcome-failed")}`,
+};
 const ROLE_NAMES = Object.keys(ROLES);
 const state = {
   /** @type {Entry[]} */
@@ -47,23 +52,25 @@ const state = {
 function person(/** @type {Account} */ { name, role, disabled, created }) {
   const choose = (/** @type {Event} */ event) =>
     change(name, { role: /** @type {Role} */ (targetOf(event).value) });
-  const choice = html`<select aria-label="Role of ${name}" @change=${choose}>
-    ${ROLE_NAMES.map((one) => html`<option .selected=${one === role}>${one}</option>`)}
+  const choice = html`<select aria-label=${t("role-of", { name })} @change=${choose}>
+    ${ROLE_NAMES.map(
+      (one) => html`<option value=${one} .selected=${one === role}>${t(`role-${one}`)}</option>`,
+    )}
   </select>`;
   const lock = html`<button
     type="button"
-    aria-label="${disabled ? "Enable" : "Disable"} ${name}"
+    aria-label=${t(disabled ? "enable-of" : "disable-of", { name })}
     @click=${() => change(name, { disabled: !disabled })}
   >
-    ${disabled ? "Enable" : "Disable"}
+    ${disabled ? t("enable") : t("disable")}
   </button>`;
   return html`<tr>
     <th scope="row">${name}</th>
-    <td data-label="Role">${choice}</td>
-    <td data-label="State" class=${disabled ? "bad" : "good"}>
-      ${disabled ? "✕ Disabled" : "✓ May sign in"}
+    <td data-label=${t("role")}>${choice}</td>
+    <td data-label=${t("state")} class=${disabled ? "bad" : "good"}>
+      ${disabled ? `✕ ${t("is-disabled")}` : `✓ ${t("may-sign-in")}`}
     </td>
-    <td data-label="Since"><time>${when(created)}</time></td>
+    <td data-label=${t("since")}><time>${when(created)}</time></td>
     <td><div class="actions">${lock}</div></td>
   </tr>`;
 }
@@ -92,12 +99,12 @@ async function reload() {
 function entry(/** @type {Entry} */ { time, person: who, address, action, object, outcome }) {
   return html`<tr>
     <th scope="row"><time datetime=${time}>${when(time)}</time></th>
-    <td data-label="Who">${who}</td>
-    <td data-label="From">${address}</td>
-    <td data-label="What">
+    <td data-label=${t("who")}>${who}</td>
+    <td data-label=${t("from-address")}>${address}</td>
+    <td data-label=${t("what")}>
       <span><b>${action}</b>${" "}<code>${object}</code></span>
     </td>
-    <td data-label="Outcome" class=${outcome === "done" ? "" : "bad"}>
+    <td data-label=${t("outcome")} class=${outcome === "done" ? "" : "bad"}>
       ${OUTCOMES[outcome] ?? outcome}
     </td>
   </tr>`;
@@ -116,10 +123,8 @@ async function readLog(/** @type {number | undefined} */ before = undefined) {
   byId("older").hidden = !oldest || oldest === 1;
   const { entries, broken_at: broken, newest } = log.chain;
   const mark = broken
-    ? html`<b class="bad"
-        >✕ Entry ${broken} does not match the hash of the one before: the log was altered</b
-      >`
-    : html`<b class="good">✓ ${entries} entries, hash chain intact</b>`;
+    ? html`<b class="bad">✕ ${t("chain-broken", { entry: String(broken) })}</b>`
+    : html`<b class="good">✓ ${t("chain-intact", { entries: String(entries) })}</b>`;
   render(html`${mark}<code>${newest}</code>`, byId("chain"));
 }
 

@@ -4,11 +4,12 @@ import { wholeUrl } from "../shared/address.js";
 import { approvePhone, invitePhone, readPairing } from "../shared/api.js";
 import { attempt, byId, fields, html, onSubmit, render, within } from "../shared/dom.js";
 import "../shared/page_head.js";
+import { t } from "../shared/texts.js";
 
 /** @import {Role} from "../shared/http_types" */
 
 /** @type {Record<string, string>} */
-const MAY = { operator: "look, and start, mark and stop", viewer: "look only" };
+const MAY = { operator: t("phone-operator"), viewer: t("phone-viewer") };
 /** @type {{timer: ReturnType<typeof setInterval> | undefined}} */
 const shown = { timer: undefined };
 
@@ -31,7 +32,7 @@ function showRoles(/** @type {string[]} */ roles) {
       @change=${chose}
     />`;
     return html`<label class="check"
-      >${radio}<span><b>${value}</b>: ${MAY[value]}</span></label
+      >${radio}<span><b>${t(`role-${value}`)}</b>: ${MAY[value]}</span></label
     >`;
   };
   render(roles.map(one), byId("roles"));
@@ -41,7 +42,7 @@ function showRoles(/** @type {string[]} */ roles) {
 /** Hides the code: it is for the role that was selected before. */
 function chose() {
   hideCode();
-  byId("approve-phone").textContent = `Approve as ${role()}`;
+  byId("approve-phone").textContent = t("approve-as", { role: t(`role-${role()}`) });
 }
 
 async function invite() {
@@ -60,7 +61,7 @@ async function invite() {
   byId("host").onchange = show;
   byId("address").hidden = invitation.links.length < 2;
   byId("shown").hidden = false;
-  byId("invite").textContent = "Show a new code";
+  byId("invite").textContent = t("show-new-code");
   show();
   countDown(performance.now() + 1000 * invitation.seconds, invitation.role);
 }
@@ -73,7 +74,7 @@ function countDown(untilMs, given) {
   clearInterval(shown.timer);
   const tick = () => {
     const left = Math.round((untilMs - performance.now()) / 1000);
-    byId("left").textContent = `For one phone, as ${given}, ${left} s left`;
+    byId("left").textContent = t("qr-left", { role: t(`role-${given}`), seconds: String(left) });
     if (left <= 0) hideCode();
   };
   shown.timer = setInterval(tick, 1000);
@@ -84,7 +85,7 @@ function hideCode() {
   clearInterval(shown.timer);
   byId("shown").hidden = true;
   byId("qr").removeAttribute("src");
-  byId("invite").textContent = "Show QR code";
+  byId("invite").textContent = t("show-qr");
 }
 
 async function approve(/** @type {SubmitEvent} */ event) {
@@ -94,7 +95,9 @@ async function approve(/** @type {SubmitEvent} */ event) {
   const phone = await attempt(byId("approve-message"), () => approvePhone(code, role()));
   if (!phone) return;
   form.reset();
-  byId("approved").textContent = `✓ ${phone.name} at ${phone.address} is signed in as ${role()}`;
+  const { name, address } = phone;
+  const done = t("phone-signed-in", { name, address, role: t(`role-${role()}`) });
+  byId("approved").textContent = `✓ ${done}`;
 }
 
 byId("invite").addEventListener("click", invite);

@@ -3,6 +3,7 @@
 import { ApiError, signInAgain } from "../shared/api.js";
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { attempt, html, messagePlace, within } from "../shared/dom.js";
+import { t } from "../shared/texts.js";
 
 /**
  * Runs an action; if the server wants the password again, asks for it and runs it once more.
@@ -34,15 +35,15 @@ function askPassword() {
     else password.select();
   };
   const dialog = openDialog(
-    "Your password again",
+    t("password-again"),
     html`<form @submit=${submit}>
-      <p class="quiet">This is signed with your name, and you signed in a while ago</p>
+      <p class="quiet">${t("password-why")}</p>
       <label
-        ><span>Password</span
+        ><span>${t("password")}</span
         ><input type="password" autocomplete="current-password" required maxlength="256"
       /></label>
       ${messagePlace()}
-      <div class="buttons">${closeButton()}<button class="primary">Confirm</button></div>
+      <div class="buttons">${closeButton()}<button class="primary">${t("confirm")}</button></div>
     </form>`,
   );
   return new Promise((resolve) =>

@@ -2,6 +2,7 @@
 
 import { attempt, html, messagePlace, render, repeat, succeeds, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
+import { t } from "../shared/texts.js";
 
 /** @import {SessionView} from "../shared/http_types" */
 
@@ -14,13 +15,20 @@ export function device(/** @type {string} */ agent) {
     agent.includes(one),
   );
   return browser && system
-    ? `${browser === "Edg" ? "Edge" : browser} on ${system}`
-    : agent.slice(0, 40) || "Unknown program";
+    ? t("device", { browser: browser === "Edg" ? "Edge" : browser, system })
+    : agent.slice(0, 40) || t("device-unknown");
 }
 
 /** @typedef {{read: () => Promise<SessionView[]>, end: (id: string) => Promise<unknown>}} Source */
 
-const TITLES = ["Person", "Device", "From", "Signed in", "Last seen", "Action"];
+const TITLES = [
+  t("person"),
+  t("session-device"),
+  t("from-address"),
+  t("session-began"),
+  t("session-seen"),
+  t("action"),
+];
 
 export class SessionList extends HTMLElement {
   /** @type {Source | null} */
@@ -67,19 +75,21 @@ export class SessionList extends HTMLElement {
   #row(/** @type {SessionView} */ { session, current }) {
     const end = html`<button
       type="button"
-      aria-label="End session of ${session.person}, ${device(session.agent)}"
+      aria-label=${t("session-end-of", { who: session.person, device: device(session.agent) })}
       @click=${() => this.#end(session.id)}
     >
-      End
+      ${t("session-end")}
     </button>`;
     return html`<tr>
       <th scope="row">${session.person}</th>
-      <td title=${session.agent} data-label="Device">${device(session.agent)}</td>
-      <td data-label="From">${session.address}</td>
-      <td data-label="Signed in"><time>${moment(session.began_s)}</time></td>
-      <td data-label="Last seen"><time>${moment(session.seen_s)}</time></td>
+      <td title=${session.agent} data-label=${t("session-device")}>${device(session.agent)}</td>
+      <td data-label=${t("from-address")}>${session.address}</td>
+      <td data-label=${t("session-began")}><time>${moment(session.began_s)}</time></td>
+      <td data-label=${t("session-seen")}><time>${moment(session.seen_s)}</time></td>
       <td>
-        <div class="actions">${current ? html`<span class="here">✓ This one</span>` : end}</div>
+        <div class="actions">
+          ${current ? html`<span class="here">✓ ${t("session-this")}</span>` : end}
+        </div>
       </td>
     </tr>`;
   }

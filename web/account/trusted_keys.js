@@ -14,10 +14,14 @@ import {
 } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { withPassword } from "./recent_login.js";
+import { t } from "../shared/texts.js";
 
 /** @import {KeyView} from "../shared/http_types" */
 
 const listeners = { changed: () => {} };
+
+const removedText = (/** @type {KeyView} */ key) =>
+  t("key-removed", { when: when(key.removed), who: key.removed_by });
 
 /**
  * @param {KeyView} key
@@ -29,28 +33,32 @@ function row(key, signs) {
     counts && !signs
       ? html`<button
           type="button"
-          aria-label="Remove the key of ${key.name}"
+          aria-label=${t("remove-key-of", { name: key.name })}
           @click=${() => remove(key.fingerprint)}
         >
-          Remove
+          ${t("remove")}
         </button>`
       : nothing;
   return html`<tr>
     <th scope="row">${key.name}</th>
-    <td data-label="Key">
+    <td data-label=${t("key")}>
       <div>
         <code>${key.fingerprint}</code>
         <details>
-          <summary>Public key</summary>
+          <summary>${t("public-key")}</summary>
           <code>${key.public_key}</code>
         </details>
       </div>
     </td>
-    <td data-label="State" class=${counts ? "good" : "bad"}>
-      ${counts ? "✓ Counts" : `✕ Removed ${when(key.removed)} by ${key.removed_by}`}
+    <td data-label=${t("state")} class=${counts ? "good" : "bad"}>
+      ${counts ? `✓ ${t("key-counts")}` : `✕ ${removedText(key)}`}
     </td>
-    <td data-label="Since">
-      ${key.own ? `${when(key.added)}, made here` : `${when(key.added)}, by ${key.by}`}
+    <td data-label=${t("since")}>
+      ${
+        key.own
+          ? t("made-here", { when: when(key.added) })
+          : t("added-by", { when: when(key.added), who: key.by })
+      }
     </td>
     <td><div class="actions">${removal}</div></td>
   </tr>`;

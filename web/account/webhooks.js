@@ -14,14 +14,15 @@ import {
 } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { withPassword } from "./recent_login.js";
+import { t } from "../shared/texts.js";
 
 /** @import {EventKind, Webhook} from "../shared/http_types" */
 
 /** @type {Record<EventKind, string>} */
 const EVENTS = {
-  "job.finished": "finished jobs",
-  "approval.signed": "approvals",
-  test: "tests",
+  "job.finished": t("event-jobs"),
+  "approval.signed": t("event-approvals"),
+  test: t("event-tests"),
 };
 const listeners = { changed: () => {} };
 
@@ -37,16 +38,18 @@ function row(/** @type {Webhook} */ webhook) {
     </button>`;
   return html`<tr>
     <th scope="row"><code>${url}</code></th>
-    <td data-label="Takes">${webhook.events.map((kind) => EVENTS[kind]).join(", ")}</td>
-    <td data-label="State" class=${waiting ? "bad" : "good"}>
-      ${waiting ? `▲ ${waiting} not delivered yet` : "✓ All delivered"}
+    <td data-label=${t("takes")}>${webhook.events.map((kind) => EVENTS[kind]).join(", ")}</td>
+    <td data-label=${t("state")} class=${waiting ? "bad" : "good"}>
+      ${waiting ? `▲ ${t("undelivered", { count: String(waiting) })}` : `✓ ${t("delivered")}`}
       ${problem ? html`<p class="quiet">${problem}</p>` : nothing}
     </td>
-    <td data-label="Since">${when(webhook.created)}, by ${webhook.by}</td>
+    <td data-label=${t("since")}>
+      ${t("added-by", { when: when(webhook.created), who: webhook.by })}
+    </td>
     <td>
       <div class="actions">
-        ${button("Test", () => testWebhook(id))}
-        ${button("Remove", () => withPassword(() => removeWebhook(id)))}
+        ${button(t("test"), () => testWebhook(id))}
+        ${button(t("remove"), () => withPassword(() => removeWebhook(id)))}
       </div>
     </td>
   </tr>`;

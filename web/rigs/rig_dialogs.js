@@ -4,6 +4,7 @@ import { addRigVersion, createRig } from "../shared/api.js";
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { attempt, fields, html, messagePlace, nothing, targetOf, within } from "../shared/dom.js";
 import { slug } from "./rig_math.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Content} from "../shared/dom.js"
@@ -15,19 +16,21 @@ const MAX_BYTES = 128 * 1024;
 
 const nameField = (/** @type {string} */ name) =>
   html`<label
-    ><span>Name of the new rig</span
+    ><span>${t("new-rig-name")}</span
     ><input
       name="id"
       value=${name}
       pattern="[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}"
-      title="Letters, digits, dot, dash and underscore"
+      title=${t("name-letters")}
       autocomplete="off"
       spellcheck="false"
       required
   /></label>`;
 
 const noteField = () =>
-  html`<label><span>Note</span><input name="note" maxlength="500" autocomplete="off" /></label>`;
+  html`<label
+    ><span>${t("note")}</span><input name="note" maxlength="500" autocomplete="off"
+  /></label>`;
 
 /**
  * Opens a dialog with a form; `save` gives the saved rig, which `done` receives.
@@ -60,8 +63,8 @@ function open(title, content, { button, save, done }) {
  * @param {Done} done
  */
 export function askDuplicate(id, done) {
-  open(`Duplicate ${id}`, [nameField(slug(`${id}-copy`)), noteField()], {
-    button: "Duplicate",
+  open(t("duplicate-of", { id }), [nameField(slug(`${id}-copy`)), noteField()], {
+    button: t("duplicate"),
     save: ({ id: input, note }) =>
       createRig({ id: input.value, copy_of: id, note: note.value.trim() }),
     done,
@@ -83,17 +86,17 @@ export async function askImport(file, own, done) {
     name.disabled = /** @type {HTMLElement} */ (name.closest("label")).hidden = select.value !== "";
   };
   const into = html`<label
-    ><span>Import as</span
+    ><span>${t("import-as")}</span
     ><select name="into" @change=${choose}>
-      <option value="">A new rig</option>
-      ${own.map((id) => html`<option value=${id}>A new version of ${id}</option>`)}
+      <option value="">${t("a-new-rig")}</option>
+      ${own.map((id) => html`<option value=${id}>${t("a-new-version", { id })}</option>`)}
     </select></label
   >`;
   const content = [own.length ? into : nothing, nameField(slug(file.name)), noteField()];
-  open(`Import ${file.name}`, content, {
-    button: "Import",
+  open(t("import-of", { name: file.name }), content, {
+    button: t("import"),
     save: ({ into: rig, id, note }) => {
-      if (!toml) throw new Error(`A rig file has 1 to ${MAX_BYTES} bytes, this one ${file.size}`);
+      if (!toml) throw new Error(t("file-size", { most: MAX_BYTES, size: file.size }));
       const version = { toml, note: note.value.trim() };
       return rig?.value
         ? addRigVersion(rig.value, version)

@@ -11,13 +11,15 @@ import {
   targetOf,
   within,
 } from "../shared/dom.js";
+import { choice, group, labeled, slot } from "./rig_fields.js";
 import { short } from "./rig_math.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Content} from "../shared/dom.js"
+ * @import {Label} from "./rig_fields.js"
  * @import {Rig, RigImu, RigGnss, RigSensor, Triple} from "./rig_math.js"
  * @typedef {{factor: number, digits: number, unit: string, whole?: boolean}} Unit
- * @typedef {{label: string, path: string}} Label a caption, and the name of the field
  */
 
 const CM = { factor: 100, digits: 4, unit: "cm" };
@@ -26,7 +28,7 @@ const MS = { factor: 1e3, digits: 6, unit: "ms" };
 const PPM = { factor: 1, digits: 3, unit: "ppm" };
 const PLAIN = { factor: 1, digits: 0, unit: "", whole: true };
 const DECIMALS = 9; // of a changed number in its unit of the file
-const KINDS = { lidar: "LiDAR", profiler: "Profiler", laser2d: "2-D laser" };
+const KINDS = { lidar: t("kind-lidar"), profiler: t("kind-profiler"), laser2d: t("kind-laser2d") };
 const XYZ = ["x", "y", "z"];
 const RPY = ["roll", "pitch", "yaw"];
 
@@ -108,25 +110,24 @@ export class RigForm extends HTMLElement {
     const cancel = () => this.dispatchEvent(new CustomEvent("cancelled"));
     render(
       html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#submit(event)}>
-        ${this.#text(content, "name", { label: "Name", path: "name", required: true })}
+        ${this.#text(content, "name", { label: t("name"), path: "name", required: true })}
         ${repeat(
           sensors,
           (sensor) => sensor,
           (sensor, k) => this.#sensor(sensor, k),
         )}
-        <button type="button" @click=${() => this.#add()}>Add a sensor</button>
+        <button type="button" @click=${() => this.#add()}>${t("add-sensor")}</button>
         ${this.#imu(imu)} ${this.#gnss(gnss)}
         <label
-          ><span>Note: what changed and why</span
-          ><input name="note" maxlength="500" autocomplete="off"
+          ><span>${t("note-why")}</span><input name="note" maxlength="500" autocomplete="off"
         /></label>
         <ul class="warnings" role="status">
           ${warnings.map((text) => html`<li>▲ ${text}</li>`)}
         </ul>
         ${messagePlace()}
         <div class="buttons">
-          <button class="primary" ?disabled=${!mayBeSaved}>Save as a new version</button
-          ><button type="button" @click=${cancel}>Cancel</button>
+          <button class="primary" ?disabled=${!mayBeSaved}>${t("save-version")}</button
+          ><button type="button" @click=${cancel}>${t("cancel")}</button>
         </div>
       </form>`,
       this,
@@ -159,24 +160,24 @@ export class RigForm extends HTMLElement {
   }
 
   #imu(/** @type {RigImu} */ imu) {
-    return group("IMU", [
+    return group(t("imu"), [
       this.#text(imu, "sensor", {
-        label: "Inside of the LiDAR",
+        label: t("inside-of"),
         path: "imu.sensor",
-        hint: "none: mounted by itself",
+        hint: t("inside-of-none"),
       }),
-      this.#triple(imu.xyz_m, { label: "Position", path: "imu.xyz_m" }, XYZ),
-      this.#triple(imu.rpy_deg, { label: "Rotation", path: "imu.rpy_deg" }, RPY),
-      this.#numbers(imu, "imu", this.#text(imu, "topic", { label: "Topic", path: "imu.topic" })),
+      this.#triple(imu.xyz_m, { label: t("position"), path: "imu.xyz_m" }, XYZ),
+      this.#triple(imu.rpy_deg, { label: t("rotation"), path: "imu.rpy_deg" }, RPY),
+      this.#numbers(imu, "imu", this.#text(imu, "topic", { label: t("topic"), path: "imu.topic" })),
     ]);
   }
 
   #gnss(/** @type {RigGnss} */ gnss) {
-    return group("GNSS antenna", [
-      this.#triple(gnss.lever_arm_m, { label: "Lever arm", path: "gnss.lever_arm_m" }, XYZ),
+    return group(t("gnss-antenna"), [
+      this.#triple(gnss.lever_arm_m, { label: t("lever-arm"), path: "gnss.lever_arm_m" }, XYZ),
       this.#numbers(gnss, "gnss", [
-        this.#text(gnss, "serial", { label: "Serial line", path: "gnss.serial" }),
-        this.#text(gnss, "topic", { label: "Topic", path: "gnss.topic" }),
+        this.#text(gnss, "serial", { label: t("serial-line"), path: "gnss.serial" }),
+        this.#text(gnss, "topic", { label: t("topic"), path: "gnss.topic" }),
       ]),
     ]);
   }
@@ -187,32 +188,44 @@ export class RigForm extends HTMLElement {
    */
   #sensor(sensor, k) {
     const path = `sensors.${k}`;
-    const rate = { label: "Clock rate", path: `${path}.clock_rate_ppm`, ...PPM };
+    const rate = { label: t("clock-rate"), path: `${path}.clock_rate_ppm`, ...PPM };
     const use = (/** @type {Event} */ event) => {
       sensor.enabled = targetOf(event).checked;
       this.#edited();
     };
-    return group(sensor.name || `Sensor ${k + 1}`, [
+    return group(sensor.name || t("sensor-number", { number: String(k + 1) }), [
       this.#kind(sensor, path),
-      this.#triple(sensor.xyz_m, { label: "Position", path: `${path}.xyz_m` }, XYZ),
-      this.#triple(sensor.rpy_deg, { label: "Rotation", path: `${path}.rpy_deg` }, RPY),
+      this.#triple(sensor.xyz_m, { label: t("position"), path: `${path}.xyz_m` }, XYZ),
+      this.#triple(sensor.rpy_deg, { label: t("rotation"), path: `${path}.rpy_deg` }, RPY),
       this.#numbers(sensor, path, [
         sensor.kind === "lidar" ? this.#number(sensor, "clock_rate_ppm", rate) : nothing,
-        this.#text(sensor, "address", { label: "Address", path: `${path}.address`, hint: "any" }),
-        this.#text(sensor, "topic", { label: "Topic", path: `${path}.topic`, hint: "detected" }),
-        this.#text(sensor, "serial", { label: "Serial number", path: `${path}.serial` }),
-        this.#text(sensor, "fields", { label: "Columns", path: `${path}.fields`, hint: "known" }),
+        this.#text(sensor, "address", {
+          label: t("address"),
+          path: `${path}.address`,
+          hint: t("any"),
+        }),
+        this.#text(sensor, "topic", {
+          label: t("topic"),
+          path: `${path}.topic`,
+          hint: t("detected"),
+        }),
+        this.#text(sensor, "serial", { label: t("serial-number"), path: `${path}.serial` }),
+        this.#text(sensor, "fields", {
+          label: t("columns"),
+          path: `${path}.fields`,
+          hint: t("known"),
+        }),
       ]),
       sensor.kind === "profiler" ? this.#head(sensor, path) : nothing,
       html`<div class="title-row">
         <label class="check"
           ><input type="checkbox" .checked=${sensor.enabled} @change=${use} /><span
-            >Used for the map</span
+            >${t("used-for-map")}</span
           ></label
         >
         ${
           this.content.sensors.length > 1
-            ? html`<button type="button" @click=${() => this.#remove(k)}>Remove</button>`
+            ? html`<button type="button" @click=${() => this.#remove(k)}>${t("remove")}</button>`
             : nothing
         }
       </div>`,
@@ -239,9 +252,9 @@ export class RigForm extends HTMLElement {
     };
     const known = Object.fromEntries([...models, sensor.model].map((name) => [name, name]));
     return html`<div class="fields">
-      ${this.#text(sensor, "name", { label: "Name", path: `${path}.name`, required: true })}
-      ${choice({ label: "Kind", path: `${path}.kind` }, { ...KINDS }, sensor.kind, setKind)}
-      ${choice({ label: "Model", path: `${path}.model` }, known, sensor.model, setModel)}
+      ${this.#text(sensor, "name", { label: t("name"), path: `${path}.name`, required: true })}
+      ${choice({ label: t("kind"), path: `${path}.kind` }, { ...KINDS }, sensor.kind, setKind)}
+      ${choice({ label: t("model"), path: `${path}.model` }, known, sensor.model, setModel)}
     </div>`;
   }
 
@@ -251,8 +264,8 @@ export class RigForm extends HTMLElement {
    * @param {string} path
    */
   #head(sensor, path) {
-    const topic = { label: "Topic of the head", path: `${path}.head_topic` };
-    const rate = { label: "Turn rate of the head", path: `${path}.head_rate_deg_s` };
+    const topic = { label: t("head-topic"), path: `${path}.head_topic` };
+    const rate = { label: t("head-rate"), path: `${path}.head_rate_deg_s` };
     return html`<div class="fields">
       ${this.#text(sensor, "head_topic", topic)}
       ${this.#number(sensor, "head_rate_deg_s", { ...rate, ...DEGREES, unit: "°/s" })}
@@ -266,8 +279,8 @@ export class RigForm extends HTMLElement {
    * @param {Content | Content[]} others
    */
   #numbers(record, path, others) {
-    const clock = { label: "Clock", path: `${path}.time_offset_s`, ...MS };
-    const port = { label: "UDP port", path: `${path}.port`, ...PLAIN };
+    const clock = { label: t("clock"), path: `${path}.time_offset_s`, ...MS };
+    const port = { label: t("udp-port"), path: `${path}.port`, ...PLAIN };
     return html`<div class="fields">
       ${this.#number(record, "time_offset_s", clock)} ${this.#number(record, "port", port)}
       ${others}
@@ -353,45 +366,5 @@ export class RigForm extends HTMLElement {
     />`;
   }
 }
-
-/**
- * @param {string} title
- * @param {Content[]} children
- */
-const group = (title, children) =>
-  html`<fieldset>
-    <legend>${title}</legend>
-    ${children}
-  </fieldset>`;
-
-/**
- * @param {Label} label
- * @param {Record<string, string>} options captions by value
- * @param {string} chosen
- * @param {(value: string) => void} set
- */
-function choice({ label, path }, options, chosen, set) {
-  const select = html`<select
-    name=${path}
-    @change=${(/** @type {Event} */ event) => set(targetOf(event).value)}
-  >
-    ${Object.entries(options).map(
-      ([value, text]) =>
-        html`<option value=${value} .selected=${value === chosen}>${text}</option>`,
-    )}
-  </select>`;
-  return labeled(label, path, select);
-}
-
-/**
- * @param {string} label
- * @param {string} path
- * @param {Content} control
- */
-const labeled = (label, path, control) =>
-  html`<label><span>${label}</span>${control}${slot(path)}</label>`;
-
-const slot = (/** @type {string} */ path) =>
-  html`<small class="error" data-problem=${path}></small>`;
 
 customElements.define("rig-form", RigForm);

@@ -1,5 +1,7 @@
 // Rotations and differences of rigs. No DOM, no network. Matrices are lists of rows.
 
+import { asWritten, decimal, t, wordOf } from "../shared/texts.js";
+
 /**
  * @import {GnssContent, ImuContent, RigContent, SensorContent} from "../shared/http_types"
  * @typedef {[number, number, number]} Triple
@@ -60,7 +62,7 @@ const AXES = ["x", "y", "z"];
  * @param {number} value
  * @param {number} digits
  */
-const signed = (value, digits) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)}`;
+const signed = (value, digits) => `${value < 0 ? "−" : "+"}${decimal(Math.abs(value), digits)}`;
 
 /**
  * ["x +1.00", …] of the components that round to something else than zero.
@@ -78,7 +80,7 @@ const components = (values, digits) =>
  */
 const clockChange = (before, after) => {
   const change = 1e3 * (after.time_offset_s - before.time_offset_s);
-  return Math.abs(change) < 5e-4 ? [] : [`clock ${signed(change, 3)} ms`];
+  return Math.abs(change) < 5e-4 ? [] : [t("change-clock", { change: signed(change, 3) })];
 };
 
 /**
@@ -91,11 +93,18 @@ function mountChanges(before, after) {
   );
   const turn = rotationBetween(before.rpy_deg, after.rpy_deg);
   return [
-    ...components(shift, 2).map((/** @type {string} */ text) => `position ${text} cm`),
-    ...components(turn, 3).map((/** @type {string} */ text) => `rotation about ${text}°`),
+    ...components(shift, 2).map((/** @type {string} */ text) =>
+      t("change-position", { change: text }),
+    ),
+    ...components(turn, 3).map((/** @type {string} */ text) =>
+      t("change-rotation", { change: text }),
+    ),
     ...clockChange(before, after),
   ];
 }
+
+const valueText = (/** @type {string | number} */ value) =>
+  typeof value === "number" && value ? asWritten(value) : String(value || t("none"));
 
 const PLAIN = [
   "kind",
@@ -118,7 +127,7 @@ const plainChanges = (before, after, keys) =>
     .filter((/** @type {string} */ key) => before[key] !== after[key])
     .map(
       (/** @type {string} */ key) =>
-        `${key.replaceAll("_", " ")} ${before[key] || "none"} → ${after[key] || "none"}`,
+        `${wordOf("field", key)} ${valueText(before[key])} → ${valueText(after[key])}`,
     );
 
 /**
@@ -126,7 +135,10 @@ const plainChanges = (before, after, keys) =>
  * @param {RigSensor} after
  */
 function sensorChanges(before, after) {
-  const used = before.enabled === after.enabled ? [] : [after.enabled ? "enabled" : "disabled"];
+  const used =
+    before.enabled === after.enabled
+      ? []
+      : [after.enabled ? t("change-enabled") : t("change-disabled")];
   return [...mountChanges(before, after), ...plainChanges(before, after, PLAIN), ...used];
 }
 
@@ -139,7 +151,9 @@ function gnssChanges(before, after) {
     (value, /** @type {number} */ k) => 100 * (value - before.lever_arm_m[k]),
   );
   return [
-    ...components(arm, 2).map((/** @type {string} */ text) => `lever arm ${text} cm`),
+    ...components(arm, 2).map((/** @type {string} */ text) =>
+      t("change-lever-arm", { change: text }),
+    ),
     ...clockChange(before, after),
     ...plainChanges(before, after, ["port", "serial"]),
   ];
@@ -160,16 +174,18 @@ export function changesOf(before, after) {
   const names = new Set(after.sensors.map((sensor) => sensor.name));
   const kept = after.sensors.flatMap((sensor) => {
     const old = earlier.get(sensor.name);
-    return of(sensor.name, old ? sensorChanges(old, sensor) : ["added"]);
+    return of(sensor.name, old ? sensorChanges(old, sensor) : [t("change-added")]);
   });
   const removed = [...earlier.keys()].filter((name) => !names.has(name));
   return [
-    ...(before.name === after.name ? [] : [`name: ${before.name} → ${after.name}`]),
+    ...(before.name === after.name
+      ? []
+      : [t("change-name", { before: before.name, after: after.name })]),
     ...kept,
-    ...removed.map((name) => `${name}: removed`),
-    ...of("IMU", mountChanges(before.imu, after.imu)),
-    ...of("IMU", plainChanges(before.imu, after.imu, ["port"])),
-    ...of("GNSS antenna", gnssChanges(before.gnss, after.gnss)),
+    ...removed.map((name) => t("change-removed", { name })),
+    ...of(t("imu"), mountChanges(before.imu, after.imu)),
+    ...of(t("imu"), plainChanges(before.imu, after.imu, ["port"])),
+    ...of(t("gnss-antenna"), gnssChanges(before.gnss, after.gnss)),
   ];
 }
 

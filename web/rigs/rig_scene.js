@@ -1,6 +1,7 @@
 // The drawing of a rig as shapes in the body frame [m]. No DOM, no network.
 
 import { matrixOf, placed } from "./rig_math.js";
+import { asWritten, t } from "../shared/texts.js";
 
 /**
  * @import {Rig, RigSensor, Triple} from "./rig_math.js"
@@ -228,9 +229,9 @@ export function boundsOf(/** @type {Rig} */ content) {
 export function describe(/** @type {Rig} */ content) {
   const place = (/** @type {number[]} */ xyz) =>
     xyz.map((value) => Math.round(100 * value)).join(", ");
-  const sensors = content.sensors.map(
-    (one) =>
-      `${one.name}, ${one.model}, at ${place(one.xyz_m)} cm, turned ${one.rpy_deg.join(", ")}°`,
-  );
-  return `Rig ${content.name}: ${sensors.join("; ")}`;
+  const sensors = content.sensors.map(({ name, model, xyz_m, rpy_deg }) => {
+    const turned = rpy_deg.map(asWritten).join(t("gap"));
+    return t("described-sensor", { name, model, place: place(xyz_m), turned });
+  });
+  return t("described", { name: content.name, sensors: sensors.join("; ") });
 }

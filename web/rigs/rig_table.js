@@ -4,6 +4,7 @@ import { projectUrl, rigFileUrl } from "../shared/api.js";
 import { html, nothing } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { short } from "./rig_math.js";
+import { asWritten, t, wordOf } from "../shared/texts.js";
 
 /**
  * @import {RigUse, RigVersion} from "../shared/http_types"
@@ -11,24 +12,33 @@ import { short } from "./rig_math.js";
  */
 
 export const COLORS = 4; // of sensors in the drawing
-const HEADS = ["Sensor", "Model", "Position [cm]", "Rotation [°]", "Clock [ms]", "Port", "Address"];
-const NUMBERS = new Set(["Clock [ms]", "Port"]);
+const POSITION = `${t("position")} [cm]`;
+const ROTATION = `${t("rotation")} [°]`;
+const CLOCK = `${t("clock")} [ms]`;
+const PORT = t("port");
+const HEADS = [t("sensor"), t("model"), POSITION, ROTATION, CLOCK, PORT, t("address")];
+const NUMBERS = new Set([CLOCK, PORT]);
 /** @type {Record<string, string[]>} */
-const PARTS = { "Position [cm]": ["x", "y", "z"], "Rotation [°]": ["roll", "pitch", "yaw"] };
+const PARTS = { [POSITION]: ["x", "y", "z"], [ROTATION]: ["roll", "pitch", "yaw"] };
 
 const cell = (/** @type {string} */ text) =>
   html`<td class="number">${text.replace("-", "−")}</td>`;
 /**
+ * @param {number} value
+ * @param {number} digits
+ */
+const figure = (value, digits) => cell(asWritten(Number(short(value, digits))));
+/**
  * @param {number[]} values
  * @param {number} digits
  */
-const triple = (values, digits) => values.map((value) => cell(short(value, digits)));
+const triple = (values, digits) => values.map((value) => figure(value, digits));
 const centimeters = (/** @type {number[]} */ values) =>
   triple(
     values.map((value) => 100 * value),
     2,
   );
-const milliseconds = (/** @type {number} */ seconds) => cell(short(1e3 * seconds, 3));
+const milliseconds = (/** @type {number} */ seconds) => figure(1e3 * seconds, 3);
 const none = (/** @type {number} */ count) => Array.from({ length: count }, () => cell("–"));
 
 export const swatch = (/** @type {string} */ role) =>
@@ -52,13 +62,13 @@ const row = (role, name, ...cells) =>
 const sensorRow = (sensor, k) =>
   row(
     sensor.enabled ? `sensor-${k % COLORS}` : "disabled",
-    sensor.enabled ? sensor.name : `${sensor.name} (disabled)`,
-    html`<td>${sensor.kind === "lidar" ? sensor.model : sensor.kind}</td>`,
+    sensor.enabled ? sensor.name : t("disabled-sensor", { name: sensor.name }),
+    html`<td>${sensor.kind === "lidar" ? sensor.model : wordOf("kind", sensor.kind)}</td>`,
     ...centimeters(sensor.xyz_m),
     ...triple(sensor.rpy_deg, 4),
     milliseconds(sensor.time_offset_s),
     cell(String(sensor.port)),
-    html`<td>${sensor.address || "any"}</td>`,
+    html`<td>${sensor.address || t("any")}</td>`,
   );
 
 /** The table of all sensors. */
@@ -83,22 +93,22 @@ export function numbersTable(/** @type {Rig} */ { sensors, imu, gnss }) {
     <tbody>
       ${sensors.map(sensorRow)}${row(
         "imu",
-        "IMU",
+        t("imu"),
         html`<td>–</td>`,
         ...centimeters(imu.xyz_m),
         ...triple(imu.rpy_deg, 4),
         milliseconds(imu.time_offset_s),
-        cell(imu.port ? String(imu.port) : "none"),
-        html`<td>any</td>`,
+        cell(imu.port ? String(imu.port) : t("none")),
+        html`<td>${t("any")}</td>`,
       )}${row(
         "gnss",
-        "GNSS antenna",
+        t("gnss-antenna"),
         html`<td>–</td>`,
         ...centimeters(gnss.lever_arm_m),
         ...none(3),
         milliseconds(gnss.time_offset_s),
-        cell(gnss.port ? String(gnss.port) : "none"),
-        html`<td>${gnss.serial || "any"}</td>`,
+        cell(gnss.port ? String(gnss.port) : t("none")),
+        html`<td>${gnss.serial || t("any")}</td>`,
       )}
     </tbody>
   </table>`;
@@ -109,8 +119,7 @@ const STEEP_DEG = 85;
 /** What to know about the angles of a rig; empty = nothing. */
 export const angleHint = (/** @type {Rig} */ { sensors, imu }) =>
   [...sensors, imu].some(({ rpy_deg: [, pitch] }) => Math.abs(pitch) > STEEP_DEG)
-    ? "With a pitch near 90°, roll and yaw turn about the same axis: " +
-      "at 90° only their difference counts, at −90° their sum."
+    ? t("steep-pitch")
     : "";
 
 /**
@@ -124,12 +133,12 @@ export function versionList(id, versions, shown, show) {
   const item = (/** @type {RigVersion} */ { number, who, when: time, problem, note, evidence }) =>
     html`<li aria-current=${number === shown ? "true" : nothing}>
       <div class="title-row">
-        <b>Version ${number}</b>
+        <b>${t("version", { version: String(number) })}</b>
         <div class="buttons">
           ${
             number === shown
-              ? html`<span class="quiet">shown</span>`
-              : html`<button type="button" @click=${() => show(number)}>Show</button>`
+              ? html`<span class="quiet">${t("shown")}</span>`
+              : html`<button type="button" @click=${() => show(number)}>${t("show-it")}</button>`
           }
           <a class="button" href=${rigFileUrl(id, number)}>TOML</a>
         </div>
@@ -140,7 +149,7 @@ export function versionList(id, versions, shown, show) {
       ${
         evidence
           ? html`<details>
-              <summary>Evidence of the calibration</summary>
+              <summary>${t("evidence")}</summary>
               <p class="note">${evidence}</p>
             </details>`
           : nothing
@@ -153,11 +162,11 @@ export function versionList(id, versions, shown, show) {
 
 /** The projects that used a rig. */
 export function useList(/** @type {RigUse[]} */ uses) {
-  if (!uses.length) return html`<p class="quiet">No project of this server yet</p>`;
+  if (!uses.length) return html`<p class="quiet">${t("no-use")}</p>`;
   const item = (/** @type {RigUse} */ { project, name, version }) =>
     html`<li>
       <a href=${projectUrl(project)}>${name}</a
-      >${version ? html`<small>version ${version}</small>` : nothing}
+      >${version ? html`<small>${t("version-brief", { version })}</small>` : nothing}
     </li>`;
   return html`<ul class="files">
     ${uses.map(item)}

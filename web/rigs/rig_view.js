@@ -4,6 +4,7 @@ import { html, render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { OrbitCamera } from "./orbit_camera.js";
 import { boundsOf, describe, shapesOf } from "./rig_scene.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Rig} from "./rig_math.js"
@@ -39,9 +40,9 @@ export class RigView extends HTMLElement {
     render(
       html`${this.#canvas}
         <div class="view-buttons">
-          ${this.#button("+", "Zoom in", () => this.#camera.zoom(ZOOM))}
-          ${this.#button("−", "Zoom out", () => this.#camera.zoom(1 / ZOOM))}
-          ${this.#button("⟲", "Reset the view", () => this.#reset())}
+          ${this.#button("+", t("zoom-in"), () => this.#camera.zoom(ZOOM))}
+          ${this.#button("−", t("zoom-out"), () => this.#camera.zoom(1 / ZOOM))}
+          ${this.#button("⟲", t("reset-view"), () => this.#reset())}
         </div>`,
       this,
     );

@@ -19,6 +19,7 @@ import "./rig_form.js";
 import { changesOf } from "./rig_math.js";
 import { angleHint, numbersTable, useList, versionList } from "./rig_table.js";
 import "./rig_view.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {Content} from "../shared/dom.js"
@@ -56,7 +57,9 @@ function drawList() {
   const entry = (/** @type {RigCard} */ { id, shipped, version, problem, sensors }) =>
     html`<li>
       <a href=${rigUrl(id)} aria-current=${id === state.rig?.id ? "page" : nothing}
-        ><b>${id}</b><small>${shipped ? "comes with recon4" : `version ${version}`}</small
+        ><b>${id}</b
+        ><small
+          >${shipped ? t("shipped-brief") : t("version-brief", { version: String(version) })}</small
         ><small>${problem || sensors.join(", ")}</small></a
       >
     </li>`;
@@ -67,12 +70,13 @@ function drawRig() {
   const { rig } = state;
   if (!rig) return;
   const { id, shipped, version, content, versions } = rig;
-  document.title = `${id} · Rigs · recon4`;
+  document.title = `${id} · ${t("rigs-page")}`;
   byId("title").textContent = content.name === id ? id : `${id}: ${content.name}`;
+  const values = { version: String(version), newest: String(newestOf(rig)) };
   const about = versions.find((one) => one.number === version);
   byId("facts").textContent = shipped
-    ? "Comes with recon4. Duplicate it to change it."
-    : [`Version ${version} of ${newestOf(rig)}`, about?.who, about?.when && when(about.when)]
+    ? t("shipped")
+    : [t("version-of", values), about?.who, about?.when && when(about.when)]
         .filter(Boolean)
         .join(", ");
   form.hidden = true;
@@ -92,14 +96,16 @@ function drawActions(/** @type {ShownRig} */ rig) {
   render(
     html`${
         changes && !shipped
-          ? html`<button type="button" @click=${() => edit(rig)}>Edit</button>`
+          ? html`<button type="button" @click=${() => edit(rig)}>${t("edit")}</button>`
           : nothing
       }
       ${
         changes
-          ? html`<button type="button" @click=${() => askDuplicate(id, leadTo)}>Duplicate…</button>`
+          ? html`<button type="button" @click=${() => askDuplicate(id, leadTo)}>
+              ${t("duplicate-open")}
+            </button>`
           : nothing
-      } <a class="button" href=${rigFileUrl(id, version)} download>Export TOML</a>`,
+      } <a class="button" href=${rigFileUrl(id, version)} download>${t("export-toml")}</a>`,
     byId("actions"),
   );
 }
@@ -117,15 +123,15 @@ const section = (title, content) =>
 function drawAbout(/** @type {ShownRig} */ { id, shipped, version, versions, content, uses }) {
   const { before } = state;
   const changes = before ? changesOf(before, content) : [];
-  const lines = changes.length ? changes : ["The same numbers"];
+  const lines = changes.length ? changes : [t("same-numbers")];
   const list = html`<ul id="changes">
     ${lines.map((text) => html`<li>${text}</li>`)}
   </ul>`;
   render(
     [
-      before ? section(`Changed since version ${version - 1}`, list) : nothing,
-      shipped ? nothing : section("Versions", versionList(id, versions, version, show)),
-      section("Projects that used it", useList(uses)),
+      before ? section(t("changed-since", { version: String(version - 1) }), list) : nothing,
+      shipped ? nothing : section(t("versions"), versionList(id, versions, version, show)),
+      section(t("used-by-projects"), useList(uses)),
     ],
     byId("about"),
   );

@@ -11,15 +11,16 @@ import {
 import { attempt, byId, html, nothing, render, repeat, succeeds } from "../shared/dom.js";
 import { bytes, when } from "../shared/format.js";
 import "../shared/page_head.js";
+import { t } from "../shared/texts.js";
 
 /** @import {StoredItem} from "../shared/http_types" */
 
 /** @type {Record<string, string>} */
 const KINDS = {
-  project: "Project",
-  recording: "Recording, uploaded",
-  upload: "Unfinished upload",
-  deleted: "Deleted",
+  project: t("head-project"),
+  recording: t("kind-recording"),
+  upload: t("kind-upload"),
+  deleted: t("kind-deleted"),
 };
 
 /**
@@ -43,24 +44,24 @@ function confirmed(title, text) {
 
 async function deleteAfterwards(/** @type {StoredItem} */ { kind, name, id, used_by }) {
   const consequence = used_by.length
-    ? `${used_by.join(", ")} keep their maps, but cannot be processed from it again. `
+    ? `${t("recording-used", { projects: used_by.join(", ") })} `
     : "";
   /** @type {Record<string, string>} */
   const texts = {
-    recording: `${consequence}It can be restored for a week.`,
-    upload: "What was received is removed at once.",
-    deleted: "It cannot be restored afterwards.",
+    recording: `${consequence}${t("restorable")}`,
+    upload: t("upload-goes"),
+    deleted: t("not-restorable"),
   };
   /** @type {Record<string, (id: string) => Promise<unknown>>} */
   const requests = { recording: deleteRecording, upload: removeUpload, deleted: removeProject };
-  if (!(await confirmed(`Delete ${name}?`, texts[kind] ?? ""))) return;
+  if (!(await confirmed(t("delete-ask", { name }), texts[kind] ?? ""))) return;
   if (await succeeds(byId("message"), () => requests[kind]?.(id))) await reload();
 }
 
 function actions(/** @type {StoredItem} */ item) {
   const { kind, id, name } = item;
-  if (kind === "project") return html`<a class="button" href=${projectUrl(id)}>Open</a>`;
-  const label = kind === "deleted" ? "Delete now" : "Delete…";
+  if (kind === "project") return html`<a class="button" href=${projectUrl(id)}>${t("open")}</a>`;
+  const label = kind === "deleted" ? t("delete-now") : t("delete-open");
   /**
    * @param {string} text
    * @param {() => unknown} onclick
@@ -71,19 +72,19 @@ function actions(/** @type {StoredItem} */ item) {
     if (await succeeds(byId("message"), () => restoreProject(id))) await reload();
   };
   return [
-    kind === "deleted" ? button("Restore", restore) : nothing,
+    kind === "deleted" ? button(t("restore"), restore) : nothing,
     button(label, () => deleteAfterwards(item)),
   ];
 }
 
 function row(/** @type {StoredItem} */ item) {
   const { kind, name, bytes: size, used_by, expires } = item;
-  const uses = expires ? `until ${when(expires)}` : used_by.join(", ");
+  const uses = expires ? t("until", { when: when(expires) }) : used_by.join(", ");
   return html`<tr>
     <th scope="row">${name}</th>
-    <td data-label="Kind">${KINDS[kind]}</td>
-    <td data-label="Size">${bytes(size)}</td>
-    <td data-label="Used by">${uses || "–"}</td>
+    <td data-label=${t("kind")}>${KINDS[kind]}</td>
+    <td data-label=${t("size")}>${bytes(size)}</td>
+    <td data-label=${t("used-by")}>${uses || "–"}</td>
     <td><div class="actions">${actions(item)}</div></td>
   </tr>`;
 }
@@ -93,9 +94,12 @@ async function reload() {
   if (!view) return;
   const { disk_bytes, free_bytes, server_bytes, items } = view;
   const listed = items.reduce((sum, one) => sum + one.bytes, 0);
-  byId("disk").textContent =
-    `${bytes(free_bytes)} of ${bytes(disk_bytes)} are free. Listed here: ${bytes(listed)}; ` +
-    `queue, logs and caches of the server: ${bytes(server_bytes)}.`;
+  byId("disk").textContent = t("disk-is", {
+    free: bytes(free_bytes),
+    disk: bytes(disk_bytes),
+    listed: bytes(listed),
+    server: bytes(server_bytes),
+  });
   render(
     repeat(items, ({ kind, id }) => `${kind} ${id}`, row),
     byId("items"),

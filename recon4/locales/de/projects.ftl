@@ -28,9 +28,7 @@ show-twins = Gleiche Aufzeichnung mehrfach ({ $count })
 show-archived = Archiviert ({ $count })
 trash-recording = Aufzeichnung { $project }
 trash-goes = wird am { $when } endgültig gelöscht
-restore = Wiederherstellen
 restore-of = { $project } wiederherstellen
-delete-now = Jetzt löschen
 delete-now-of = { $project } endgültig löschen
 
 ## Ein Projekt ordnen
@@ -144,7 +142,6 @@ stored-frames-without = Neue Entscheidungen und die Ansichten von Paaren und Mul
 stored-map = Kacheln der Karte
 stored-map-without = Karte, Schnitte und Exporte brauchen sie. Die LAZ-Datei bleibt.
 stored-what = Was
-size = Größe
 stored-free = Freigebbar
 stored-days = Was nur frühere Läufe brauchten, wird { $days } Tage nach dem letzten Lauf freigegeben.
 stored-stays = Nichts wird von selbst freigegeben: siehe recon4 serve --keep-earlier.
@@ -166,7 +163,6 @@ storing-no-stage-accounts-for-it = keine Stufe weist es aus
 run-again = Neuer Lauf mit anderen Einstellungen
 rename-or-delete = Umbenennen oder löschen
 rename = Umbenennen
-delete-ask = { $name } löschen?
 delete-restorable = Eine Woche lang lässt es sich aus der Liste der Projekte wiederherstellen. Die Aufzeichnung wird nicht gelöscht.
 log = Protokoll
 log-download = Protokoll herunterladen

@@ -10,6 +10,10 @@ save = Speichern
 delete = Löschen
 delete-open = Löschen…
 remove = Entfernen
+size = Größe
+delete-ask = { $name } löschen?
+restore = Wiederherstellen
+delete-now = Jetzt löschen
 copy = Kopieren
 copied = ✓ Kopiert
 
@@ -246,3 +250,10 @@ preset-outdoor = Straßen, Plätze, Felder: Voxel von 3 cm, Strecken bis 100 m
 preset-hector = Ein 2-D-Laser, eingepasst wie bei hector_slam; keine Schleifenschlüsse
 preset-wuerzburg = Ein Rucksack mit Profiler, nach den Verfahren seiner Veröffentlichung
 preset-thesis = Das Verfahren der 4RECON-Dissertation, wie veröffentlicht
+
+## Passwort noch einmal
+
+password = Passwort
+password-again = Passwort noch einmal
+password-why = Dies wird mit dem eigenen Namen gezeichnet, und die Anmeldung ist eine Weile her
+confirm = Bestätigen

@@ -28,9 +28,7 @@ show-twins = Same recording twice ({ $count })
 show-archived = Archived ({ $count })
 trash-recording = Recording { $project }
 trash-goes = is deleted permanently on { $when }
-restore = Restore
 restore-of = Restore { $project }
-delete-now = Delete now
 delete-now-of = Delete { $project } permanently
 
 ## Organize a project
@@ -144,7 +142,6 @@ stored-frames-without = New decisions, and the views of pairs and multiframes, n
 stored-map = Tiles of the map
 stored-map-without = The map, slices and exports need them. The LAZ stays.
 stored-what = What
-size = Size
 stored-free = Can be freed
 stored-days = What only earlier runs needed is freed { $days } days after the last run.
 stored-stays = Nothing is freed by itself: see recon4 serve --keep-earlier.
@@ -166,7 +163,6 @@ storing-no-stage-accounts-for-it = no stage accounts for it
 run-again = Run again, with other settings
 rename-or-delete = Rename or delete
 rename = Rename
-delete-ask = Delete { $name }?
 delete-restorable = It can be restored from the list of projects for a week. The recording is not deleted.
 log = Log
 log-download = Download the log

@@ -10,6 +10,10 @@ save = Save
 delete = Delete
 delete-open = Delete…
 remove = Remove
+size = Size
+delete-ask = Delete { $name }?
+restore = Restore
+delete-now = Delete now
 copy = Copy
 copied = ✓ Copied
 
@@ -246,3 +250,10 @@ preset-outdoor = Streets, squares, fields: voxels of 3 cm, ranges up to 100 m
 preset-hector = A 2-D laser, matched as hector_slam does; no loop closures
 preset-wuerzburg = A backpack with a profiler, by the methods of its publication
 preset-thesis = The algorithm of the 4RECON thesis as published
+
+## Password again
+
+password = Password
+password-again = Your password again
+password-why = This is signed with your name, and you signed in a while ago
+confirm = Confirm

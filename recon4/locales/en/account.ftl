@@ -1,0 +1,166 @@
+### Login, pairing, guests, accounts and people.
+
+## Login
+
+login-page = Sign in · recon4
+sign-in = Sign in
+show-password = Show the password
+password-hint = At least 12 characters. A few words you do not say together are good
+first-admin-page = First admin · recon4
+first-admin = Create the first admin
+first-admin-why = This server has no accounts yet. This link works once
+first-admin-go = Create admin and sign in
+
+## Guests
+
+guest-page = Shared map · recon4
+shared-map = Shared map
+opening = Opening…
+sign-in-password = Sign in with a password
+guest-signed-in = This browser is signed in already: sign out to see what a guest sees.
+guest-nothing = This link opens nothing.
+guest-no-link = Open the link that you were given; its address ends with a long word.
+
+## Pairing, on the phone
+
+pair-page = Pair this phone · recon4
+pair-phone = Pair this phone
+phone-name = Name of this phone
+phone-example = Anna's phone
+show-code = Show a code
+signing-in = Signing in…
+pair-new-code = Make a new QR code on the laptop, or sign in with a code
+pair-enter = On a computer that is signed in, open the page Phone and enter this code
+pair-waiting = Waiting, { $time } left
+pair-ended = The session of this phone has ended; a running capture goes on.
+pair-scan = Scan the QR code on the laptop (page Phone), or sign in with a code
+
+## Account
+
+account-page = Account · recon4
+account = Account
+signed-in-where = Where you are signed in
+change-your-password = Change your password
+old-password = Old password
+new-password = New password, at least 12 characters
+change-password = Change password
+programs = Programs can do what these pages do:
+http-api = HTTP API
+no-login = This server has no login
+password-changed = The password is changed; your other sessions have ended
+
+## Sessions
+
+device = { $browser } on { $system }
+device-unknown = Unknown program
+person = Person
+session-device = Device
+from-address = From
+session-began = Signed in
+session-seen = Last seen
+action = Action
+session-end-of = End session of { $who }, { $device }
+session-end = End
+session-this = This one
+
+## People
+
+people-page = People · recon4
+people-without = This server runs without login: these people can sign in once it is started with --lan
+role = Role
+state = State
+since = Since
+no-accounts = No accounts yet
+add-person = Add a person
+first-password = First password, at least 12 characters
+add = Add
+sessions = Sessions
+role-is-viewer = Viewer: looks and measures
+role-is-operator = Operator: records and processes
+role-is-reviewer = Reviewer: processes, decides, approves
+role-is-admin = Admin: everything
+role-of = Role of { $name }
+enable = Enable
+disable = Disable
+enable-of = Enable { $name }
+disable-of = Disable { $name }
+is-disabled = Disabled
+may-sign-in = May sign in
+
+## Audit log
+
+audit-log = Audit log
+when = When
+who = Who
+what = What
+outcome = Outcome
+older = Older entries
+outcome-done = Done
+outcome-refused = Refused
+outcome-failed = Failed
+chain-broken = Entry { $entry } does not match the hash of the one before: the log was altered
+chain-intact = { $entries } entries, hash chain intact
+
+## Trusted keys
+
+trusted-keys = Trusted keys
+keys-what = An approval counts only if one of these keys signed it. Before you add a key of other people, compare it with them by telephone or on paper.
+whose = Whose
+key = Key
+change = Change
+no-keys = No keys yet: this server makes its own with the first approval
+whose-key = Whose key
+public-key-digits = Public key, 64 hexadecimal digits
+trust-key = Trust this key
+remove-key-of = Remove the key of { $name }
+public-key = Public key
+key-counts = Counts
+key-removed = Removed { $when } by { $who }
+made-here = { $when }, made here
+added-by = { $when }, by { $who }
+
+## Webhooks
+
+webhooks = Webhooks
+webhooks-what = Finished jobs and approvals are posted to these addresses, signed, until they are taken.
+address = Address
+takes = Takes
+no-webhooks = No webhooks yet
+webhook-secret = The receiver checks signatures with this secret, which is shown only now:
+add-webhook = Add webhook
+event-jobs = finished jobs
+event-approvals = approvals
+event-tests = tests
+undelivered = { $count } not delivered yet
+delivered = All delivered
+test = Test
+
+## Pairing, on the laptop
+
+phone-page = Phone · recon4
+phone = Phone
+phone-without = This server listens to this computer only
+phone-network = A phone can view and control a capture once the server is started for the network, with TLS and login:
+phone-first-start = Its first start makes a certificate and shows a link to create the first admin. No internet is needed: phone and laptop in the same Wi-Fi are enough, the laptop's own hotspot too.
+phone-live-here = Live page on this computer
+phone-may = The phone may
+with-qr = With a QR code
+show-qr = Show QR code
+qr-alt = QR code for one phone
+qr-host = The phone reaches this computer at
+with-code = With a code the phone shows
+code-open = On the phone open
+code-touch = and touch "Show a code". Then type it here:
+six-digits = Six digits
+approve = Approve
+trust-server = The phone asks whether to trust this server
+fingerprint = Compare before you go on: the certificate the phone shows must have this SHA-256 fingerprint
+paired-for = A phone stays paired for 12 hours.
+end-session = End its session
+at-any-time = at any time.
+phone-operator = look, and start, mark and stop
+phone-viewer = look only
+approve-as = Approve as { $role }
+show-new-code = Show a new code
+qr-left = For one phone, as { $role }, { $seconds } s left
+phone-signed-in = { $name } at { $address } is signed in as { $role }
