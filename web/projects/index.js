@@ -266,7 +266,7 @@ async function showTrash() {
         aria-label=${t("restore-of", { project })}
         @click=${act(() => restoreProject(id))}
       >
-        ${t("restore")}
+        ${t("restore-it")}
       </button>
       <button
         type="button"

@@ -72,7 +72,7 @@ function actions(/** @type {StoredItem} */ item) {
     if (await succeeds(byId("message"), () => restoreProject(id))) await reload();
   };
   return [
-    kind === "deleted" ? button(t("restore"), restore) : nothing,
+    kind === "deleted" ? button(t("restore-it"), restore) : nothing,
     button(label, () => deleteAfterwards(item)),
   ];
 }

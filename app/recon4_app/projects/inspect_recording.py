@@ -5,10 +5,14 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from recon4.locales.languages import ENGLISH
 from recon4.untrusted.names import is_unnameable
 from recon4_app.projects.tuning import INSPECTION
+
+if TYPE_CHECKING:
+    from recon4.recording.info_records import SensorInfo
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -84,7 +88,6 @@ def inspect_recording(
         RecordingError: If it cannot be read or has an unknown format.
     """
     from recon4.findings.wording import whole_text
-    from recon4.model.plain import finite_or_none
     from recon4.recording.info import describe
 
     info = describe(path, near=beside)
@@ -97,16 +100,7 @@ def inspect_recording(
         bytes=info.bytes,
         seconds=max(0.0, info.seconds),
         estimated=info.estimated,
-        sensors=tuple(
-            SensorSummary(
-                label=sensor.label,
-                model=sensor.model,
-                content=sensor.content,
-                count=sensor.count,
-                rate_hz=finite_or_none(sensor.rate_hz),
-            )
-            for sensor in info.sensors
-        ),
+        sensors=tuple(map(_summary_of, info.sensors)),
         samples=info.samples,
         derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
         missing=tuple(text for text in info.missing if not _is_in(text, suited)),
@@ -120,6 +114,18 @@ def inspect_recording(
         imu=suited.get("IMU", ""),
         gnss=suited.get("GNSS", ""),
         first_rig=info.first_rig if _needs_rig(info.missing) and "rig" not in suited else "",
+    )
+
+
+def _summary_of(sensor: SensorInfo) -> SensorSummary:
+    from recon4.model.plain import finite_or_none
+
+    return SensorSummary(
+        label=sensor.label,
+        model=sensor.model,
+        content=sensor.content,
+        count=sensor.count,
+        rate_hz=finite_or_none(sensor.rate_hz),
     )
 
 

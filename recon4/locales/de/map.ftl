@@ -160,7 +160,6 @@ is-open = Offen
 edit = Bearbeiten
 remove-photo = Foto entfernen
 remove-photo-of = Foto entfernen: { $text }
-remove = Entfernen
 link-copied = Der Link zu dieser Ansicht ist kopiert
 link-above = Die Adresse dieser Seite ist der Link zu dieser Ansicht: dort kopieren
 saved-views = Gespeicherte Ansichten

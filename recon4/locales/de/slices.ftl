@@ -167,7 +167,6 @@ align-icp = Mit ICP ausrichten
 align-pairs = Mit Paaren ausrichten
 undo-alignment = Ausrichtung rückgängig
 no-alignment = Keine Ausrichtung
-remove = Entfernen
 upload-file = Datei hochladen…
 reference-file = Referenzdatei
 path-here = Pfad auf diesem Rechner

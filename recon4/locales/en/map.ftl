@@ -160,7 +160,6 @@ is-open = Open
 edit = Edit
 remove-photo = Remove photo
 remove-photo-of = Remove the photo: { $text }
-remove = Remove
 link-copied = The link to this view is copied
 link-above = The address of this page is the link to this view: copy it there
 saved-views = Saved views

@@ -167,7 +167,6 @@ align-icp = Align by ICP
 align-pairs = Align by pairs
 undo-alignment = Undo alignment
 no-alignment = No alignment
-remove = Remove
 upload-file = Upload file…
 reference-file = Reference file
 path-here = Path on this computer
