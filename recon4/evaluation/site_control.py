@@ -11,6 +11,8 @@ import msgspec
 from recon4.errors import StoreError
 from recon4.evaluation.table import text_table
 from recon4.evaluation.tuning import ACCURACY_CLASSES
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Texts, texts
 
 Offset = tuple[float | None, float | None, float | None]
 
@@ -118,35 +120,39 @@ def accuracy_of(outcome: ControlOutcome, role: str, *, rigid: bool = False) -> R
     )
 
 
-def statements(outcome: ControlOutcome) -> list[str]:
+def statements(outcome: ControlOutcome, language: str = ENGLISH) -> list[str]:
     """What may be said of the accuracy: ASPRS Edition 2 (2023), the limits of V, USIBD LOA (2016).
 
     The error of the survey is part of it (ASPRS Edition 2, 7.11). A map counts as tested from 30
     check points on; with fewer its accuracy is estimated.
     """
+    said = texts(language, "report")
     found = accuracy_of(outcome, "check")
     if not found.points:
-        return ["No check point: nothing independent says how accurate the map is."]
+        return [said.part("statement", "none", {})]
     lines, few = list[str](), list[str]()
-    for name, axis, points, rmse_m, survey_m in (
-        ("horizontal", "H", found.measured_h, found.rmse_h_m, found.survey_h_m),
-        ("vertical", "V", found.measured_v, found.rmse_v_m, found.survey_v_m),
+    for name, points, rmse_m, survey_m in (
+        ("horizontal", found.measured_h, found.rmse_h_m, found.survey_h_m),
+        ("vertical", found.measured_v, found.rmse_v_m, found.survey_v_m),
     ):
         if points < ACCURACY_CLASSES.tested_points:
-            few.append(f"{name} {points}")
+            few.append(said.part("statement", f"few-{name}", {"points": points}))
         if rmse_m is not None:
-            word = "Tested" if points >= ACCURACY_CLASSES.tested_points else "Estimated"
-            total_cm = 100.0 * math.hypot(rmse_m, survey_m)
+            tested = points >= ACCURACY_CLASSES.tested_points
+            values = {
+                "total": 100.0 * math.hypot(rmse_m, survey_m),
+                "points": points,
+                "survey": 100.0 * survey_m,
+            }
             lines.append(
-                f"{word} {name} positional accuracy: RMSE_{axis} = {total_cm:.1f} cm "
-                f"at {points} check points, with the survey's own {100 * survey_m:.1f} cm "
-                "(ASPRS Positional Accuracy Standards, Edition 2)."
+                said.part("statement", f"{'tested' if tested else 'estimated'}-{name}", values)
             )
     if few:
-        lines.append(
-            f"Not tested: {' and '.join(few)} of {ACCURACY_CLASSES.tested_points} check points."
-        )
-    return [*lines, *_walk_limits(found), *_level_of_accuracy(found)]
+        both = said.part("statement", "and", {"one": few[0], "other": few[-1]})
+        all_few = both if len(few) > 1 else few[0]
+        of = ACCURACY_CLASSES.tested_points
+        lines.append(said.part("statement", "untested", {"few": all_few, "of": of}))
+    return [*lines, *_walk_limits(found, said), *_level_of_accuracy(found, said)]
 
 
 def outcome_text(outcome: ControlOutcome) -> str:
@@ -196,22 +202,22 @@ def _test_cells(test: PointTest | None) -> tuple[str, ...]:
     return (r, *found, f"{test.w:.1f} ({test.limit:.1f})", said)
 
 
-def _walk_limits(found: RoleAccuracy) -> Sequence[str]:
+def _walk_limits(found: RoleAccuracy, said: Texts) -> Sequence[str]:
     """Limits of V §3.3: mean 14 cm and 12 cm, largest 28 cm and 24 cm."""
     given = (found.mean_h_m, found.mean_v_m, found.max_h_m, found.max_v_m)
     limits = ACCURACY_CLASSES.walk_limits_m
     known = [(one, limit) for one, limit in zip(given, limits, strict=True) if one is not None]
     if not known:
         return ()
-    holds = all(one <= limit for one, limit in known)
-    shown = ", ".join(f"{100 * one:.1f} of {100 * limit:.0f}" for one, limit in known)
-    return (
-        f"{'Within' if holds else 'Outside'} the usual limits, mean and largest residual "
-        f"horizontal and in height: {shown} cm.",
+    shown = ", ".join(
+        said.part("statement", "of", {"value": 100.0 * one, "limit": 100.0 * limit})
+        for one, limit in known
     )
+    holds = all(one <= limit for one, limit in known)
+    return (said.part("statement", "within" if holds else "outside", {"figures": shown}),)
 
 
-def _level_of_accuracy(found: RoleAccuracy) -> Sequence[str]:
+def _level_of_accuracy(found: RoleAccuracy, said: Texts) -> Sequence[str]:
     if found.rmse_3d_m is None:
         return ()
     total_m = math.hypot(found.rmse_3d_m, found.survey_h_m, found.survey_v_m)
@@ -220,7 +226,7 @@ def _level_of_accuracy(found: RoleAccuracy) -> Sequence[str]:
     for name, limit_m in ACCURACY_CLASSES.loa_m:
         if most_m <= limit_m:
             level = name
-    return (f"USIBD level of accuracy (2 σ = {100 * most_m:.1f} cm): {level}.",)
+    return (said.part("statement", "level", {"most": 100.0 * most_m, "level": level}),)
 
 
 def _length(offset: Sequence[float | None]) -> float | None:

@@ -19,6 +19,8 @@ from recon4.georeference.control_fit import (
     with_sites,
 )
 from recon4.georeference.tuning_control import BLUNDERS
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import texts
 from recon4.units import FOOT_M
 
 
@@ -49,33 +51,20 @@ class Blunder:
 
     @property
     def text(self) -> str:
-        """One sentence, with what to do."""
-        return _TEXTS[self.kind].format(
-            names=" and ".join(self.points), offset=_offset(self.offset_m), about=len(self.points)
-        )
-
-
-_TEXTS = {
-    BlunderKind.FEET: "The coordinates are feet: say that the unit of the survey is ft.",
-    BlunderKind.AXES: (
-        "Easting and northing are exchanged: name the columns of the survey in their true order."
-    ),
-    BlunderKind.NAMES: "{names} have each other's name: exchange them in the survey.",
-    BlunderKind.POINT: (
-        "{names} is {offset} off where the other points say: correct it, or make it a check point."
-    ),
-    BlunderKind.OFFSET: (
-        "{names} are all {offset} off: another datum, or another height of prism or antenna."
-    ),
-}
+        """One sentence, with what to do; `recon4.report` says it in other languages."""
+        said = texts(ENGLISH, "report")
+        values = {"names": " and ".join(self.points), "offset": _offset(self.offset_m)}
+        return said.part("blunder", self.kind, values)
 
 
 def _offset(offset_m: tuple[float, float, float] | None) -> str:
+    said = texts(ENGLISH, "report")
     if offset_m is None:
-        return "far"
-    return "{:.3f} m ({:+.3f} E, {:+.3f} N, {:+.3f} up)".format(
-        float(np.linalg.norm(offset_m)), *offset_m
-    )
+        return said.part("blunder", "far", {})
+    length = f"{float(np.linalg.norm(offset_m)):.3f}"
+    east, north, up = (f"{value:+.3f}" for value in offset_m)
+    values = {"length": length, "east": east, "north": north, "up": up}
+    return said.part("blunder", "offset-of", values)
 
 
 def named_blunders(

@@ -14,6 +14,7 @@ from recon4.evaluation.site_control import (
 )
 from recon4.model.site_control import SITE_GRID
 from recon4.report.client import Row, Section, Table
+from recon4.report.client_blunders import blunder_in
 from recon4.report.client_front import grouped, shown
 from recon4.report.client_words import Words
 from recon4.report.tuning import CLIENT_REPORT
@@ -37,8 +38,11 @@ def control_section(georeference: Mapping[str, object], words: Words) -> Section
         Row(words("control.crs"), words("control.crs_site") if grid else shown(outcome.crs)),
         Row(words("control.freedom"), str(outcome.freedom)),
         Row(words("control.scale"), scale),
-        *(Row(words("control.statement"), text) for text in statements(outcome)),
-        *(Row(words("control.blunder"), shown(text)) for text in outcome.blunders),
+        *(Row(words("control.statement"), text) for text in statements(outcome, words.language)),
+        *(
+            Row(words("control.blunder"), shown(blunder_in(text, words)))
+            for text in outcome.blunders
+        ),
     ]
     found = [one for one in (_points(outcome, words), _roles(outcome, words)) if one.rows]
     left = len(outcome.points) - CLIENT_REPORT.most_points

@@ -13,6 +13,11 @@ from recon4.locales.texts import Texts, texts
 _NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+\.\d+(?![\d.])")
 """A decimal number; an address or a version has more points."""
 
+_NO_WORDS = re.compile(r"[^A-Za-z ]")
+"""Stands beside a term that is translated; a sentence of words is left whole."""
+_AXES = "(east, north, up)"
+"""Ends the values of three axes."""
+
 
 class Words:
     """The texts of a language; the key of a text is its message and its part, ``limits.draft``."""
@@ -56,6 +61,10 @@ class Words:
         """The value of a row: parts between commas that are, begin or end with a term."""
         if self.language == ENGLISH:
             return text
+        if (whole := self.term(text)) != text:
+            return whole
+        if text.endswith(_AXES):
+            return f"{self.decimal(text.removesuffix(_AXES))}({self.term(_AXES)})"
         return self.decimal(", ".join(map(self._part, text.split(", "))))
 
     def _part(self, text: str) -> str:
@@ -64,7 +73,8 @@ class Words:
         split = text.split(" ")
         for k in range(len(split) - 1, 0, -1):
             head, tail = " ".join(split[:k]), " ".join(split[k:])
-            if self.term(head) != head or self.term(tail) != tail:
+            known = (self.term(head) != head, self.term(tail) != tail)
+            if all(known) or (any(known) and _NO_WORDS.search(tail if known[0] else head)):
                 return f"{self.term(head)} {self.term(tail)}"
         return text
 

@@ -242,6 +242,33 @@ control =
     .blunder = Vermuteter grober Fehler
     .more = { $count } weitere Punkte stehen in georeference.json.
 
+# Was über die Genauigkeit an Kontrollpunkten gesagt werden kann.
+statement =
+    .none = Kein Kontrollpunkt: nichts Unabhängiges sagt, wie genau die Karte ist.
+    .few-horizontal = Lage { $points }
+    .few-vertical = Höhe { $points }
+    .and = { $one } und { $other }
+    .untested = Nicht geprüft: { $few } von { $of } Kontrollpunkten.
+    .tested-horizontal = Geprüfte Lagegenauigkeit: RMSE_H = { DECIMAL($total, digits: 1) } cm an Kontrollpunkten (Anzahl: { $points }), mit den { DECIMAL($survey, digits: 1) } cm der Vermessung selbst (ASPRS Positional Accuracy Standards, Edition 2).
+    .tested-vertical = Geprüfte Höhengenauigkeit: RMSE_V = { DECIMAL($total, digits: 1) } cm an Kontrollpunkten (Anzahl: { $points }), mit den { DECIMAL($survey, digits: 1) } cm der Vermessung selbst (ASPRS Positional Accuracy Standards, Edition 2).
+    .estimated-horizontal = Geschätzte Lagegenauigkeit: RMSE_H = { DECIMAL($total, digits: 1) } cm an Kontrollpunkten (Anzahl: { $points }), mit den { DECIMAL($survey, digits: 1) } cm der Vermessung selbst (ASPRS Positional Accuracy Standards, Edition 2).
+    .estimated-vertical = Geschätzte Höhengenauigkeit: RMSE_V = { DECIMAL($total, digits: 1) } cm an Kontrollpunkten (Anzahl: { $points }), mit den { DECIMAL($survey, digits: 1) } cm der Vermessung selbst (ASPRS Positional Accuracy Standards, Edition 2).
+    .of = { DECIMAL($value, digits: 1) } von { DECIMAL($limit, digits: 0) }
+    .within = Innerhalb der üblichen Grenzen, mittlerer und größter Restfehler in Lage und Höhe: { $figures } cm.
+    .outside = Außerhalb der üblichen Grenzen, mittlerer und größter Restfehler in Lage und Höhe: { $figures } cm.
+    .level = Genauigkeitsstufe nach USIBD (2 σ = { DECIMAL($most, digits: 1) } cm): { $level }.
+
+# Vermutete grobe Fehler einer Vermessung.
+blunder =
+    .feet = Die Koordinaten sind Fuß: als Einheit der Vermessung ft angeben.
+    .axes = Ost und Nord sind vertauscht: die Spalten der Vermessung in ihrer wahren Reihenfolge benennen.
+    .names = { $names } tragen vertauschte Namen: in der Vermessung tauschen.
+    .point = { $names } liegt { $offset } neben der Stelle, die die anderen Punkte angeben: berichtigen oder zum Kontrollpunkt machen.
+    .offset = { $names } liegen alle { $offset } daneben: anderes Datum oder andere Höhe von Prisma oder Antenne.
+    .offset-of = { $length } m ({ $east } E, { $north } N, { $up } H)
+    .far = weit
+    .and = { " und " }
+
 people =
     .place = Stelle x, y, z [m]
     .note = Notiz
@@ -368,3 +395,17 @@ term =
     .draft-written-without-approval = Entwurf: ohne Freigabe geschrieben
     .accuracy-at-check-points = Genauigkeit an Kontrollpunkten
     .suspected-blunder = vermuteter grober Fehler
+    .crs-operation = Koordinatensystem: Transformation
+    .crs-accuracy = Koordinatensystem: Genauigkeit
+    .crs-origin = Koordinatensystem: Ursprung
+    .adjusted-to-control-points = auf Passpunkte ausgeglichen
+    .site-grid = Baustellennetz
+    .no-control-points-alone-placed-it = nein: allein Passpunkte haben sie platziert
+    .frame = Achsen
+    .x-east-y-north-z-up-wgs-84-ellipsoidal-height = x Ost, y Nord, z nach oben; WGS 84, ellipsoidische Höhe
+    .origin-lat-deg = Ursprung: Breite
+    .origin-lon-deg = Ursprung: Länge
+    .origin-height = Ursprung: Höhe
+    .fixes-used = verwendete GNSS-Positionen
+    .rmse = RMSE
+    .east-north-up = Ost, Nord, Höhe

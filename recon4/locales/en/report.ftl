@@ -241,6 +241,33 @@ control =
     .blunder = Suspected blunder
     .more = { $count } more points are in georeference.json.
 
+# What may be said of the accuracy at check points.
+statement =
+    .none = No check point: nothing independent says how accurate the map is.
+    .few-horizontal = horizontal { $points }
+    .few-vertical = vertical { $points }
+    .and = { $one } and { $other }
+    .untested = Not tested: { $few } of { $of } check points.
+    .tested-horizontal = Tested horizontal positional accuracy: RMSE_H = { DECIMAL($total, digits: 1) } cm at { $points } check points, with the survey's own { DECIMAL($survey, digits: 1) } cm (ASPRS Positional Accuracy Standards, Edition 2).
+    .tested-vertical = Tested vertical positional accuracy: RMSE_V = { DECIMAL($total, digits: 1) } cm at { $points } check points, with the survey's own { DECIMAL($survey, digits: 1) } cm (ASPRS Positional Accuracy Standards, Edition 2).
+    .estimated-horizontal = Estimated horizontal positional accuracy: RMSE_H = { DECIMAL($total, digits: 1) } cm at { $points } check points, with the survey's own { DECIMAL($survey, digits: 1) } cm (ASPRS Positional Accuracy Standards, Edition 2).
+    .estimated-vertical = Estimated vertical positional accuracy: RMSE_V = { DECIMAL($total, digits: 1) } cm at { $points } check points, with the survey's own { DECIMAL($survey, digits: 1) } cm (ASPRS Positional Accuracy Standards, Edition 2).
+    .of = { DECIMAL($value, digits: 1) } of { DECIMAL($limit, digits: 0) }
+    .within = Within the usual limits, mean and largest residual horizontal and in height: { $figures } cm.
+    .outside = Outside the usual limits, mean and largest residual horizontal and in height: { $figures } cm.
+    .level = USIBD level of accuracy (2 σ = { DECIMAL($most, digits: 1) } cm): { $level }.
+
+# Suspected blunders of a survey.
+blunder =
+    .feet = The coordinates are feet: say that the unit of the survey is ft.
+    .axes = Easting and northing are exchanged: name the columns of the survey in their true order.
+    .names = { $names } have each other's name: exchange them in the survey.
+    .point = { $names } is { $offset } off where the other points say: correct it, or make it a check point.
+    .offset = { $names } are all { $offset } off: another datum, or another height of prism or antenna.
+    .offset-of = { $length } m ({ $east } E, { $north } N, { $up } up)
+    .far = far
+    .and = { " and " }
+
 people =
     .place = place x, y, z [m]
     .note = note
@@ -367,3 +394,17 @@ term =
     .draft-written-without-approval = Draft: written without approval
     .accuracy-at-check-points = accuracy at check points
     .suspected-blunder = suspected blunder
+    .crs-operation = CRS: operation
+    .crs-accuracy = CRS: accuracy
+    .crs-origin = CRS: origin
+    .adjusted-to-control-points = adjusted to control points
+    .site-grid = site grid
+    .no-control-points-alone-placed-it = no: control points alone placed it
+    .frame = frame
+    .x-east-y-north-z-up-wgs-84-ellipsoidal-height = x east, y north, z up; WGS 84, ellipsoidal height
+    .origin-lat-deg = origin latitude
+    .origin-lon-deg = origin longitude
+    .origin-height = origin height
+    .fixes-used = fixes used
+    .rmse = rmse
+    .east-north-up = east, north, up

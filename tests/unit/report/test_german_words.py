@@ -1,0 +1,63 @@
+"""What files have in English stands in German in the report for the client."""
+
+import re
+
+import msgspec
+import pytest
+
+from recon4.evaluation.site_control import ControlOutcome, ControlRow
+from recon4.georeference.control_blunders import Blunder, BlunderKind
+from recon4.report.client_control import control_section
+from recon4.report.client_words import words
+from recon4.report.rows import placed_rows
+
+SAY = words("de")
+NAMES = {
+    BlunderKind.FEET: (),
+    BlunderKind.AXES: (),
+    BlunderKind.NAMES: ("P1", "P2"),
+    BlunderKind.POINT: ("P1",),
+    BlunderKind.OFFSET: ("P1", "P2", "P3"),
+}
+
+
+@pytest.mark.parametrize("kind", BlunderKind)
+def test_accuracy_and_blunders_at_control_points_are_german(kind):
+    known = Blunder(kind=kind, points=NAMES[kind], offset_m=(0.1, 0.2, -0.3))
+    rows = (ControlRow("P1", "check", (0.01, 0.01), (0.0, 0.0, 0.0), (0.03, 0.04, 0.02), None),)
+    outcome = ControlOutcome(
+        crs="site grid", freedom=4, scale=1.0, points=rows, blunders=(known.text,)
+    )
+
+    section = control_section({"control": msgspec.to_builtins(outcome)}, SAY)
+    said = " ".join(f"{row.label} {row.value}" for row in section.rows)
+
+    assert "RMSE_H = 5,2 cm an Kontrollpunkten (Anzahl: 1)" in said and "Lage 1 und Höhe 1" in said
+    assert not re.search(r"\b(the|and|of|is|are|have)\b", said), said
+    if kind in {BlunderKind.POINT, BlunderKind.OFFSET}:
+        assert "0,374 m (+0,100 E, +0,200 N, -0,300 H)" in said
+
+
+def test_the_place_of_a_map_is_german():
+    record = {
+        "georeference": {
+            "georeferenced": False,
+            "frame": "x east, y north, z up; WGS 84, ellipsoidal height",
+            "origin": {"lat_deg": 49.1, "height_m": 100.0},
+            "rmse_enu_m": [0.01, 0.02, 0.03],
+        },
+        "crs": {"name": "site grid", "operation": "adjusted to control points"},
+    }
+
+    found = {SAY.label(name): SAY.value(text) for name, text in placed_rows(record, "de")}
+
+    assert found == {
+        "georeferenziert": "nein: allein Passpunkte haben sie platziert",
+        "Achsen": "x Ost, y Nord, z nach oben; WGS 84, ellipsoidische Höhe",
+        "Ursprung: Breite": "49,10000000 °",
+        "Ursprung: Höhe": "100,000 m",
+        "RMSE": "0,010, 0,020, 0,030 m (Ost, Nord, Höhe)",
+        "Koordinatensystem: Name": "Baustellennetz",
+        "Koordinatensystem: Transformation": "auf Passpunkte ausgeglichen",
+    }
+    assert SAY.value("no positions") == "no positions", "no half of a sentence is translated"
