@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.kernels.checksums import crc32_of_rows
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.hesai.layouts import CRC_POLYNOMIAL, HesaiLayout
 
@@ -30,10 +31,7 @@ def crc32(rows: NDArray[np.uint8]) -> NDArray[np.uint32]:
     Args:
         rows: Bytes, (N, K).
     """
-    total = np.full(len(rows), 0xFFFFFFFF, dtype=np.uint32)
-    for column in np.ascontiguousarray(rows.T):
-        total = (total << np.uint32(8)) ^ _TABLE[(total >> np.uint32(24)) ^ column]
-    return total
+    return crc32_of_rows(rows, _TABLE)
 
 
 def are_right(payloads: Payloads, layout: HesaiLayout) -> NDArray[np.bool_]:
