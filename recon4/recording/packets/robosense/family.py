@@ -105,9 +105,11 @@ class SpinningFormat:
         device = is_device(payloads)
         if device.any():
             self._learn(payloads[device])
-        sound = np.zeros(len(payloads), np.bool_)
-        sound[~device] = sound_packets(payloads[~device], self._model, self._report)
-        self._see(payloads[sound][:1])
+            sound = np.zeros(len(payloads), np.bool_)
+            sound[~device] = sound_packets(payloads[~device], self._model, self._report)
+        else:
+            sound = sound_packets(payloads, self._model, self._report)
+        self._see(payloads[np.flatnonzero(sound)[:1]])
         return sound
 
     def stamps_ns(self, payloads: Payloads) -> Times:

@@ -50,6 +50,15 @@ def dual_packets(payloads: Payloads, model: WideModel) -> NDArray[np.bool_]:
     return np.asarray(pairs.all(axis=1))
 
 
+def _by_returns(
+    dual: NDArray[np.bool_],
+) -> tuple[tuple[NDArray[np.bool_] | slice, bool], ...]:
+    """Rows of packets with one return and with two; a slice, which copies nothing, if all are."""
+    if dual.any() and not dual.all():
+        return (~dual, False), (dual, True)
+    return ((slice(None), bool(dual.any())),)
+
+
 def sound_wide(payloads: Payloads, model: WideModel, report: ImportReport) -> NDArray[np.bool_]:
     """Which payloads are data packets of a model, (N,).
 
@@ -65,7 +74,7 @@ def sound_wide(payloads: Payloads, model: WideModel, report: ImportReport) -> ND
     blocks = as_packets(payloads)["blocks"]
     dual = dual_packets(payloads, model)
     flagged, turned = np.zeros((2, len(payloads)), np.bool_)
-    for rows, is_dual in ((~dual, False), (dual, True)):
+    for rows, is_dual in _by_returns(dual):
         used = model.used_blocks(dual=is_dual)
         flags = blocks["flag"][rows, :used]
         flagged[rows] = (flags == model.wire_flags(dual=is_dual)).all(axis=1)
@@ -113,7 +122,7 @@ class WideFormat:
             product = payloads[:, -1] == VLS128_PRODUCT
             self._report.count("packets_other_product", int((sound & ~product).sum()))
             sound &= product
-        self._see(payloads[sound])
+        self._see(payloads if sound.all() else payloads[sound])
         return sound
 
     def stamps_ns(self, payloads: Payloads) -> Times:
@@ -131,7 +140,7 @@ class WideFormat:
         dual = dual_packets(payloads, self._model)
         turn_rad = self._turns(t_ns, payloads)
         blocks = np.empty((len(payloads), self._width), np.uint8)
-        for rows, is_dual in ((~dual, False), (dual, True)):
+        for rows, is_dual in _by_returns(dual):
             blocks[rows] = merged(payloads[rows], self._model, dual=is_dual)
         packets = SpinningPackets(t_ns, blocks, dual.astype(np.uint8), turn_rad)
         columns = points_of(packets, tables=self._tables, report=self._report)
