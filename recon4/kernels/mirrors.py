@@ -8,7 +8,20 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.spinning import Decoded, Distances
+from recon4.kernels.returns import (
+    AT,
+    ColumnShots,
+    Decoded,
+    decoded,
+    in_order,
+    new_points,
+    new_returns,
+    pack,
+    ring_marks,
+    sift,
+    unpack,
+)
+from recon4.kernels.spinning import Distances
 
 _UNIT_RAD = np.float32(np.deg2rad(1 / 25600))
 _TURN = 360 * 25600
@@ -31,21 +44,50 @@ class Shape(NamedTuple):
     """From one channel to the next."""
 
 
+class DrumRows(NamedTuple):
+    """Where the numbers of the channels begin, a room of `AT` each."""
+
+    cos_az: int = 0
+    sin_az: int = 256
+    """Cosine and sine of what a channel adds to twice the angle since its mirror begins."""
+    cos_el: int = 512
+    sin_el: int = 768
+    """Cosine and sine of its elevation."""
+    end: int = 1024
+    """Places of all rows."""
+
+
+OF = DrumRows()
+
+
 class Drum(NamedTuple):
-    """Directions of M mirrors and C channels."""
+    """MirrorRows of M mirrors and C channels."""
 
     start: NDArray[np.int64]
     """Azimuth where each mirror begins [1/25600°], ascending, (M,)."""
-    azimuth: NDArray[np.float32]
-    """Cosine and sine of what each channel adds to twice the angle since then, (C, 2)."""
-    elevation: NDArray[np.float32]
-    """Cosine and sine of the elevation of each channel, (C, 2)."""
+    channel: NDArray[np.float32]
+    """Rows of `DrumRows`, (4 * room,)."""
     azimuth_correction: NDArray[np.float32]
     """Added to the azimuth at every 2° of the drum [rad], (180, C)."""
     elevation_correction: NDArray[np.float32]
     """Added to the elevation [rad], (180, C)."""
     ring: NDArray[np.uint8]
     """Ring, 0 = lowest elevation, (C,)."""
+
+
+class MirrorRows(NamedTuple):
+    """Where the numbers of the shots of a block begin, a room of `AT` each."""
+
+    x: int = 0
+    y: int = 256
+    """At first sine and cosine of the azimuth."""
+    z: int = 512
+    """Where one unit of the distance leads [m]."""
+    end: int = 768
+    """Places of all rows."""
+
+
+TO = MirrorRows()
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy", inline="always")
@@ -59,7 +101,78 @@ def _turned(
     return cosine * cos_by - sine * sin_by, sine * cos_by + cosine * sin_by
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def _read(payload: NDArray[np.uint8], base: int, channel: int, row: int, of: ColumnShots) -> None:
+    """Read one return of all shots of a block: distance u2, intensity u1."""
+    shots, whole = payload[base:], of.whole[row * AT.room :]
+    if channel == 4:  # a number that the compiler knows: it reads eight at once
+        for c in range(len(of.t_ns)):
+            whole[AT.units + c] = np.int32(shots[4 * c]) | (np.int32(shots[4 * c + 1]) << 8)
+            whole[AT.marks + c] = np.int32(shots[4 * c + 2])
+    else:
+        for c in range(len(of.t_ns)):
+            at = c * channel
+            whole[AT.units + c] = np.int32(shots[at]) | (np.int32(shots[at + 1]) << 8)
+            whole[AT.marks + c] = np.int32(shots[at + 2])
+
+
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+def _direct(
+    azimuth: int,
+    drum: Drum,
+    unit_m: np.float32,
+    circle: NDArray[np.float32],
+    to: NDArray[np.float32],
+) -> None:
+    """MirrorRows of the shots of a block.
+
+    Args:
+        azimuth: Of the drum [1/25600°], below a turn.
+        drum: Its mirrors.
+        unit_m: Meters of one unit of the distance.
+        circle: `recon4.kernels.spinning.CIRCLE`.
+        to: Receives rows of `MirrorRows`, (3 * room,).
+    """
+    mirror = len(drum.start) - 1
+    for m in range(len(drum.start)):
+        if drum.start[m] <= azimuth:
+            mirror = m
+    angle = 2 * ((azimuth - drum.start[mirror]) % _TURN) % _TURN
+    start = circle[angle // 256]
+    cos_block, sin_block = _turned(start[0], start[1], np.float32(angle % 256) * _UNIT_RAD)
+    node = azimuth // _NODE
+    after = (node + 1) % drum.azimuth_correction.shape[0]
+    weight = np.float32(azimuth % _NODE) / np.float32(_NODE)
+    channel = drum.channel
+    first, second = drum.azimuth_correction[node], drum.azimuth_correction[after]
+    for c in range(len(drum.ring)):
+        cos_c, sin_c = channel[OF.cos_az + c], channel[OF.sin_az + c]
+        by_rad = first[c] + (second[c] - first[c]) * weight
+        to[TO.y + c], to[TO.x + c] = _turned(
+            cos_block * cos_c - sin_block * sin_c, sin_block * cos_c + cos_block * sin_c, by_rad
+        )
+    first, second = drum.elevation_correction[node], drum.elevation_correction[after]
+    for c in range(len(drum.ring)):
+        by_rad = first[c] + (second[c] - first[c]) * weight
+        cos_el, sin_el = _turned(channel[OF.cos_el + c], channel[OF.sin_el + c], by_rad)
+        flat = cos_el * unit_m
+        to[TO.x + c] *= flat
+        to[TO.y + c] *= flat
+        to[TO.z + c] = sin_el * unit_m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _place(to: NDArray[np.float32], row: int, of: ColumnShots) -> None:
+    """Points of one return of all shots of a block."""
+    units, xyz = of.whole[row * AT.room :], of.xyz[row * AT.echo :]
+    for c in range(len(of.t_ns)):
+        distance = np.float32(units[AT.units + c])
+        xyz[c] = distance * to[TO.x + c]
+        xyz[AT.room + c] = distance * to[TO.y + c]
+        xyz[2 * AT.room + c] = distance * to[TO.z + c]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def decode_mirrors(
     payloads: NDArray[np.uint8],
     t_ns: NDArray[np.int64],
@@ -78,86 +191,35 @@ def decode_mirrors(
         returns: Returns of each shot, 1 or 2: blocks that follow each other, (P,).
         block_ns: Time of each block after the first shot in single return mode [ns], (B,).
         shape: Where the numbers lie.
-        drum: Directions.
+        drum: MirrorRows of at most one room of channels.
         distances: Unit and limits.
         circle: `recon4.kernels.spinning.CIRCLE`.
 
     Returns:
         As `recon4.kernels.spinning.decode`; no azimuth jumps are counted.
     """
-    channels = len(drum.azimuth)
-    size = payloads.shape[0] * shape.blocks * channels
-    out_t = np.empty(size, np.int64)
-    out_xyz = np.empty((size, 3), np.float32)
-    out_intensity = np.empty(size, np.uint16)
-    out_ring = np.empty(size, np.uint8)
-    out_echo = np.empty(size, np.uint8)
-    counts = np.zeros(4, np.int64)
-    n = 0
-    for p in range(payloads.shape[0]):
+    channels = len(drum.ring)
+    points = new_points(len(payloads), shape.blocks * channels)
+    of, to = new_returns(channels), np.zeros(TO.end, np.float32)
+    marks, order = ring_marks(drum.ring), np.arange(channels).astype(np.uintp)
+    limits = (distances.least, distances.most)
+    for p in range(len(payloads)):
         payload, group = payloads[p], returns[p]
         for b in range(0, shape.blocks - group + 1, group):
             at = shape.first + b * shape.block
             azimuth = (int(payload[at]) | (int(payload[at + 1]) << 8)) * 256 + payload[at + 2]
-            azimuth %= _TURN
-            mirror = len(drum.start) - 1
-            for m in range(len(drum.start)):
-                if drum.start[m] <= azimuth:
-                    mirror = m
-            angle = 2 * ((azimuth - drum.start[mirror]) % _TURN) % _TURN
-            start = circle[angle // 256]
-            cos_block, sin_block = _turned(start[0], start[1], np.float32(angle % 256) * _UNIT_RAD)
-            node = azimuth // _NODE
-            after = (node + 1) % drum.azimuth_correction.shape[0]
-            weight = np.float32(azimuth % _NODE) / np.float32(_NODE)
-            t = t_ns[p] + block_ns[b // group]
-            for c in range(channels):
-                at = shape.first + b * shape.block + shape.channel_first + c * shape.channel
-                distance = int(payload[at]) | (int(payload[at + 1]) << 8)
-                intensity = payload[at + 2]
-                other, other_intensity = 0, np.uint8(0)
-                if group == 2:
-                    # As in `spinning.decode`: the more intense return first, equal ones once.
-                    other, other_intensity = distance, intensity
-                    at += shape.block
-                    distance = int(payload[at]) | (int(payload[at + 1]) << 8)
-                    intensity = payload[at + 2]
-                    if distance == 0 or (other_intensity > intensity and other != 0):
-                        distance, other = other, distance
-                        intensity, other_intensity = other_intensity, intensity
-                    if other == distance:
-                        other = 0
-                if distance == 0:
-                    counts[0] += 1
-                    continue
-                cos_c, sin_c = drum.azimuth[c, 0], drum.azimuth[c, 1]
-                by_rad = drum.azimuth_correction[node, c]
-                by_rad += (drum.azimuth_correction[after, c] - by_rad) * weight
-                cos_az, sin_az = _turned(
-                    cos_block * cos_c - sin_block * sin_c,
-                    sin_block * cos_c + cos_block * sin_c,
-                    by_rad,
-                )
-                by_rad = drum.elevation_correction[node, c]
-                by_rad += (drum.elevation_correction[after, c] - by_rad) * weight
-                cos_el, sin_el = _turned(drum.elevation[c, 0], drum.elevation[c, 1], by_rad)
-                echo = np.uint8(0)
-                while distance != 0:
-                    if distance < distances.least:
-                        counts[1] += 1
-                    elif distance > distances.most:
-                        counts[2] += 1
-                    else:
-                        r = np.float32(distance) * distances.unit_m
-                        out_t[n] = t
-                        out_xyz[n, 0] = r * cos_el * sin_az
-                        out_xyz[n, 1] = r * cos_el * cos_az
-                        out_xyz[n, 2] = r * sin_el
-                        out_intensity[n] = intensity
-                        out_ring[n] = drum.ring[c]
-                        out_echo[n] = echo
-                        n += 1
-                        echo = np.uint8(1)
-                    distance, intensity = other, other_intensity
-                    other = 0
-    return out_t[:n], out_xyz[:n], out_intensity[:n], out_ring[:n], out_echo[:n], counts
+            at += shape.channel_first
+            _read(payload, at, shape.channel, group - 1, of)
+            if group == 2:  # as in `spinning.decode`: of equal returns the second one is the first
+                _read(payload, at + shape.block, shape.channel, 0, of)
+                in_order(of, True)
+            _direct(azimuth % _TURN, drum, distances.unit_m, circle, to)
+            for echo in range(group):
+                sift(of, echo, marks, limits)
+                _place(to, echo, of)
+            of.t_ns[:] = t_ns[p] + block_ns[b // group]
+            pack(of, order, group, points)
+        unpack(points)
+    found = decoded(points, of)
+    counts = np.append(found[5], np.int64(0))
+    return found[0], found[1], found[2], found[3], found[4], counts

@@ -9,7 +9,9 @@ from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.returns import (
+    AT,
     ColumnShots,
+    Decoded,
     decoded,
     in_order,
     new_points,
@@ -17,8 +19,8 @@ from recon4.kernels.returns import (
     pack,
     ring_marks,
     sift,
+    unpack,
 )
-from recon4.kernels.spinning import Decoded
 
 _POLYNOMIAL = 0xC96C5795D7870F42
 """ECMA-182, lowest bit first."""
@@ -104,14 +106,14 @@ def _read(
     pixels: NDArray[np.uint32], step: int, echo: EchoWords, row: int, of: ColumnShots
 ) -> None:
     """Read one return of all pixels of a column, of ``step`` words each."""
-    units, marks = of.units, of.marks
+    whole = of.whole[row * AT.room :]
     ranges = pixels[echo.range_word :: step]
     intensities = pixels[echo.intensity_word :: step]
     range_mask, shift = np.uint32(echo.range_mask), np.uint32(echo.intensity_shift)
     intensity_mask = np.uint32(echo.intensity_mask)
     for b in range(len(ranges)):
-        units[row, b] = ranges[b] & range_mask
-        marks[row, b] = (intensities[b] >> shift) & intensity_mask
+        whole[AT.units + b] = np.int32(ranges[b] & range_mask)
+        whole[AT.marks + b] = np.int32((intensities[b] >> shift) & intensity_mask)
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
@@ -131,18 +133,18 @@ def _place(
         row: Which return.
         of: Has the distances, receives the points.
     """
-    units, xyz = of.units, of.xyz
+    units, xyz = of.whole[row * AT.room :], of.xyz[row * AT.echo :]
     xx, xy, xz, x0 = m[0, 0], m[0, 1], m[0, 2], m[0, 3]
     yx, yy, yz, y0 = m[1, 0], m[1, 1], m[1, 2], m[1, 3]
     zx, zy, zz, z0 = m[2, 0], m[2, 1], m[2, 2], m[2, 3]
     for b in range(beam.shape[1]):
-        r = np.float32(units[row, b]) * unit_m
+        r = np.float32(units[AT.units + b]) * unit_m
         x = beam[0, b] + r * beam[3, b]
         y = beam[1, b] + r * beam[4, b]
         z = beam[2, b] + r * beam[5, b]
-        xyz[row, 0, b] = xx * x + xy * y + xz * z + x0
-        xyz[row, 1, b] = yx * x + yy * y + yz * z + y0
-        xyz[row, 2, b] = zx * x + zy * y + zz * z + z0
+        xyz[b] = xx * x + xy * y + xz * z + x0
+        xyz[AT.room + b] = yx * x + yy * y + yz * z + y0
+        xyz[2 * AT.room + b] = zx * x + zy * y + zz * z + z0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -175,8 +177,8 @@ def decode(
     t_ns, turn_rows, first = columns
     step, by_intensity, unit_m = pixel
     ring, returns = ring_marks(beams[1]), len(layout)
-    of, n = new_returns(len(ring)), np.int64(0)
-    points = new_points(turn_rows.size * len(ring) * returns)
+    of, order = new_returns(len(ring)), np.arange(len(ring)).astype(np.uintp)
+    points = new_points(len(words), turn_rows.shape[1] * len(ring) * returns)
     for p in range(words.shape[0]):
         for c in range(turn_rows.shape[1]):
             if turn_rows[p, c] < 0:
@@ -190,5 +192,6 @@ def decode(
             for row in range(returns):
                 sift(of, row, ring, limits)
                 _place(turns[turn_rows[p, c]], beams[0], unit_m, row, of)
-            n = pack(n, of, returns, points)
-    return decoded(n, points, of)
+            pack(of, order, returns, points)
+        unpack(points)
+    return decoded(points, of)

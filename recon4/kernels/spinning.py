@@ -14,6 +14,19 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.returns import (
+    AT,
+    ColumnShots,
+    Decoded,
+    decoded,
+    in_order,
+    new_points,
+    new_returns,
+    pack,
+    ring_marks,
+    sift,
+    unpack,
+)
 from recon4.units import CDEG_RAD
 
 _AZIMUTH = CDEG_RAD * (np.arange(72000) % 36000)
@@ -22,25 +35,43 @@ CIRCLE = np.column_stack([np.cos(_AZIMUTH), np.sin(_AZIMUTH)]).astype(np.float32
 numba compiles arrays of modules into the code. (72000, 2)."""
 
 
-class BeamNumbers(NamedTuple):
-    """Where the numbers of a beam are."""
+class BeamRows(NamedTuple):
+    """Where the numbers of the beams begin, a room of `AT` each."""
 
     cos_el: int = 0
-    sin_el: int = 1
+    sin_el: int = 256
     """Cosine and sine of the elevation of a beam."""
-    along: int = 2
-    right: int = 3
-    height: int = 4
+    along: int = 512
+    right: int = 768
+    height: int = 1024
     """Where it begins: along f, to the right of f as seen from above, above the center [m]."""
-    range: int = 5
+    range: int = 1280
     """Added to every distance [m]."""
-    fraction: int = 6
+    fraction: int = 1536
     """Firing time as a fraction of the time from a firing to the next: of the turn in between."""
-    offset: int = 7
+    offset: int = 1792
     """The small rest of the offset of the azimuth beside whole 0.01° [rad]."""
+    end: int = 2048
+    """Places of all rows."""
 
 
-BEAM = BeamNumbers()
+BEAM = BeamRows()
+
+
+class TurnRows(NamedTuple):
+    """Where the numbers of the shots of a block begin, a room of `AT` each."""
+
+    cos: int = 0
+    sin: int = 256
+    """Cosine and sine of the azimuth; of that of the block at first."""
+    right_sin: int = 512
+    right_cos: int = 768
+    """How far the beam begins to the right, times sine and cosine of the azimuth [m]."""
+    end: int = 1024
+    """Places of all rows."""
+
+
+TURN = TurnRows()
 
 
 class Layout(NamedTuple):
@@ -95,12 +126,12 @@ class Channels(NamedTuple):
     """
 
     beam: NDArray[np.float32]
-    """See `BeamNumbers`, (T, C, 8)."""
-    offset_cdeg: NDArray[np.int64]
+    """Rows of `BeamRows`, (T, 8 * room)."""
+    offset_cdeg: NDArray[np.int32]
     """Added to the azimuth of the block: whole 0.01°, 0 to 35999, (T, C)."""
     ring: NDArray[np.uint8]
     """Ring, 0 = lowest elevation, (T, C)."""
-    order: NDArray[np.int64]
+    order: NDArray[np.uintp]
     """The channels in the order in which they fire, (T, C)."""
 
 
@@ -113,16 +144,6 @@ class Distances(NamedTuple):
     """Smaller ones are too near [units]; 0 is no return."""
     most: int
     """Larger ones are too far [units]."""
-
-
-Decoded = tuple[
-    NDArray[np.int64],
-    NDArray[np.float32],
-    NDArray[np.uint16],
-    NDArray[np.uint8],
-    NDArray[np.uint8],
-    NDArray[np.int64],
-]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -155,7 +176,107 @@ def _steps(payload: NDArray[np.uint8], layout: Layout, group: int, steps: NDArra
     return jumps
 
 
-@njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+def _read(payload: NDArray[np.uint8], base: int, layout: Layout, row: int, of: ColumnShots) -> None:
+    """Read one return of all shots of a block, whose channels begin at ``base``.
+
+    The usual sizes of a channel are numbers that the compiler knows: it reads eight at once.
+    """
+    shots, whole = payload[base:], of.whole[row * AT.room :]
+    if layout.channel == 3 and layout.intensity == 2:
+        for c in range(layout.channels):
+            whole[AT.units + c] = np.int32(shots[3 * c]) | (np.int32(shots[3 * c + 1]) << 8)
+            whole[AT.marks + c] = np.int32(shots[3 * c + 2])
+    elif layout.channel == 4 and layout.intensity == 2:
+        for c in range(layout.channels):
+            whole[AT.units + c] = np.int32(shots[4 * c]) | (np.int32(shots[4 * c + 1]) << 8)
+            whole[AT.marks + c] = np.int32(shots[4 * c + 2])
+    else:
+        for c in range(layout.channels):
+            whole[AT.units + c] = _word(shots, c * layout.channel, False)
+            whole[AT.marks + c] = np.int32(shots[c * layout.channel + layout.intensity])
+    mask = np.int32(layout.distance_mask)
+    if layout.big_endian:
+        for c in range(layout.channels):
+            word = whole[AT.units + c]
+            whole[AT.units + c] = (word >> 8) | ((word & 0xFF) << 8)
+    if mask != 0xFFFF:
+        for c in range(layout.channels):
+            whole[AT.units + c] &= mask
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy", forceinline=True)
+def _turn(
+    azimuth_cdeg: np.int32,
+    step_rad: np.float32,
+    beam: NDArray[np.float32],
+    offset_cdeg: NDArray[np.int32],
+    circle: NDArray[np.float32],
+    turned: NDArray[np.float32],
+) -> None:
+    """Azimuths of the shots of a block, see `TurnRows`.
+
+    Args:
+        azimuth_cdeg: Of the block [0.01°].
+        step_rad: Turn from a firing to the next [rad].
+        beam: Rows of `BeamRows`.
+        offset_cdeg: Added to the azimuth of the block [0.01°], (C,).
+        circle: `CIRCLE`.
+        turned: Receives the rows, (4 * room,).
+    """
+    for c in range(len(offset_cdeg)):  # on its own: what is looked up forbids eight at once
+        at = (azimuth_cdeg + offset_cdeg[c]) & 131071  # masked, an index is not negative
+        turned[TURN.cos + c] = circle[at, 0]
+        turned[TURN.sin + c] = circle[at, 1]
+    for c in range(len(offset_cdeg)):
+        turn = step_rad * beam[BEAM.fraction + c] + beam[BEAM.offset + c]
+        half = np.float32(0.5) * turn * turn
+        cos_turn = np.float32(1.0) - half
+        sin_turn = turn * (np.float32(1.0) - half * np.float32(1.0 / 3.0))
+        cos, sin = turned[TURN.cos + c], turned[TURN.sin + c]
+        turned[TURN.cos + c] = cos * cos_turn - sin * sin_turn
+        turned[TURN.sin + c] = sin * cos_turn + cos * sin_turn
+    for c in range(len(offset_cdeg)):
+        turned[TURN.right_sin + c] = beam[BEAM.right + c] * turned[TURN.sin + c]
+        turned[TURN.right_cos + c] = beam[BEAM.right + c] * turned[TURN.cos + c]
+
+
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy", forceinline=True)
+def _place(
+    beam: NDArray[np.float32],
+    turned: NDArray[np.float32],
+    unit_m: np.float32,
+    row: int,
+    of: ColumnShots,
+) -> None:
+    """Points of one return of all shots of a block.
+
+    Args:
+        beam: Rows of `BeamRows`.
+        turned: Rows of `TurnRows`.
+        unit_m: Meters of one unit of the distance.
+        row: Which return.
+        of: Has the distances, receives the points.
+    """
+    units, xyz = of.whole[row * AT.room :], of.xyz[row * AT.echo :]
+    for c in range(len(of.t_ns)):
+        r = np.float32(units[AT.units + c]) * unit_m + beam[BEAM.range + c]
+        flat = r * beam[BEAM.cos_el + c] + beam[BEAM.along + c]
+        xyz[c] = flat * turned[TURN.cos + c] - turned[TURN.right_sin + c]
+        xyz[AT.room + c] = -(flat * turned[TURN.sin + c] + turned[TURN.right_cos + c])
+        xyz[2 * AT.room + c] = r * beam[BEAM.sin_el + c] + beam[BEAM.height + c]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _all_ring_marks(ring: NDArray[np.uint8]) -> NDArray[np.int32]:
+    """`ring_marks` of each row of the tables, (T, C)."""
+    marks = np.empty(ring.shape, np.int32)
+    for row in range(len(ring)):
+        marks[row] = ring_marks(ring[row])
+    return marks
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def decode(
     payloads: NDArray[np.uint8],
     t_ns: NDArray[np.int64],
@@ -184,85 +305,40 @@ def decode(
             the azimuth in the packet tell.
 
     Returns:
-        ``t_ns, xyz, intensity, ring, echo`` of the N points in firing order, and counts of
-        shots without return, returns too near, too far and jumps of azimuth, (4,).
+        Points in firing order, and counts of shots without return, returns too near, too far and
+        jumps of azimuth, (4,).
     """
-    size = payloads.shape[0] * layout.blocks * layout.channels
-    out_t = np.empty(size, np.int64)
-    out_xyz = np.empty((size, 3), np.float32)
-    out_intensity = np.empty(size, np.uint16)
-    out_ring = np.empty(size, np.uint8)
-    out_echo = np.empty(size, np.uint8)
-    counts = np.zeros(4, np.int64)
-    steps = np.zeros(64, np.int32)
-    n = 0
-    is_given = turn_rad.shape[0] > 0
-    for p in range(payloads.shape[0]):
-        payload, start_ns, v = payloads[p], t_ns[p], variant[p]
-        counts[3] += _steps(payload, layout, roles.group[v], steps)
+    points = new_points(len(payloads), layout.blocks * layout.channels)
+    of, turned = new_returns(layout.channels), np.zeros(TURN.end, np.float32)
+    marks, steps, jumps = _all_ring_marks(channels.ring), np.zeros(64, np.int32), 0
+    limits, is_given = (distances.least, distances.most), len(turn_rad) > 0
+    for p in range(len(payloads)):
+        payload, v = payloads[p], variant[p]
+        jumps += _steps(payload, layout, roles.group[v], steps)
         for k in range(roles.block.shape[1]):
-            b = roles.block[v, k]
+            b, twin, row = roles.block[v, k], roles.twin[v, k], roles.table[v, k]
             if b < 0:
                 break
-            twin = roles.twin[v, k]
-            time_ns = roles.time_ns[v, k]
-            beams = channels.beam[roles.table[v, k]]
-            offset_cdeg = channels.offset_cdeg[roles.table[v, k]]
-            ring = channels.ring[roles.table[v, k]]
-            order = channels.order[roles.table[v, k]]
             base = layout.first + b * layout.block
             azimuth = _word(payload, base + layout.azimuth, layout.big_endian) % 36000
             step_rad = turn_rad[p] if is_given else np.float32(steps[b]) * np.float32(CDEG_RAD)
             base += layout.channel_first
-            to_twin = (twin - b) * layout.block
-            for i in range(layout.channels):
-                c = order[i] & 255  # masked, an index is not negative: numba need not ask
-                at = base + layout.channel * c
-                distance = _word(payload, at, layout.big_endian) & layout.distance_mask
-                intensity = payload[at + layout.intensity]
-                other, other_intensity = np.int32(0), np.uint8(0)
-                if twin >= 0:
-                    # The more intense return comes first, the twin's if both are as intense;
-                    # sensors repeat a single return, or leave one of the two empty.
-                    other, other_intensity = distance, intensity
-                    at += to_twin
-                    distance = _word(payload, at, layout.big_endian) & layout.distance_mask
-                    intensity = payload[at + layout.intensity]
-                    if distance == 0 or (other_intensity > intensity and other != 0):
-                        distance, other = other, distance
-                        intensity, other_intensity = other_intensity, intensity
-                    if other == distance:
-                        other = np.int32(0)
-                if distance == 0:
-                    counts[0] += 1
-                    continue
-                beam = beams[c]
-                turn = step_rad * beam[BEAM.fraction] + beam[BEAM.offset]
-                half = np.float32(0.5) * turn * turn
-                cos_turn = np.float32(1.0) - half
-                sin_turn = turn * (np.float32(1.0) - half * np.float32(1.0 / 3.0))
-                start = circle[(azimuth + offset_cdeg[c]) & 131071]
-                cos_az = start[0] * cos_turn - start[1] * sin_turn
-                sin_az = start[1] * cos_turn + start[0] * sin_turn
-                echo = np.uint8(0)
-                while distance != 0:
-                    if distance < distances.least:
-                        counts[1] += 1
-                    elif distance > distances.most:
-                        counts[2] += 1
-                    else:
-                        r = np.float32(distance) * distances.unit_m + beam[BEAM.range]
-                        flat = r * beam[BEAM.cos_el] + beam[BEAM.along]
-                        right = beam[BEAM.right]
-                        out_t[n] = start_ns + time_ns[c]
-                        out_xyz[n, 0] = flat * cos_az - right * sin_az
-                        out_xyz[n, 1] = -(flat * sin_az + right * cos_az)
-                        out_xyz[n, 2] = r * beam[BEAM.sin_el] + beam[BEAM.height]
-                        out_intensity[n] = intensity
-                        out_ring[n] = ring[c]
-                        out_echo[n] = echo
-                        n += 1
-                        echo = np.uint8(1)
-                    distance, intensity = other, other_intensity
-                    other = np.int32(0)
-    return out_t[:n], out_xyz[:n], out_intensity[:n], out_ring[:n], out_echo[:n], counts
+            returns = 2 if twin >= 0 else 1
+            # Of equal returns the twin's is the first: sensors repeat a single return, or leave
+            # one of the two empty.
+            _read(payload, base, layout, returns - 1, of)
+            if returns == 2:
+                _read(payload, base + (twin - b) * layout.block, layout, 0, of)
+                in_order(of, True)
+            beam = channels.beam[row]
+            _turn(np.int32(azimuth), step_rad, beam, channels.offset_cdeg[row], circle, turned)
+            for echo in range(returns):
+                sift(of, echo, marks[row], limits)
+                _place(beam, turned, distances.unit_m, echo, of)
+            for c in range(layout.channels):
+                of.t_ns[c] = t_ns[p] + roles.time_ns[v, k, c]
+            pack(of, channels.order[row], returns, points)
+        unpack(points)
+    found = decoded(points, of)
+    counts = np.append(found[5], np.int64(jumps))
+    return found[0], found[1], found[2], found[3], found[4], counts

@@ -10,11 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from recon4.kernels.returns import AT, Decoded
 from recon4.kernels.spinning import (
+    BEAM,
     CIRCLE,
     BlockRoles,
     Channels,
-    Decoded,
     Distances,
     Layout,
     decode,
@@ -50,14 +51,14 @@ class SpinningTables:
             assert array.shape == (variants, read)
         assert width == layout.channels
         assert layout.blocks <= 64
-        assert layout.channels <= 256
+        assert layout.channels <= AT.room
         assert (roles.group > 0).all()
         for blocks in (roles.block, roles.twin):
             assert (blocks >= -1).all()
             assert (blocks < layout.blocks).all()
-        beam, order = channels.beam.shape[:2], channels.order
-        for shape in (beam, channels.offset_cdeg.shape, channels.ring.shape, order.shape):
-            assert shape == (len(channels.ring), layout.channels)
+        order, shape = channels.order, (len(channels.ring), layout.channels)
+        assert channels.offset_cdeg.shape == channels.ring.shape == order.shape == shape
+        assert channels.beam.shape == (len(channels.ring), BEAM.end)
         assert (np.sort(order, axis=1) == np.arange(layout.channels)).all()
         assert ((roles.table >= 0) & (roles.table < len(channels.ring))).all()
         assert ((channels.offset_cdeg >= 0) & (channels.offset_cdeg < 36000)).all()
@@ -89,12 +90,14 @@ def beams(
     rest_rad = np.deg2rad(0.01) * (offset - whole)
     order = np.argsort(np.broadcast_to(fraction, elevation.shape), axis=1, kind="stable")
     numbers = (np.cos(elevation), np.sin(elevation), *origin_m, range_m, fraction, rest_rad)
-    beam = np.stack([np.broadcast_to(column, elevation.shape) for column in numbers], axis=-1)
+    beam = np.zeros((len(elevation), len(numbers), AT.room), np.float32)
+    for place, column in enumerate(numbers):
+        beam[:, place, : elevation.shape[1]] = column
     return Channels(
-        beam.astype(np.float32),
-        np.ascontiguousarray(whole % 36000, dtype=np.int64),
+        beam.reshape(len(elevation), BEAM.end),
+        np.ascontiguousarray(whole % 36000, dtype=np.int32),
         ring.reshape(elevation.shape).astype(np.uint8),
-        order.astype(np.int64),
+        order.astype(np.uintp),
     )
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.kernels import spinning as kernel
 from recon4.kernels.mirrors import Drum, Shape, decode_mirrors
+from recon4.kernels.returns import AT
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.packets.family import PacketSensor
@@ -122,8 +123,7 @@ class MirrorPoints:
         )
         self._drum = Drum(
             start=mirrors.start,
-            azimuth=_cos_sin(-_rad(mirrors.azimuth)),
-            elevation=_cos_sin(_rad(mirrors.elevation)),
+            channel=_channel_rows(-_rad(mirrors.azimuth), _rad(mirrors.elevation)),
             azimuth_correction=_rad(mirrors.azimuth_correction.T).astype(np.float32),
             elevation_correction=_rad(mirrors.elevation_correction.T).astype(np.float32),
             ring=np.unique(mirrors.elevation, return_inverse=True)[1].astype(np.uint8),
@@ -152,9 +152,12 @@ def _rad(fine: NDArray[np.int64]) -> Array:
     return np.ascontiguousarray(np.deg2rad(fine / 25600.0))
 
 
-def _cos_sin(angle_rad: Array) -> NDArray[np.float32]:
-    """Cosines and sines, (C, 2)."""
-    return np.column_stack([np.cos(angle_rad), np.sin(angle_rad)]).astype(np.float32)
+def _channel_rows(azimuth_rad: Array, elevation_rad: Array) -> NDArray[np.float32]:
+    """Rows of `recon4.kernels.mirrors.DrumRows`."""
+    rows = np.zeros((4, AT.room), np.float32)
+    for row, angle_rad in zip(rows.reshape(2, 2, -1), (azimuth_rad, elevation_rad), strict=True):
+        row[:, : len(angle_rad)] = np.cos(angle_rad), np.sin(angle_rad)
+    return rows.reshape(-1)
 
 
 def _kernel_layout(layout: HesaiLayout) -> kernel.Layout:
