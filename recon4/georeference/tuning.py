@@ -101,3 +101,23 @@ class LevelStageTuning(Struct, frozen=True, kw_only=True):
 
 
 LEVEL_STAGE = LevelStageTuning()
+
+
+class HoldTuning(Struct, frozen=True, kw_only=True):
+    """Below which changes a decided map stays where the undecided one is."""
+
+    moved_m: float = 0.004
+    """Of a position [m]: the step at which the refinement stops …"""
+    turned_rad: float = 4e-4
+    """… and of a direction [rad]: as far at ten meters."""
+    sd_ratio: float = 0.05
+    """Of a standard deviation, relatively; measured ones differ more from the stated ones …"""
+    least_sd_m: float = 1e-4
+    """… or by a step of those of points [m] …"""
+    least_sd_rad: float = 1e-5
+    """… and as far at ten meters [rad]."""
+    mirror_m: float = 0.5
+    """Of the middle of a mirror, whose rim is found by cells [m]."""
+
+
+HOLD = HoldTuning()

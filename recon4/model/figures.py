@@ -140,6 +140,15 @@ class MirrorFigures(msgspec.Struct, frozen=True, kw_only=True):
     """Ratio of all points that lie behind it."""
 
 
+class HeldFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """How far decisions would have moved a map that stays where it was without them."""
+
+    moved_m: float
+    """Largest of all positions [m]."""
+    turned_rad: float
+    """Largest of all directions [rad]."""
+
+
 class LevelFigures(Figures, frozen=True, kw_only=True):
     """The leveled map and its place on earth."""
 
@@ -159,6 +168,8 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     """None = not stated: line scans, or fewer than two nodes."""
     mirrors: tuple[MirrorFigures, ...] = ()
     """Walls that show the room before them."""
+    held: HeldFigures | None = None
+    """None = the map follows the decisions, or there are none."""
 
 
 class PlaceThickness(msgspec.Struct, frozen=True):

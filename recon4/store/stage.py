@@ -136,12 +136,23 @@ class StageRun(Generic[OfStage]):
 class StageRunner:
     """Runs the stages of a project in the given order, each at most once for the same inputs."""
 
-    def __init__(self, project: Project, settings: Settings, progress: Progress) -> None:
+    def __init__(
+        self, project: Project, settings: Settings, progress: Progress, *, is_latest: bool = True
+    ) -> None:
+        """Run nothing yet.
+
+        Args:
+            project: An open one.
+            settings: All settings.
+            progress: Who watches.
+            is_latest: Whether readers of the project are to find the artifacts of this run.
+        """
         self.runs: dict[str, StageRun[Any]] = {}
         """Stage name -> result, in order."""
         self._project = project
         self._settings = settings
         self._progress = progress
+        self._is_latest = is_latest
 
     def run(self, stage: Stage[Any, Any], **inputs: Input | Artifact | None) -> Artifact:
         """Run a stage, or reuse its finished artifact.
@@ -183,7 +194,8 @@ class StageRunner:
         self, stage: Stage[Any, Any], artifact: Artifact, done: FinishedStage, *, reused: bool
     ) -> Artifact:
         name, key = artifact.stage, artifact.key
-        self._project.ledger.set_current(name, key)
+        if self._is_latest:
+            self._project.ledger.set_current(name, key)
         figures = read_figures(artifact.folder, stage.figures)
         earlier = self.runs.get(name)
         before = (*earlier.before, earlier.done) if earlier else ()
@@ -193,6 +205,12 @@ class StageRunner:
             StageChanged(stage=name, key=key, state=state, seconds=round(done.seconds, 3))
         )
         return artifact
+
+    def aside(self) -> StageRunner:
+        """A runner that goes on from here without a trace in this run."""
+        other = StageRunner(self._project, self._settings, self._progress, is_latest=False)
+        other.runs.update(self.runs)
+        return other
 
     def skip(self, stage: Stage[Any, Any]) -> None:
         """Omit a stage in this run: an artifact of an earlier run does not belong to it."""

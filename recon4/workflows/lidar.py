@@ -36,7 +36,7 @@ def to_trajectory(run: Run) -> None:
     inputs = run.measurements | {"odometry": "odometry"}
     run.stage(REFINE, **inputs, nodes=run.nodes)
     leveled = {"refined": "refine", "graph": run.graph, "audit": run.rig_audit}
-    run.stage(LEVEL, **inputs, **leveled, **run.control)
+    run.stage(LEVEL, **inputs, **leveled, **run.control, **run.undecided(to_trajectory))
 
 
 def from_review(run: Run) -> None:

@@ -38,7 +38,7 @@ def to_trajectory(run: Run) -> None:
     inputs = {"frames": "frames", "odometry": "odometry"}
     run.stage(LINE_REFINE, **inputs, nodes=run.nodes)
     leveled = {"refined": "refine", "graph": run.graph, "audit": None}
-    run.stage(LEVEL, **inputs, **leveled, **run.control)
+    run.stage(LEVEL, **inputs, **leveled, **run.control, **run.undecided(to_trajectory))
 
 
 PROFILER = Workflow(

@@ -184,13 +184,14 @@ def _level(
     calibration: Path | None = None,
     **others: Path | SiteControl | None,
 ) -> LevelFigures:
+    from recon4.georeference.hold import hold
     from recon4.georeference.stage import RefinedWalk, level_and_georeference
     from recon4.pose_graph.files import load_graph
     from recon4.pose_graph.known_errors import load_known_errors
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
 
-    control = others.pop("control", None)
+    control, undecided = (others.pop(name, None) for name in ("control", "undecided"))
     doubts = {name: one for name, one in others.items() if not isinstance(one, SiteControl)}
     leveled = level_and_georeference(
         open_frames(frames, calibration),
@@ -203,7 +204,8 @@ def _level(
         settings=context.settings,
         progress=context.progress,
     )
-    return leveled.save(context.out)
+    held = hold(leveled, undecided, context.out) if isinstance(undecided, Path) else None
+    return held or leveled.save(context.out)
 
 
 def _intensity(

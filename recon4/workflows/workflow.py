@@ -67,6 +67,22 @@ class Run:
         T = found.T_a_b
         return arrays_of(found, {"t_ns": found.t_ns, "R": T.R, "t": T.t})
 
+    def undecided(self, from_review: Callable[[Run], None]) -> dict[str, Input]:
+        """Input of the stage that places the map: where it is without decisions about pairs.
+
+        Control points say where a map is; then there is no such input.
+
+        Args:
+            from_review: Runs the stages up to the final trajectory, which earlier runs have done
+                as a rule.
+        """
+        if not self.decided.standing or self.decided.control is not None:
+            return {}
+        aside = Run(self.runner.aside())
+        from_review(aside)
+        level = aside.runner.runs["level"].artifact
+        return {"undecided": Input(level.key, level.folder)}
+
     def files(self, stage: str, names: tuple[str, ...]) -> Input:
         """Some files of a stage's artifact: a stage that is given them reads no others of it."""
         return files_of(self.runner.runs[stage].artifact, names)

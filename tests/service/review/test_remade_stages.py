@@ -6,14 +6,24 @@ from pathlib import Path
 
 import pytest
 
+from recon4.georeference.tuning import HOLD
+from recon4.model.figures import LevelFigures
+from recon4.model.pose_graph import Verdict
 from recon4.pipeline import remake
+from recon4.pose_graph.files import load_graph
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
-from recon4.store.project import read_artifacts
+from recon4.store.project import Project, read_artifacts
+from recon4.store.stage import read_figures, read_manifest
 from recon4.workflows.make_map import PLACE, POSES, SIGHT
+from tests.review_project import make
 
 CONFIRMED = (17, 77)
-"""A loop that the program has accepted."""
+"""A loop that the program has accepted; without it the map moves by half a millimeter."""
+WRONG = (20, 90)
+"""One that it has rejected; with it the map moves by decimeters."""
+OF_POINTS = ("intensity", "classes", "map")
+"""Stages that read the points of the multiframes."""
 
 
 @pytest.fixture
@@ -27,18 +37,64 @@ def decided(root: Path, kind, pair):
     return remake(root)
 
 
+def ran(summary):
+    return {one.stage for one in summary.stages if not one.reused}
+
+
+def held(root):
+    return read_figures(read_artifacts(root)["level"], LevelFigures).held
+
+
 def test_a_confirmed_verdict_makes_no_point_of_the_map_again(office):
     before = read_artifacts(office)
     laz = (office / "map.laz").read_bytes()
 
     summary = decided(office, DecisionKind.ACCEPT, CONFIRMED)
 
-    assert {one.stage for one in summary.stages if not one.reused} == {"review", "level", "audit"}
+    assert ran(summary) == {"review", "level", "audit"}
     after = read_artifacts(office)
-    kept = ("refine", "intensity", "classes", "map")
+    kept = ("refine", *OF_POINTS)
     assert [after[name] for name in kept] == [before[name] for name in kept]
     assert (office / "map.laz").read_bytes() == laz
     assert '"Eva"' in (office / "edges.json").read_text()
+
+
+def test_a_map_that_a_decision_hardly_moves_stays_where_it_was(office):
+    before = read_artifacts(office)
+    line = (office / "trajectory.tum").read_bytes()
+
+    summary = decided(office, DecisionKind.REJECT, CONFIRMED)
+
+    assert ran(summary) == {"review", "refine", "level", "audit"}
+    after = read_artifacts(office)
+    assert [after[name] for name in OF_POINTS] == [before[name] for name in OF_POINTS]
+    assert (office / "trajectory.tum").read_bytes() == line
+    assert 1e-5 < held(office).moved_m < HOLD.moved_m
+    edge = next(e for e in load_graph(after["level"]).edges if (e.i, e.j) == CONFIRMED)
+    assert (edge.verdict, edge.decided_by) == (Verdict.REJECTED, "Eva")
+
+
+@pytest.mark.study
+@pytest.mark.parametrize("kind", [DecisionKind.ACCEPT, DecisionKind.REJECT])
+@pytest.mark.parametrize("pair", [CONFIRMED, WRONG])
+def test_a_project_made_with_its_decisions_has_the_artifacts_of_one_made_again(
+    kind, pair, office, tmp_path
+):
+    cold = tmp_path / "cold"
+    with Project.open(cold):
+        pass
+    append(cold, Decision(kind=kind, who="Eva", pair=pair))
+    make(cold)
+
+    decided(office, kind, pair)
+
+    again, first = read_artifacts(office), read_artifacts(cold)
+    assert {k: folder.name for k, folder in again.items()} == {
+        k: folder.name for k, folder in first.items()
+    }
+    for stage in set(first) - {"audit"}:
+        files = [(read_manifest(at[stage])["files"]) for at in (again, first)]
+        assert files[0] == files[1], stage
 
 
 def test_stages_read_no_other_file_of_the_stage_level_than_they_are_given(office):
@@ -58,10 +114,11 @@ def test_stages_read_no_other_file_of_the_stage_level_than_they_are_given(office
 
     watching = True
     sys.addaudithook(watch)
-    append(office, Decision(kind=DecisionKind.REJECT, who="Eva", pair=CONFIRMED))
-    remake(office, progress=Watch())
+    append(office, Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=WRONG))
+    assert set(OF_POINTS) < ran(remake(office, progress=Watch()))
     watching = False
 
+    assert held(office) is None
     level = read_artifacts(office)["level"]
     read = {
         name: {Path(path).name for path in paths if Path(path).parent == level}
