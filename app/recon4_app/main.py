@@ -35,6 +35,7 @@ from recon4_app.access.restoring import access_copies, restore_access
 from recon4_app.access.routes_check import check_declared
 from recon4_app.access.startup_notice import startup_notice
 from recon4_app.annotations import routes as annotation_routes
+from recon4_app.comparisons import routes as comparison_routes
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.deps import Server, ServerParts
 from recon4_app.exports import routes as export_routes
@@ -166,6 +167,7 @@ def _routes() -> list[BaseRoute]:
         project_routes,
         map_routes,
         export_routes,
+        comparison_routes,
         report_file,
         job_routes,
     ):

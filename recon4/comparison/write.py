@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.comparison.files import FIGURES_FILE, POINTS_FILE
 from recon4.comparison.records import CoreDifferences, CoreState, MapDifferences
-from recon4.comparison.run import Sink
+from recon4.comparison.run import MapPair, Sink, compare_maps
 from recon4.comparison.tuning import PAGE_POINTS
 from recon4.errors import ConfigError
 from recon4.model.plain import to_plain
+from recon4.progress import Progress
 from recon4.slices.map_crs import MapFrame
 from recon4.store.atomic import atomic_file, write_json
 
@@ -21,8 +22,8 @@ ENDINGS = (".laz", ".csv", ".json")
 POINT = np.dtype(
     [("p_m", "<f4", 3), ("distance", "<i2"), ("lod", "<u2"), ("state", "u1"), ("zero", "u1", 3)]
 )
-"""A core point for the page: map coordinates from the origin that the summary names, distance and
-level of detection in steps of `PAGE_POINTS.step_m`, `CoreState`."""
+"""A core point for the page: coordinates in the first map [m], distance and level of detection in
+steps of `PAGE_POINTS.step_m`, `CoreState`."""
 
 
 def sink_of(path: Path, frame: MapFrame, low_m: NDArray[np.float64]) -> Sink:
@@ -105,25 +106,45 @@ def _write_laz(
     write_values(points(), path, crs=frame.wkt, offset_m=origin)
 
 
-def page_sink(file: IO[bytes], origin_m: NDArray[np.float64]) -> Sink:
-    """Writes core points as the page reads them, `POINT`, one after the other.
+def write_comparison(
+    pair: MapPair, laz: Path, *, core_spacing_m: float, progress: Progress
+) -> MapDifferences:
+    """Compare two maps, and write all that the page *Map* shows of it beside a LAZ file.
 
     Args:
-        file: Open for writing.
-        origin_m: What coordinates are relative to [m], (3,).
+        pair: The maps.
+        laz: File of the core points, ``.laz``; `POINTS_FILE` and `FIGURES_FILE` are written beside.
+        core_spacing_m: Distance of core points [m].
+        progress: Counts tiles.
+
+    Raises:
+        Altered: If a map was approved and is not what was approved.
+        ConfigError: If the first map has no points, or the distance is out of range.
+        StoreError: If a map is damaged, or a file cannot be written (`NoSpace`: disk full).
     """
+    first = pair.first
+    with atomic_file(laz.parent / POINTS_FILE) as temporary, temporary.open("wb") as file:
+        to_laz = sink_of(laz, first.frame, first.tiles.bounds_m[0])
 
-    def write(parts: Iterator[CoreDifferences]) -> None:
-        for part in parts:
-            file.write(page_points(part, origin_m).tobytes())
+        def copied(parts: Iterator[CoreDifferences]) -> Iterator[CoreDifferences]:
+            for part in parts:
+                file.write(page_points(part).tobytes())
+                yield part
 
-    return write
+        found = compare_maps(
+            pair,
+            lambda parts: to_laz(copied(parts)),
+            scales=pair.scales(core_spacing_m),
+            progress=progress,
+        )
+    write_summary(found, laz.parent / FIGURES_FILE)
+    return found
 
 
-def page_points(part: CoreDifferences, origin_m: NDArray[np.float64]) -> NDArray[np.void]:
+def page_points(part: CoreDifferences) -> NDArray[np.void]:
     """Core points as the page reads them, `POINT` (N,)."""
     out = np.zeros(len(part.state), POINT)
-    out["p_m"] = part.p_map - origin_m
+    out["p_m"] = part.p_map
     for name, values in (("distance", part.distance_m), ("lod", part.lod_m)):
         limits = np.iinfo(POINT[name])
         steps = np.rint(np.nan_to_num(values.astype(np.float64)) / PAGE_POINTS.step_m)

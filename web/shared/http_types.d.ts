@@ -199,11 +199,24 @@ export interface CommentView {
   text: string;
 }
 
+export interface CompareOrder {
+  against: string;
+  align: boolean;
+  core_spacing_m: number;
+}
+
 export interface CompareRequest {
   reference: string;
   method?: "plane" | "point";
   planes?: Array<SlicePlaneSpec>;
   source?: string;
+}
+
+export interface ComparedMap {
+  name: string;
+  key: string;
+  points: number;
+  registration: "stated" | "usual";
 }
 
 export interface ComparedSlice {
@@ -229,6 +242,27 @@ export interface Comparison {
   method: "plane" | "point";
   alignment: string;
   notes: Array<string>;
+}
+
+export interface ComparisonView {
+  id: string;
+  against: string;
+  align: boolean;
+  core_spacing_m: number;
+  state: JobState;
+  person: string;
+  created: string;
+  note: string;
+  fraction: number | null;
+  kept: boolean;
+  of_this_map: boolean;
+  found: MapDifferences | null;
+}
+
+export interface Comparisons {
+  others: Array<OtherMap>;
+  comparisons: Array<ComparisonView>;
+  step_m: number;
 }
 
 export interface ControlFile {
@@ -349,6 +383,24 @@ export interface Difference {
   moves: Array<Move>;
   rejected_automatically: Array<[number, number]>;
   accepted_automatically: Array<[number, number]>;
+}
+
+export interface DifferenceCounts {
+  core_points: number;
+  significant: number;
+  below_lod: number;
+  without_partner: number;
+  without_normal: number;
+  sparse: number;
+}
+
+export interface DistanceFigures {
+  mean_m: number;
+  sd_m: number;
+  p50_m: number;
+  p95_m: number;
+  largest_m: number;
+  lod_p50_m: number;
 }
 
 export interface DoubleReport {
@@ -587,6 +639,7 @@ export interface Inputs {
   title: string;
   remake: boolean;
   export: ExportOrder | null;
+  compare: CompareOrder | null;
 }
 
 export interface InvitationView {
@@ -712,6 +765,14 @@ export interface Looking {
   frame_j?: number | null;
 }
 
+export interface M3C2Scales {
+  core_spacing_m: number;
+  normal_m: number;
+  cylinder_m: number;
+  depth_m: number;
+  layer_m: number;
+}
+
 export interface MapColumn {
   name: "intensity" | "normalized" | "time" | "uncertainty" | "thickness";
   unit: string;
@@ -719,6 +780,16 @@ export interface MapColumn {
   scale: number;
   low: number;
   high: number;
+}
+
+export interface MapDifferences {
+  first: ComparedMap;
+  second: ComparedMap;
+  relation: string;
+  T_a_b: Array<Array<number>>;
+  scales: M3C2Scales;
+  counts: DifferenceCounts;
+  distances: DistanceFigures | null;
 }
 
 export interface MapFacts {
@@ -828,6 +899,12 @@ export interface NewCapture {
   rig?: string;
   preset?: string;
   place?: string;
+}
+
+export interface NewComparison {
+  against: string;
+  align?: boolean;
+  core_spacing_m?: number;
 }
 
 export interface NewCorrection {
@@ -1866,6 +1943,22 @@ export interface Operations {
     path: { project_id: string };
     response: CalibrationSlices | null;
   };
+  "GET /api/projects/{project_id}/comparisons": {
+    path: { project_id: string };
+    response: Comparisons;
+  };
+  "GET /api/projects/{project_id}/comparisons/{comparison_id}": {
+    path: { project_id: string; comparison_id: string };
+    response: ComparisonView;
+  };
+  "GET /api/projects/{project_id}/comparisons/{comparison_id}/file": {
+    path: { project_id: string; comparison_id: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/comparisons/{comparison_id}/points": {
+    path: { project_id: string; comparison_id: string };
+    response: string;
+  };
   "GET /api/projects/{project_id}/exports": {
     path: { project_id: string };
     response: Array<ExportView>;
@@ -1896,6 +1989,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/map": {
     path: { project_id: string };
+    query?: { key?: string };
     response: MapIndex;
   };
   "GET /api/projects/{project_id}/map.{ending}": {
@@ -2231,6 +2325,15 @@ export interface Operations {
     path: { project_id: string };
     body: CalibratedVersion;
     response: SavedRig;
+  };
+  "POST /api/projects/{project_id}/comparisons": {
+    path: { project_id: string };
+    body: NewComparison;
+    response: ComparisonView;
+  };
+  "POST /api/projects/{project_id}/comparisons/{comparison_id}/cancel": {
+    path: { project_id: string; comparison_id: string };
+    response: any;
   };
   "POST /api/projects/{project_id}/exports": {
     path: { project_id: string };

@@ -1,4 +1,4 @@
-"""The files that exports have made, in the folders of their jobs."""
+"""The files that exports and comparisons have made, in the folders of their jobs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from recon4_app.jobs.store import JobStore
 
 
 class KeptExports:
-    """Finds the files of exports, and removes old ones; their rows stay in the list of jobs."""
+    """Finds files that were made of maps, and removes old ones; their rows stay in the list."""
 
     def __init__(self, jobs: JobStore, state: Path) -> None:
         self._jobs, self._folder = jobs, state / "jobs"
@@ -42,7 +42,7 @@ class KeptExports:
             How many were removed.
         """
         total, removed = 0, 0
-        for job in self._jobs.of_kind(JobKind.EXPORT):
+        for job in self._made():
             if not job.over or not JobFolder(self._folder / job.id).made.exists():
                 continue
             total += job.made.bytes if job.made else 0
@@ -51,6 +51,12 @@ class KeptExports:
                 self.remove(job)
                 removed += 1
         return removed
+
+    def _made(self) -> list[Job]:
+        """Exports and comparisons, newest first."""
+        kinds = JobKind.EXPORT, JobKind.COMPARE
+        made = [job for kind in kinds for job in self._jobs.of_kind(kind)]
+        return sorted(made, key=lambda job: job.created, reverse=True)
 
 
 def _finished_s(job: Job) -> float:

@@ -1,4 +1,4 @@
-"""A job: one run of the pipeline on one project, or one file that is made of its map."""
+"""A job: one run of the pipeline on one project, or one result that is made of its map."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ class JobKind(StrEnum):
     """Runs the pipeline; a project has one that waits or runs."""
     EXPORT = "export"
     """Makes a file of a finished map; any number of them may wait."""
+    COMPARE = "compare"
+    """Compares a finished map with another one; any number of them may wait."""
 
 
 class JobState(StrEnum):
@@ -54,6 +56,18 @@ class ExportOrder:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CompareOrder:
+    """Two maps that are to be compared."""
+
+    against: str
+    """The other map: ``project:NAME``, or ``map:KEY`` of an earlier run of the same project."""
+    align: bool = False
+    """Lay it on this one by ICP before."""
+    core_spacing_m: float = 0.1
+    """Distance of core points [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
     """Inputs of a job, with paths of this computer."""
 
@@ -74,6 +88,8 @@ class Inputs:
     """Only make the map again with the current decisions; the other inputs are unchanged."""
     export: ExportOrder | None = None
     """Only make this file of the map; the other inputs are not used."""
+    compare: CompareOrder | None = None
+    """Only compare the map with this one; the other inputs are not used."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,6 +117,8 @@ class Job:
     @property
     def kind(self) -> JobKind:
         """What it does."""
+        if self.inputs.compare:
+            return JobKind.COMPARE
         return JobKind.EXPORT if self.inputs.export else JobKind.PROCESS
 
     @property

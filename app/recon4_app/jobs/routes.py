@@ -191,9 +191,10 @@ def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
 def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     """Run the same again as a new job; it continues after the last finished stage."""
     job = server.jobs.get(job_id)
-    if job.kind is JobKind.EXPORT:
+    if job.kind is not JobKind.PROCESS:
         raise Conflict(
-            "an export is not resumed: order the file again", remedy=project_page(job.project)
+            "an export or a comparison is not resumed: order it again",
+            remedy=project_page(job.project),
         )
     _refuse_hidden(server, job.inputs)
     refuse_too_many(server)
@@ -267,13 +268,13 @@ async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events: a ``job`` with a `JobView` for each change of a job.
 
     The stream begins with one for each project's newest job, unless that succeeded. Those of files
-    that are made of a map are events ``export``.
+    that are made of a map are events ``export``, those of comparisons ``compare``.
     """
     version = server.supervisor.version
     jobs = [job for job in server.jobs.latest().values() if job.state is not JobState.SUCCEEDED]
     while True:
         for job in jobs:
-            event = "export" if job.kind is JobKind.EXPORT else "job"
+            event = "job" if job.kind is JobKind.PROCESS else str(job.kind)
             yield ServerSentEvent(event=event, data=job_view(server, job))
         await server.supervisor.news(version, timeout_s=JOB_STREAM.longest_quiet_s)
         touched = server.supervisor.touched_since(version)
@@ -347,7 +348,7 @@ def _add(server: ServerParts, project: str, inputs: Inputs) -> JobView:
 
 
 def _is_resumable(job: Job, outcome: Outcome | None) -> bool:
-    if job.kind is JobKind.EXPORT:
+    if job.kind is not JobKind.PROCESS:
         return False
     if job.state is not JobState.FAILED:
         return job.state is JobState.CANCELLED

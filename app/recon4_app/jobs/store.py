@@ -156,9 +156,9 @@ class JobStore:
         """Whether a job of any kind waits or runs on a project: it must stay where it is."""
         return any(not job.over for kind in JobKind for job in self.of_project(project, kind))
 
-    def move_exports(self, project: str, name: str) -> None:
-        """List the exports of a project under another name: they follow it into the trash."""
-        mine = (JOBS.c.project == project) & (JOBS.c.kind == JobKind.EXPORT)
+    def move_made(self, project: str, name: str) -> None:
+        """List what was made of a project's map under another name: it follows into the trash."""
+        mine = (JOBS.c.project == project) & (JOBS.c.kind != JobKind.PROCESS)
         with self._engine.begin() as connection:
             connection.execute(JOBS.update().where(mine).values(project=name))
 

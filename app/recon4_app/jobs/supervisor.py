@@ -34,8 +34,11 @@ from recon4_app.threads import in_thread
 
 log = logging.getLogger(__name__)
 
-EXPORT_WORKER = "recon4_app.jobs.export_worker"
-"""Module run for an export."""
+WORKERS = {
+    JobKind.EXPORT: "recon4_app.jobs.export_worker",
+    JobKind.COMPARE: "recon4_app.jobs.compare_worker",
+}
+"""Modules that do what is made of a finished map."""
 
 
 class Tail:
@@ -175,10 +178,11 @@ class Supervisor:
         return changed | {job.id for job in self._next() if self._alone(self._start, job)}
 
     def _next(self) -> Iterator[Job]:
-        """Jobs to be started; an export waits for other exports only."""
+        """Jobs to be started; an export waits for other exports only, as does a comparison."""
         most = {
             JobKind.PROCESS: self._settings.max_running_jobs,
             JobKind.EXPORT: self._settings.max_running_exports,
+            JobKind.COMPARE: self._settings.max_running_exports,
         }
         for job in self._store.in_state(JobState.RUNNING):
             most[job.kind] -= 1
@@ -231,8 +235,7 @@ class Supervisor:
 
     def _module(self, job: Job) -> str:
         """The program that does a job."""
-        of_exports = job.kind is JobKind.EXPORT
-        return EXPORT_WORKER if of_exports else self._settings.worker_module
+        return WORKERS.get(job.kind, self._settings.worker_module)
 
     def _watch(self, job: Job) -> bool:
         changed = self._tail(job).read()
@@ -279,7 +282,7 @@ class Supervisor:
     def _ended(self, job: Job, outcome: Outcome | None, code: int | None) -> Job:
         """The job after its worker is gone."""
         if outcome is not None:
-            made = outcome.made if job.kind is JobKind.EXPORT else None
+            made = None if job.kind is JobKind.PROCESS else outcome.made
             return job.to(JobState(outcome.state), finished=now(), note=outcome.note, made=made)
         where, how = self._tail(job).status.where, exit_reason(code)
         if job.id in self._hung:

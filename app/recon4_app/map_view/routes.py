@@ -54,12 +54,17 @@ def map_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
 
 
 @router.get("", summary="What is in the map")
-async def read_index(project_id: str, server: Server, caller: CalledBy) -> MapIndex:
-    """Tiles with boxes and counts, columns, an extent without stray points, storeys, frame."""
-    slices = server.slices
-    artifacts = await run_in_threadpool(slices.artifacts, project_id)
-    evidence = await run_in_threadpool(slices.evidence_to_show, project_id)
-    terms = slices.terms(project_id, caller.name)
+async def read_index(
+    project_id: str, server: Server, caller: CalledBy, *, key: str = ""
+) -> MapIndex:
+    """Tiles with boxes and counts, columns, an extent without stray points, storeys, frame.
+
+    With ``key`` those of an earlier map.
+    """
+    slices, source = server.slices, f"map:{key}" if key else ""
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
+    terms = slices.terms(project_id, caller.name, source)
     index = "index.json"
 
     async def make(out: Path) -> None:

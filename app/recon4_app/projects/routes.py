@@ -128,7 +128,7 @@ def delete_project(project_id: str, server: Server, request: Request, *, who: Wh
     _refuse_while_busy(server, project_id)
     server.access.guests.revoke_all(project_id, who)  # first: another project may get its name
     deleted = server.trash.put(folder)
-    server.jobs.move_exports(project_id, deleted.id)
+    server.jobs.move_made(project_id, deleted.id)
     audit(request, "delete project", project_id)
     return deleted
 
@@ -143,7 +143,7 @@ def list_trash(server: Server) -> list[Deleted]:
 def restore_project(deleted_id: str, server: Server, request: Request) -> Restored:
     """Restore a deleted project or recording under its old name."""
     project = server.trash.restore(deleted_id)
-    server.jobs.move_exports(deleted_id, project)
+    server.jobs.move_made(deleted_id, project)
     audit(request, "restore", project)
     return Restored(project=project)
 

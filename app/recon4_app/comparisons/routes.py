@@ -1,0 +1,180 @@
+"""HTTP routes of comparisons: two maps as a job, its figures and its points."""
+
+from __future__ import annotations
+
+import secrets
+from pathlib import Path
+
+import msgspec
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import FileResponse
+
+from recon4.comparison.files import FIGURES_FILE, POINTS_FILE
+from recon4.comparison.records import MapDifferences
+from recon4.comparison.tuning import PAGE_POINTS
+from recon4.errors import StoreError
+from recon4.untrusted.bounded import read_json_object
+from recon4.untrusted.limits import LIMITS
+from recon4_app.access.audit import audit
+from recon4_app.access.people import Permission, needs, person
+from recon4_app.comparisons.model import Comparisons, ComparisonView, NewComparison
+from recon4_app.deps import Server, ServerParts
+from recon4_app.error_responses import problems
+from recon4_app.errors import NotFound, Refused
+from recon4_app.exports.tuning import KEPT_EXPORTS
+from recon4_app.jobs.model import CompareOrder, Inputs, Job, JobKind
+from recon4_app.jobs.routes import refuse_too_many
+from recon4_app.jobs.supervisor import now
+from recon4_app.network.rate_limit import at_most
+
+router = APIRouter(
+    prefix="/api/projects/{project_id}/comparisons",
+    tags=["comparisons"],
+    dependencies=[Depends(needs(Permission.LOOK))],
+    responses=problems(404, 422),
+)
+ORDER = [Depends(at_most(60, within_s=3600.0, what="comparisons"))]
+REFUSALS = problems(403, 429)
+FOREVER = "private, max-age=31536000, immutable"
+"""Results are named by the id of their job: they never change."""
+
+
+@router.get("", summary="Comparisons of a map")
+def list_comparisons(project_id: str, server: Server) -> Comparisons:
+    """List what the map was compared with, the newest first, and what it can be compared with."""
+    server.projects.folder(project_id)
+    jobs = server.jobs.of_project(project_id, JobKind.COMPARE)[: KEPT_EXPORTS.listed]
+    map_key = _map_key(server, project_id)
+    return Comparisons(
+        others=server.slices.sources(project_id) if map_key else [],
+        comparisons=[_view(server, job, map_key) for job in jobs],
+        step_m=PAGE_POINTS.step_m,
+    )
+
+
+@router.post(
+    "", status_code=201, dependencies=ORDER, responses=REFUSALS, summary="Compare with another map"
+)
+def order(
+    project_id: str, new: NewComparison, *, server: Server, request: Request
+) -> ComparisonView:
+    """Add a comparison to the queue; it runs beside jobs that process."""
+    refuse_too_many(server)
+    server.slices.artifacts(project_id)  # raises if there is no map
+    if not new.against:
+        raise NotFound("name the map to compare with")
+    server.slices.artifacts(project_id, new.against)
+    server.slices.evidence(project_id)  # an approval that does not count
+    server.slices.evidence(project_id, new.against)
+    asked = CompareOrder(against=new.against, align=new.align, core_spacing_m=new.core_spacing_m)
+    job = Job(
+        id=secrets.token_hex(8),
+        project=project_id,
+        inputs=Inputs(recordings=(), compare=asked),
+        created=now(),
+        person=person(request).name,
+    )
+    server.jobs.add(job)
+    server.supervisor.wake(job)
+    audit(request, "compare", f"{project_id}: {new.against}")
+    return _view(server, job, _map_key(server, project_id))
+
+
+@router.get("/{comparison_id}", summary="A comparison")
+def read_comparison(project_id: str, comparison_id: str, server: Server) -> ComparisonView:
+    """Its progress, and its figures when it is finished."""
+    job = _comparison(server, project_id, comparison_id)
+    return _view(server, job, _map_key(server, project_id))
+
+
+@router.post("/{comparison_id}/cancel", responses=REFUSALS, summary="Cancel a comparison")
+def cancel(project_id: str, comparison_id: str, *, server: Server, request: Request) -> None:
+    """Stop a comparison; nothing of it is left."""
+    job = _comparison(server, project_id, comparison_id)
+    who = person(request)
+    if who.name != job.person and not who.may(Permission.PROCESS):
+        raise Refused(f"{job.person or 'another person'} ordered it: ask them, or an admin")
+    server.supervisor.cancel(job)
+    audit(request, "cancel comparison", project_id)
+
+
+@router.get(
+    "/{comparison_id}/points", response_class=FileResponse, summary="Core points with differences"
+)
+def read_points(project_id: str, comparison_id: str, server: Server) -> FileResponse:
+    """20 bytes each, little-endian: x, y, z in the map [m], float32; distance, int16, and level of
+    detection, uint16, in steps of `step_m`; the state, uint8; three bytes of nothing.
+
+    States: 0 below the level of detection, 1 significant, 2 without a partner, 3 without a normal,
+    4 too few points.
+    """
+    path = _made(server, _comparison(server, project_id, comparison_id), POINTS_FILE)
+    return FileResponse(
+        path, media_type="application/octet-stream", headers={"Cache-Control": FOREVER}
+    )
+
+
+@router.get(
+    "/{comparison_id}/file", response_class=FileResponse, summary="Core points as a LAZ file"
+)
+def download(project_id: str, comparison_id: str, server: Server) -> FileResponse:
+    """All core points with distance, level of detection, numbers of points and state."""
+    job = _comparison(server, project_id, comparison_id)
+    path = server.exports.path(job)
+    if path is None:
+        raise NotFound("this comparison was removed, or is not made yet: order it again")
+    return FileResponse(path, filename=path.name, media_type="application/octet-stream")
+
+
+def _comparison(server: ServerParts, project_id: str, comparison_id: str) -> Job:
+    server.projects.folder(project_id)
+    job = server.jobs.get(comparison_id)
+    if job.project != project_id or job.kind is not JobKind.COMPARE:
+        raise NotFound(f"project {project_id} has no comparison {comparison_id[:64]!r}")
+    return job
+
+
+def _made(server: ServerParts, job: Job, name: str) -> Path:
+    """A file beside the LAZ file of a comparison.
+
+    Raises:
+        NotFound: If it was removed, or is not made yet.
+    """
+    laz = server.exports.path(job)
+    path = laz.with_name(name) if laz else None
+    if path is None or not path.is_file() or path.is_symlink():
+        raise NotFound("this comparison was removed, or is not made yet: order it again")
+    return path
+
+
+def _map_key(server: ServerParts, project_id: str) -> str:
+    found = server.projects.artifact(project_id, "map")
+    return found.name if found else ""
+
+
+def _view(server: ServerParts, job: Job, map_key: str) -> ComparisonView:
+    asked = job.inputs.compare or CompareOrder(against="")
+    kept = server.exports.path(job) is not None
+    return ComparisonView(
+        id=job.id,
+        against=asked.against,
+        align=asked.align,
+        core_spacing_m=asked.core_spacing_m,
+        state=job.state,
+        person=job.person,
+        created=job.created,
+        note=job.note,
+        fraction=server.supervisor.status(job).fraction,
+        kept=kept,
+        of_this_map=job.made is not None and job.made.map_key == map_key,
+        found=_figures(_made(server, job, FIGURES_FILE)) if kept else None,
+    )
+
+
+def _figures(path: Path) -> MapDifferences | None:
+    """What the worker wrote; None = it is damaged: a hostile map may have taken the worker over."""
+    try:
+        record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
+        return msgspec.convert(record, MapDifferences)
+    except (StoreError, msgspec.ValidationError):
+        return None
