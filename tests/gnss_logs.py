@@ -37,6 +37,38 @@ def pos_rows(count: int = 1) -> list[str]:
     ]
 
 
+def exported(*rows: str, names: str, units: str) -> str:
+    """An export of Inertial Explorer: names and units of columns, right-aligned."""
+    return (
+        f"""Project:     walk
+Program:     Inertial Explorer Version 8.90.6611
+Datum:       WGS84, (processing datum)
+
+{names}
+{units}
+"""
+        + "\n".join(rows)
+        + "\n"
+    )
+
+
+def exported_rows(count: int = 1) -> str:
+    """The walk of `pos_rows` with attitudes and standard deviations."""
+    lat, lon, height = PLACE
+    rows = [
+        f"{WEEK:7d} {WEEK_S + k:13d}.250 {lat + 1e-6 * k:18.10f} {lon:18.10f} {height:10.3f} 1 "
+        f"{1.5:9.4f} {-2.5:9.4f} {93.0:9.4f} {0.02:7.3f} {0.01:7.3f} {0.03:8.3f}"
+        for k in range(count)
+    ]
+    return exported(
+        *rows,
+        names="   Week           GPSTime           Latitude          Longitude      H-Ell Q"
+        "      Roll     Pitch   Heading SDNorth  SDEast SDHeight",
+        units="(weeks)             (sec)              (deg)              (deg)        (m)  "
+        "     (deg)     (deg)     (deg)     (m)     (m)      (m)",
+    )
+
+
 def nmea(body: str) -> bytes:
     """A sentence with its checksum."""
     found = 0

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from recon4.errors import RecordingError
 from recon4.recording.gnss.applanix import is_sbet, read_sbet
+from recon4.recording.gnss.exported_text import is_exported_text, read_exported_text
 from recon4.recording.gnss.receiver_logs import is_receiver_log, read_receiver_log
 from recon4.recording.gnss.records import GnssFile
 from recon4.recording.gnss.rtklib import is_rtklib, read_rtklib
@@ -28,12 +29,13 @@ class GnssFormat:
     read: Callable[[Path, ImportReport], GnssFile]
 
 
-def _rtklib(head: bytes, size: int) -> bool:
-    return is_rtklib(head.decode(text_encoding(head), errors="replace"))
+def _text(detects: Callable[[str], bool]) -> Callable[[bytes, int], bool]:
+    return lambda head, size: detects(head.decode(text_encoding(head), errors="replace"))
 
 
 GNSS_FORMATS = (
-    GnssFormat("RTKLIB", _rtklib, read_rtklib),
+    GnssFormat("RTKLIB", _text(is_rtklib), read_rtklib),
+    GnssFormat("Inertial Explorer", _text(is_exported_text), read_exported_text),
     GnssFormat("SBET", is_sbet, read_sbet),
     GnssFormat("UBX, NovAtel, NMEA", lambda head, size: is_receiver_log(head), read_receiver_log),
 )

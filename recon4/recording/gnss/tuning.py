@@ -29,6 +29,8 @@ class GnssFileTuning(Struct, frozen=True, kw_only=True):
     """A place and the same with more digits differ by less [deg]."""
     latest_ns: int = 9_000_000_000_000_000_000
     """Later times are none [ns]: they must fit into 64 bits with the hours of a time zone."""
+    earliest_ns: int = 300_000_000_000_000_000
+    """Earlier ones are not, either: GPS began in 1980."""
     most_weeks: int = 8000
     """Of GPS: the year 2133."""
     least_radius_m: float = 5.0e6

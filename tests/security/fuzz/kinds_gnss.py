@@ -33,6 +33,15 @@ def _solutions() -> tuple[bytes, ...]:
     )
 
 
+def _exports() -> tuple[bytes, ...]:
+    sexagesimal = logs.exported(
+        *(f" 05/06/2024 07:08:{9 + k:02d}.25 49 12 {k:02d}.0 -16 36 0.0 250.25" for k in range(20)),
+        names="    UTCDate     UTCTime      Latitude   Longitude  H-Ell",
+        units="      (MDY)       (HMS)  (+/-D M S) (+/-D M S)    (m)",
+    )
+    return (logs.exported_rows(20).encode(), sexagesimal.encode(), sexagesimal.encode("utf-16"))
+
+
 def _logs() -> tuple[bytes, ...]:
     zda = logs.nmea("GNZDA,070809.00,06,05,2024,00,00")
     return (
@@ -44,6 +53,7 @@ def _logs() -> tuple[bytes, ...]:
 
 GNSS_KINDS = (
     Kind(name="gnss-pos", file_name="a.pos", seeds=_solutions, read=_read, knows_end=False),
+    Kind(name="gnss-text", file_name="a.txt", seeds=_exports, read=_read, knows_end=False),
     Kind(name="gnss-log", file_name="a.ubx", seeds=_logs, read=_read, knows_end=False),
     Kind(
         name="gnss-sbet",
