@@ -9,6 +9,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import texts
 from recon4.review.decisions import MEASURED, VERDICTS, Decision, DecisionKind, Pair, not_undone
 
 
@@ -81,18 +83,15 @@ def team_work(decisions: Sequence[Decision]) -> list[PairWork]:
     return [work[pair] for pair in sorted(work)]
 
 
-def second_opinion_missing(decisions: Iterable[Decision]) -> str:
+def second_opinion_missing(decisions: Iterable[Decision], language: str = ENGLISH) -> str:
     """On which pair two people do not agree yet though that was asked for; empty = on none."""
     waiting = [one for one in team_work(list(decisions)) if one.waits]
     if not waiting:
         return ""
     i, j = waiting[0].pair
-    others = len(waiting) - 1
-    more = f" and {others} other {'pairs' if others > 1 else 'pair'}" if others else ""
-    return (
-        f"{waiting[0].second_by} asked for a second opinion on multiframes {i} and {j}{more}, and "
-        "two people do not agree yet: decide, or withdraw the question"
-    )
+    say, others = texts(language, "review"), len(waiting) - 1
+    who = waiting[0].second_by
+    return say("second-opinion-missing", who=who, i=str(i), j=str(j), others=others)
 
 
 def _judge(one: PairWork, decision: Decision) -> None:

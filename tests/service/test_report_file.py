@@ -1,6 +1,7 @@
 """The report for the client, made and signed by the server."""
 
 import pytest
+from pypdf import PdfReader
 
 from recon4.delivery.pdf_signature import signatures_in
 from recon4.review.signature import public_key_of
@@ -32,12 +33,15 @@ def test_the_report_of_an_approved_map_is_signed_by_the_server(server, root, tmp
     assert found.intact and found.public_key == public_key_of(root / ".recon4/signing.key")
 
 
-def test_the_report_of_a_draft_is_not_signed(server, tmp_path):
-    answer = server.get("/api/projects/draft/report.pdf")
+def test_the_report_of_a_draft_is_not_signed_and_is_in_the_language_of_the_request(
+    server, tmp_path
+):
+    answer = server.get("/api/projects/draft/report.pdf", headers={"Accept-Language": "de"})
 
     assert answer.status_code == 200, answer.text
     (tmp_path / "a.pdf").write_bytes(answer.content)
     assert signatures_in(tmp_path / "a.pdf") == []
+    assert "ENTWURF" in PdfReader(tmp_path / "a.pdf").pages[0].extract_text()
 
 
 def test_a_project_that_is_not_there_has_no_report(server):

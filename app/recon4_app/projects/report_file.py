@@ -15,6 +15,7 @@ from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
+from recon4_app.pages import Language
 from recon4_app.review.tuning import SIGNING
 
 router = APIRouter(
@@ -27,8 +28,12 @@ _NAME = "report.pdf"
 
 
 @router.get("/report.pdf", response_class=FileResponse, summary="Report for the client")
-async def report_pdf(project_id: str, *, server: Server, caller: CalledBy) -> FileResponse:
+async def report_pdf(
+    project_id: str, *, server: Server, caller: CalledBy, language: Language
+) -> FileResponse:
     """Write the report for the client as PDF/A; that of an approved map is signed (PAdES).
+
+    It is in the language of the request.
 
     422 says how to install the packages that it needs, if they are missing.
     """
@@ -45,12 +50,12 @@ async def report_pdf(project_id: str, *, server: Server, caller: CalledBy) -> Fi
         large=True,  # approvals go first
     )
     run = server.compute_pool.run_background
-    await caller.wait(run(Lane.SIGN, terms, write_report_file, str(root), out=_NAME))
+    await caller.wait(run(Lane.SIGN, terms, write_report_file, str(root), language, out=_NAME))
     return FileResponse(place, filename=f"{project_id}-report.pdf", media_type="application/pdf")
 
 
-def write_report_file(root: str, *, out: str) -> str:
-    """Write the report, and sign it if the map is approved; in the lane that may read the key.
+def write_report_file(root: str, language: str, *, out: str) -> str:
+    """Write the report, signed if the map is approved; in the lane that may read the key.
 
     Raises:
         Altered: If the map is not what was approved.
@@ -59,5 +64,5 @@ def write_report_file(root: str, *, out: str) -> str:
     from recon4.delivery.report_files import ReportWish, server_key, write_pdf
 
     project = Path(root)
-    write_pdf(project, Path(out), ReportWish(key=server_key(project)))
+    write_pdf(project, Path(out), ReportWish(language=language, key=server_key(project)))
     return out

@@ -12,6 +12,7 @@ from fastapi.responses import HTMLResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
+from recon4.findings.in_language import summary_in
 from recon4.findings.summary_notes import findings_in, notes_in
 from recon4.model.plain import finite_or_none
 from recon4.model.usability import verdict_in
@@ -37,7 +38,7 @@ from recon4.review.teamwork import second_opinion_missing, team_work
 from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
 from recon4.review.tuning import APPROVALS
 from recon4_app.access.audit import audit
-from recon4_app.access.people import Permission, Person, Who, needs, recent_login
+from recon4_app.access.people import Permission, needs, recent_login
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
@@ -60,6 +61,7 @@ from recon4_app.review.model import (
     work_view,
 )
 from recon4_app.review.newest_approvals import record_signed
+from recon4_app.review.reader import ReadBy, Reader
 from recon4_app.review.store import terms_of
 from recon4_app.review.tuning import SIGNING
 
@@ -85,9 +87,9 @@ def review_page(project_id: str, request: Request, server: Server) -> HTMLRespon
 
 
 @router.get("", dependencies=LOOK, summary="State of the review")
-def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
+def read_review(project_id: str, server: Server, reader: ReadBy) -> ReviewView:
     """Decisions in force, undo and redo counts, and whether the map includes the decisions."""
-    return view_of(project_id, server, who)
+    return view_of(project_id, server, reader)
 
 
 @router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
@@ -175,13 +177,13 @@ def fit_picked(picked: PointPairs) -> list[float]:
 
 
 @router.post("/decisions", status_code=201, dependencies=REVIEW, summary="Decide")
-def decide(project_id: str, new: NewDecision, server: Server, *, who: Who) -> ReviewView:
+def decide(project_id: str, new: NewDecision, server: Server, *, reader: ReadBy) -> ReviewView:
     """Append a decision to the journal; it is on disk before the response is sent."""
     root, pair = server.projects.folder(project_id), (new.frame_i, new.frame_j)
     measured = new.kind in ("replace", "add")
     decision = Decision(
         kind=DecisionKind(new.kind),
-        who=who.name,
+        who=reader.who.name,
         why=new.why,
         pair=pair,
         T_i_j=tuple(new.T_i_j),
@@ -191,19 +193,19 @@ def decide(project_id: str, new: NewDecision, server: Server, *, who: Who) -> Re
         append(root, decision, seen_seq=new.seen_seq)
     except JournalChanged as error:
         raise Conflict(str(error)) from error
-    return view_of(project_id, server, who)
+    return view_of(project_id, server, reader)
 
 
 @router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
-def undo(project_id: str, step: Step, server: Server, *, who: Who) -> ReviewView:
+def undo(project_id: str, step: Step, server: Server, *, reader: ReadBy) -> ReviewView:
     """Undo the last decision, by any reviewer."""
-    return _step(DecisionKind.UNDO, project_id, step, server=server, who=who)
+    return _step(DecisionKind.UNDO, project_id, step, server=server, reader=reader)
 
 
 @router.post("/redo", status_code=201, dependencies=REVIEW, summary="Redo")
-def redo(project_id: str, step: Step, server: Server, *, who: Who) -> ReviewView:
+def redo(project_id: str, step: Step, server: Server, *, reader: ReadBy) -> ReviewView:
     """Redo the decision that was undone last."""
-    return _step(DecisionKind.REDO, project_id, step, server=server, who=who)
+    return _step(DecisionKind.REDO, project_id, step, server=server, reader=reader)
 
 
 @router.get("/effect", dependencies=LOOK, summary="Effect of the decisions")
@@ -235,7 +237,7 @@ def read_journal(
 
 @router.post("/approve", status_code=201, dependencies=SIGN, summary="Approve map")
 async def approve(
-    project_id: str, asked: Approve, request: Request, *, server: Server, who: Who
+    project_id: str, asked: Approve, request: Request, *, server: Server, reader: ReadBy
 ) -> ReviewView:
     """Sign the current results; no later run or decision changes the approved version.
 
@@ -248,7 +250,7 @@ async def approve(
             "a job of this project is queued or running; approve when it is done",
             remedy=project_page(project_id),
         )
-    signer = {"who": who.name, "role": str(who.role), "why": asked.why}
+    signer = {"who": reader.who.name, "role": str(reader.who.role), "why": asked.why}
     key = server.settings.state / SIGNING_KEY
     try:
         approval = await _sign(root, key, signer, asked=asked, server=server)
@@ -259,7 +261,7 @@ async def approve(
     server.webhooks.wake()
     what = f"{project_id} version {approval.version} {approval.hash}"
     await run_in_threadpool(audit, request, "approve", what)
-    return await run_in_threadpool(view_of, project_id, server, who)
+    return await run_in_threadpool(view_of, project_id, server, reader)
 
 
 async def _of_pairs(
@@ -294,18 +296,25 @@ async def _sign(
 
 
 def _step(
-    kind: DecisionKind, project_id: str, step: Step, *, server: ServerParts, who: Person
+    kind: DecisionKind,
+    project_id: str,
+    step: Step,
+    *,
+    server: ServerParts,
+    reader: Reader,
 ) -> ReviewView:
     root = server.projects.folder(project_id)
     try:
-        append(root, Decision(kind=kind, who=who.name, why=step.why), after_seq=step.after_seq)
+        append(
+            root, Decision(kind=kind, who=reader.who.name, why=step.why), after_seq=step.after_seq
+        )
     except (NothingToUndo, JournalChanged) as error:
         raise Conflict(str(error)) from error
-    return view_of(project_id, server, who)
+    return view_of(project_id, server, reader)
 
 
-def view_of(project_id: str, server: ServerParts, who: Person) -> ReviewView:
-    """The state of the review, for a person."""
+def view_of(project_id: str, server: ServerParts, reader: Reader) -> ReviewView:
+    """The state of the review, for a person who reads a language."""
     root = server.projects.folder(project_id)
     rows = read_rows(root)
     decisions = [row.decision() for row in rows]
@@ -330,21 +339,22 @@ def view_of(project_id: str, server: ServerParts, who: Person) -> ReviewView:
             for one in decided.standing
         ],
         work=[work_view(one) for one in team_work(decisions)],
-        obstacle=second_opinion_missing(decisions),
+        obstacle=second_opinion_missing(decisions, reader.language),
         in_map=in_map == decided.key,
         finished=in_map is not None,
-        map=_map_facts(root),
+        map=_map_facts(root, reader.language),
         busy=server.jobs.is_busy(project_id),
-        may_review=who.may(Permission.REVIEW),
-        may_process=who.may(Permission.PROCESS),
+        may_review=reader.who.may(Permission.REVIEW),
+        may_process=reader.who.may(Permission.PROCESS),
         approval=server.checks.state(root, artifact_keys(read_summary(root) or {})),
     )
 
 
-def _map_facts(root: Path) -> MapFacts | None:
-    summary = read_summary(root)
-    if summary is None:
+def _map_facts(root: Path, language: str) -> MapFacts | None:
+    found = read_summary(root)
+    if found is None:
         return None
+    summary = summary_in(language, found)
     verdict = verdict_in(summary)
     return MapFacts(
         verdict=verdict,

@@ -11,6 +11,7 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest
 from recon4_app.review.model import Frame, ReviewView
+from recon4_app.review.reader import ReadBy
 from recon4_app.review.routes import LOOK, PREFIX, REVIEW, view_of
 from recon4_app.review.team_model import CommentView, LookerView, Looking, NewWork
 
@@ -22,7 +23,7 @@ router = APIRouter(
 
 
 @router.post("/work", status_code=201, dependencies=REVIEW, summary="Share the work on a pair")
-def work_on_pair(project_id: str, new: NewWork, server: Server, *, who: Who) -> ReviewView:
+def work_on_pair(project_id: str, new: NewWork, server: Server, *, reader: ReadBy) -> ReviewView:
     """Assign, comment, leave for later, ask for a second opinion or withdraw that question.
 
     A row of the journal; no decision changes. An approval waits for second opinions.
@@ -32,13 +33,13 @@ def work_on_pair(project_id: str, new: NewWork, server: Server, *, who: Who) -> 
         raise BadRequest(f"{new.assignee} is nobody who may review here")
     decision = Decision(
         kind=DecisionKind(new.kind),
-        who=who.name,
+        who=reader.who.name,
         why=new.why,
         pair=(new.frame_i, new.frame_j),
         assignee=new.assignee,
     )
     append(root, decision)
-    return view_of(project_id, server, who)
+    return view_of(project_id, server, reader)
 
 
 @router.get("/comments", dependencies=LOOK, summary="Comments on a pair")

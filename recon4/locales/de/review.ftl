@@ -129,6 +129,11 @@ job-runs = Ein Auftrag wartet oder läuft
 no-map = Es gibt noch keine fertige Karte
 not-in-map = Die letzten Entscheidungen sind nicht in der Karte
 map-is-approved = Diese Karte ist freigegeben
+second-opinion-missing = { $others ->
+    [0] { $who } bittet um eine Zweitmeinung zu den Multiframes { $i } und { $j }, und zwei Menschen sind sich noch nicht einig: entscheiden oder die Bitte zurückziehen
+    [one] { $who } bittet um eine Zweitmeinung zu den Multiframes { $i } und { $j } und { $others } weiteren Paar, und zwei Menschen sind sich noch nicht einig: entscheiden oder die Bitte zurückziehen
+   *[other] { $who } bittet um eine Zweitmeinung zu den Multiframes { $i } und { $j } und { $others } weiteren Paaren, und zwei Menschen sind sich noch nicht einig: entscheiden oder die Bitte zurückziehen
+}
 permission-missing = Erfordert das Recht { $permission }, das Sie nicht haben
 may-review = zum Prüfen
 may-process = zum Verarbeiten

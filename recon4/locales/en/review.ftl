@@ -129,6 +129,11 @@ job-runs = A job waits or runs
 no-map = There is no finished map yet
 not-in-map = The last decisions are not in the map
 map-is-approved = This map is approved
+second-opinion-missing = { $others ->
+    [0] { $who } asked for a second opinion on multiframes { $i } and { $j }, and two people do not agree yet: decide, or withdraw the question
+    [one] { $who } asked for a second opinion on multiframes { $i } and { $j } and { $others } other pair, and two people do not agree yet: decide, or withdraw the question
+   *[other] { $who } asked for a second opinion on multiframes { $i } and { $j } and { $others } other pairs, and two people do not agree yet: decide, or withdraw the question
+}
 permission-missing = Requires the permission to { $permission }, which you do not have
 may-review = review
 may-process = process

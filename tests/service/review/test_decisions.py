@@ -237,6 +237,10 @@ def test_people_share_the_work_on_a_pair_and_an_approval_waits_for_both(server, 
     (work,) = asked["work"]
     assert (work["assignee"], work["comments"], work["second_by"]) == ("local", 1, "local")
     assert work["waits"] and "second opinion on multiframes 17 and 77" in asked["obstacle"]
+    german = server.get("", headers={"Accept-Language": "de"}).json()
+    assert "Zweitmeinung zu den Multiframes 17 und 77" in german["obstacle"]
+    titles, said = ({f["title"] for f in one["map"]["findings"]} for one in (asked, german))
+    assert titles and not titles & said
     assert [one["text"] for one in server.get("/comments", params=RIGHT).json()] == ["a glass wall"]
     agreed = decide(server, "reject", RIGHT, seen_seq=asked["seq"]).json()
     assert (agreed["work"][0]["agreement"], agreed["obstacle"]) == ("agree", "")
