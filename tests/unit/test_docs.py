@@ -40,7 +40,21 @@ SETTING = re.compile(r"`(?:--set )?(\w+)\.(\w+)(?: ?=[^`]*)?`")
 IDENTIFIER = re.compile(r"`([A-Za-z_][\w.]*(?:\([^`\n]*)?)`")
 INVENTED = {"run_x", "g_beam", "H_k", "g_k"}
 """Names that stand for others: an example, symbols of equations."""
-SUFFIXES = {"json", "npz", "npy", "g2o", "laz", "csv", "tum", "toml", "py", "las", "png", "yaml"}
+SUFFIXES = {
+    "json",
+    "ftl",
+    "npz",
+    "npy",
+    "g2o",
+    "laz",
+    "csv",
+    "tum",
+    "toml",
+    "py",
+    "las",
+    "png",
+    "yaml",
+}
 CODE = re.compile(r"^```\w*\n(.*?)^```|`([^`\n]+)`|^ {4}(\S[^\n]*)$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^recon4 ([a-z][^\n#]*)", re.MULTILINE)
 BENCHMARK = re.compile(
