@@ -167,7 +167,7 @@ class StageRunner:
         """
         key = stage_key(stage, self._settings, inputs)
         artifact = Artifact(stage.name, key, self._project.artifacts / key)
-        self._progress.event(StageChanged(stage=stage.name, key=key, state="running"))
+        self._tell(StageChanged(stage=stage.name, key=key, state="running"))
         done = self._finished(artifact)
         reused = done is not None
         if done is None:
@@ -201,13 +201,16 @@ class StageRunner:
         before = (*earlier.before, earlier.done) if earlier else ()
         self.runs[name] = StageRun(artifact, done, reused, figures, before)
         state = "reused" if reused else "done"
-        self._progress.event(
-            StageChanged(stage=name, key=key, state=state, seconds=round(done.seconds, 3))
-        )
+        self._tell(StageChanged(stage=name, key=key, state=state, seconds=round(done.seconds, 3)))
         return artifact
 
+    def _tell(self, event: StageChanged) -> None:
+        """Report a stage of this run, not what goes on aside."""
+        if self._is_latest:
+            self._progress.event(event)
+
     def aside(self) -> StageRunner:
-        """A runner that goes on from here without a trace in this run."""
+        """A runner that goes on from here: readers and watchers of this run see nothing of it."""
         other = StageRunner(self._project, self._settings, self._progress, is_latest=False)
         other.runs.update(self.runs)
         return other

@@ -13,8 +13,9 @@ from recon4.pipeline import remake
 from recon4.pose_graph.files import load_graph
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
+from recon4.store.contents import files_of
 from recon4.store.project import Project, read_artifacts
-from recon4.store.stage import read_figures, read_manifest
+from recon4.store.stage import Artifact, read_figures, read_manifest
 from recon4.workflows.make_map import PLACE, POSES, SIGHT
 from tests.review_project import make
 
@@ -32,9 +33,26 @@ def office(made, tmp_path):
     return shutil.copytree(made, tmp_path / "office")
 
 
-def decided(root: Path, kind, pair):
+class Watch:
+    """Notes the stage that runs, and those that are done."""
+
+    def __init__(self):
+        self.stage = ""
+        self.done: list[str] = []
+
+    def start(self, what, total, unit): ...
+
+    def advance(self, n=1): ...
+
+    def event(self, event):
+        self.stage = getattr(event, "stage", self.stage)
+        if getattr(event, "state", "") in {"done", "reused"}:
+            self.done.append(event.stage)
+
+
+def decided(root: Path, kind, pair, **more):
     append(root, Decision(kind=kind, who="Eva", pair=pair))
-    return remake(root)
+    return remake(root, **more)
 
 
 def ran(summary):
@@ -63,9 +81,11 @@ def test_a_map_that_a_decision_hardly_moves_stays_where_it_was(office):
     before = read_artifacts(office)
     line = (office / "trajectory.tum").read_bytes()
 
-    summary = decided(office, DecisionKind.REJECT, CONFIRMED)
+    seen = Watch()
+    summary = decided(office, DecisionKind.REJECT, CONFIRMED, progress=seen)
 
     assert ran(summary) == {"review", "refine", "level", "audit"}
+    assert seen.done == [one.stage for one in summary.stages]
     after = read_artifacts(office)
     assert [after[name] for name in OF_POINTS] == [before[name] for name in OF_POINTS]
     assert (office / "trajectory.tum").read_bytes() == line
@@ -99,23 +119,14 @@ def test_a_project_made_with_its_decisions_has_the_artifacts_of_one_made_again(
 
 def test_stages_read_no_other_file_of_the_stage_level_than_they_are_given(office):
     opened: dict[str, set[str]] = {}
-    stage = ""
-
-    class Watch:
-        def start(self, what, total, unit): ...
-        def advance(self, n=1): ...
-        def event(self, event):
-            nonlocal stage
-            stage = getattr(event, "stage", stage)
+    seen, watching = Watch(), True
 
     def watch(event, arguments):
         if watching and event == "open" and isinstance(arguments[0], str):
-            opened.setdefault(stage, set()).add(arguments[0])
+            opened.setdefault(seen.stage, set()).add(arguments[0])
 
-    watching = True
     sys.addaudithook(watch)
-    append(office, Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=WRONG))
-    assert set(OF_POINTS) < ran(remake(office, progress=Watch()))
+    assert set(OF_POINTS) < ran(decided(office, DecisionKind.ACCEPT, WRONG, progress=seen))
     watching = False
 
     assert held(office) is None
@@ -124,6 +135,9 @@ def test_stages_read_no_other_file_of_the_stage_level_than_they_are_given(office
         name: {Path(path).name for path in paths if Path(path).parent == level}
         for name, paths in opened.items()
     }
+    leveled = Artifact("level", level.name, level)
     for name, given in (("intensity", POSES), ("classes", SIGHT), ("map", PLACE)):
         assert read[name] - {"manifest.json"} <= set(given), name
+        recipe = read_manifest(read_artifacts(office)[name])["recipe"]
+        assert recipe["inputs"]["level"] == files_of(leveled, given).key, name
     assert read["map"] >= set(PLACE)
