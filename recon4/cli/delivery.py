@@ -36,7 +36,10 @@ CertificateOption = Annotated[
 def report(
     project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
     *,
-    pdf: Annotated[Path | None, typer.Option(help="PDF to write, for the client.")] = None,
+    client: Annotated[
+        Path | None,
+        typer.Option("--client", "--pdf", help="For the client: PDF, or HTML by its ending."),
+    ] = None,
     html: Annotated[Path | None, typer.Option(help="HTML to write, with all figures.")] = None,
     certificate: CertificateOption = None,
     draft: DraftOption = False,
@@ -46,21 +49,25 @@ def report(
     It is signed with the key of the server in whose folder the project lies, or with a certificate
     of your organization. A draft says so on every page, and is never signed.
     """
-    wanted = [path for path in (pdf, html) if path]
+    wanted = [path for path in (client, html) if path]
     if not wanted:
-        raise typer.BadParameter("name the file to write: --pdf FILE or --html FILE")
+        raise typer.BadParameter("name the file to write: --client FILE or --html FILE")
     spoken = of_terminal()
     signer = organization(certificate)
     confine_command(write=[path.parent for path in wanted])
-    from recon4.delivery.report_files import ReportWish, server_key, write_html, write_pdf
+    from recon4.delivery import report_files
 
+    wish = report_files.ReportWish(
+        draft=draft, key=signer or report_files.server_key(project), language=spoken
+    )
     if html:
-        made = write_html(project, html, draft=draft)
+        made = report_files.write_html(project, html, draft=draft)
         write(f"{html}\n{made.approval.text}")
-    if pdf:
-        wish = ReportWish(draft=draft, key=signer or server_key(project), language=spoken)
-        made = write_pdf(project, pdf, wish)
-        write(f"{pdf}, {'signed' if made.signed else 'not signed'}\n{made.approval.text}")
+    if client:
+        page = client.suffix.lower() in (".html", ".htm")
+        write_client = report_files.write_client_html if page else report_files.write_pdf
+        made = write_client(project, client, wish)
+        write(f"{client}, {'signed' if made.signed else 'not signed'}\n{made.approval.text}")
 
 
 @delivery.command()

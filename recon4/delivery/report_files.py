@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from recon4.delivery.pdf_signature import Organization, sign_pdf
@@ -14,6 +14,7 @@ from recon4.errors import StoreError
 from recon4.locales.languages import ENGLISH
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Signature
+from recon4.report.client_html import client_html
 from recon4.report.client_report import ReportExtras, client_report
 from recon4.report.client_words import Words, words
 from recon4.report.pdf import pdf_of, require_pdf
@@ -30,7 +31,7 @@ from recon4.review.decisions import DecisionKind
 from recon4.review.journal import JournalRow, read_rows
 from recon4.review.state import read_summary
 from recon4.review.trusted_keys import SIGNING_KEY, trusted_for
-from recon4.store.atomic import atomic_file
+from recon4.store.atomic import atomic_file, write_text
 from recon4.store.project import read_artifacts
 from recon4.store.seal import check_sealed
 
@@ -88,6 +89,25 @@ def write_pdf(root: Path, path: Path, wish: ReportWish) -> WrittenReport:
     with atomic_file(path) as temporary:
         temporary.write_bytes(made)
     return WrittenReport(state, signed)
+
+
+def write_client_html(root: Path, path: Path, wish: ReportWish) -> WrittenReport:
+    """Write the report of the latest run of a project as HTML for the client; it is not signed.
+
+    Args:
+        root: The project folder.
+        path: File to write, replaced only when the new one is complete.
+        wish: Language, delivered files.
+
+    Raises:
+        Altered: If the map was approved and is not what was approved.
+        ConfigError: If the language is not known.
+        StoreError: If there is no finished run, or a file is damaged.
+    """
+    state, approval = checked_approval(root, draft=wish.draft)
+    made = client_html(report_of(root, approval, state, wish=replace(wish, key=None)))
+    write_text(path, made)
+    return WrittenReport(state, signed=False)
 
 
 def write_html(root: Path, path: Path, *, draft: bool = False) -> WrittenReport:

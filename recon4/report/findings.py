@@ -13,7 +13,7 @@ from recon4.report.tuning import FINDING_LISTS
 
 LEVELS = {Usability.GOOD: "good", Usability.CHECK: "warning", Usability.DO_NOT_USE: "bad"}
 """Style of the headline."""
-_STYLES = {
+LEVEL_STYLES = {
     Level.GOOD: "good",
     Level.NOTE: "note",
     Level.CHECK: "warning",
@@ -47,4 +47,6 @@ def shown_findings(findings: Sequence[Finding]) -> list[ShownFinding]:
 
 
 def _line(one: Finding, text: str) -> ShownFinding:
-    return ShownFinding(_STYLES[one.level], str(one.level), str(one.kind), title_of(one.kind), text)
+    return ShownFinding(
+        LEVEL_STYLES[one.level], str(one.level), str(one.kind), title_of(one.kind), text
+    )
