@@ -36,3 +36,26 @@ def test_freed_blocks_below_a_used_one_are_returned():
 
 def _held_mb(mode):
     return float(subprocess.check_output([sys.executable, "-c", _CHILD, mode], text=True))
+
+
+_REUSE = """
+import resource
+import numpy as np
+from recon4.sandbox.freed_memory import return_freed_memory
+
+return_freed_memory()
+def batch():
+    columns = [np.ones(300_000) for _ in range(4)]  # 2.4 MB each, as points of a tenth of a second
+batch()
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+for _ in range(20):
+    batch()
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="mallopt is of glibc")
+def test_a_batch_of_points_takes_the_memory_of_the_one_before_it():
+    faults = int(subprocess.check_output([sys.executable, "-c", _REUSE], text=True))
+
+    assert faults < 2000  # 47 000 pages if each batch takes new ones
