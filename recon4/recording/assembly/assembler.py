@@ -15,7 +15,7 @@ from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
-from recon4.recording.assembly.rotation_rate import nominal, rotation_rate
+from recon4.recording.assembly.rotation_rate import nominal, rotation_of_head
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.assembly.tuning import ASSEMBLY
 from recon4.recording.clock_names import clocks_text
@@ -206,10 +206,8 @@ class Assembler:
         for stream in seen:
             if not stream.spins:
                 continue
-            t_ns = np.concatenate([shots.t_ns for shots in stream.waiting])
-            xyz = np.concatenate([shots.xyz for shots in stream.waiting])
-            head = t_ns <= t_ns[0] + PROBE.head_ns
-            self.rotation_hz[stream.name] = rotation_rate(t_ns[head], xyz[head])
+            rate_hz = rotation_of_head(stream.waiting, PROBE.head_ns)
+            self.rotation_hz[stream.name] = rate_hz
         self._start_ns = min(starts)
         self.duration_ns = round(1e9 / self._rate_hz())
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.assembly.tuning import ROTATION
 
 
@@ -32,6 +35,23 @@ def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
     rates = np.arange(ROTATION.slowest_hz, ROTATION.fastest_hz, step)
     best, clear = max((_strongest(azimuth * sign, t_s, rates) for sign in (1.0, -1.0)), key=_clear)
     return best if clear > ROTATION.clear else float("nan")
+
+
+def rotation_of_head(shots: Sequence[Shots], head_ns: int) -> float:
+    """`rotation_rate` of the first points of batches that follow each other; copies no points.
+
+    Args:
+        shots: Of one sensor.
+        head_ns: Points up to this long after the first one count [ns].
+    """
+    t_ns = np.concatenate([part.t_ns for part in shots])
+    rows = np.flatnonzero(t_ns <= t_ns[0] + head_ns)
+    rows = rows[np.linspace(0, len(rows) - 1, min(ROTATION.points, len(rows))).astype(np.intp)]
+    ends = np.cumsum([len(part) for part in shots])
+    rows_of = np.split(rows, np.searchsorted(rows, ends[:-1]))
+    starts = ends - [len(part) for part in shots]
+    xyz = [shots[k].xyz[own - starts[k]] for k, own in enumerate(rows_of)]
+    return rotation_rate(t_ns[rows], np.concatenate(xyz))
 
 
 def nominal(rate_hz: float) -> float:

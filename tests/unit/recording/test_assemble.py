@@ -1,5 +1,6 @@
 """Shots to multiframes: cuts, clocks, gaps, silent sensors."""
 
+import tracemalloc
 from dataclasses import replace
 from itertools import pairwise
 
@@ -11,7 +12,7 @@ from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
 from recon4.recording.assembly.assembler import Assembler, moved
 from recon4.recording.assembly.range_limits import drop_invalid
-from recon4.recording.assembly.rotation_rate import nominal, rotation_rate
+from recon4.recording.assembly.rotation_rate import nominal, rotation_of_head, rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
@@ -280,6 +281,20 @@ def test_a_sensor_that_does_not_turn_has_no_rate():
     t_ns = np.sort(rng.integers(0, 10**9, 5000))
 
     assert np.isnan(rotation_rate(t_ns, rng.normal(size=(5000, 3)).astype(np.float32)))
+
+
+def test_the_rotation_of_the_head_is_measured_without_a_copy_of_its_points():
+    shots = spin(seconds=1.5)
+    head = rows(shots, shots.t_ns <= shots.t_ns[0] + 10**9)
+    parts = [rows(shots, slice(0, 0)), *pieces(shots)]
+
+    tracemalloc.start()
+    rate_hz = rotation_of_head(parts, 10**9)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+
+    assert rate_hz == rotation_rate(head.t_ns, head.xyz)
+    assert most < 20 * len(shots)  # all points and times: 20 bytes, and as much for the head
 
 
 @pytest.mark.parametrize("seconds", [0.031, 0.04, 0.08])
