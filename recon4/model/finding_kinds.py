@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 7
+AUDIT_VERSION = 8
 """Raise it when witnesses find something else in the same walk: then finished projects are audited
 again."""
 
@@ -85,6 +85,7 @@ class FindingKind(StrEnum):
     REVIEW_CONFLICT = "REVIEW-CONFLICT"
     REVIEW_WITHOUT_EFFECT = "REVIEW-WITHOUT-EFFECT"
     REVIEW_OUTDATED = "REVIEW-OUTDATED"
+    REVIEW_HELD = "REVIEW-HELD"
 
     # Leveling and GNSS
     NOT_LEVELED = "NOT-LEVELED"

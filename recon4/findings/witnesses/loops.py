@@ -64,6 +64,9 @@ class Decisions:
     """Decisions of people that contradict the graph, or have no effect."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
-        """What the reviewer should look at again."""
+        """What the reviewer should look at again, and whether the map has moved."""
         if walk.review is not None:
             yield from problem_findings(walk.review)
+        held = walk.level.held if walk.level else None
+        if held is not None and held.moved_m >= LOOP_WITNESS.held_m:
+            yield finding(FindingKind.REVIEW_HELD, Level.NOTE, {"moved_m": held.moved_m})

@@ -26,6 +26,8 @@ class LoopWitnessTuning(Struct, frozen=True, kw_only=True):
     residual_m: float = 0.10
     percentile: int = 95
     """Loop closures of which 5 % have a larger residual contradict the map [m]."""
+    held_m: float = 1e-4
+    """A move that a map does not follow is noted from here on [m]: the step of its points."""
 
 
 LOOP_WITNESS = LoopWitnessTuning()

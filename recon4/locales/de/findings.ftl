@@ -441,6 +441,11 @@ REVIEW-OUTDATED = Entscheidung über eine frühere Messung
     .meaning = Der Prüfer sah eine andere Registrierung dieses Paars.
     .detection = Die Pose der Kante weicht von der in der Entscheidung ab.
 
+REVIEW-HELD = Entscheidungen verschieben die Karte nicht
+    .text1 = Mit den Entscheidungen über Schleifenschlüsse würde sich die Karte um höchstens { LENGTH($moved_m) } verschieben; sie bleibt, wo sie war.
+    .meaning = Einer Verschiebung bis 4 mm und 0,4 mrad folgt die Verfeinerung nicht. Die Urteile des Graphen sind die entschiedenen.
+    .detection = Die Posen der Karte ohne Entscheidungen, verglichen mit denen der Karte mit ihnen.
+
 ## Horizontierung und GNSS
 
 NOT-LEVELED = Nicht horizontiert

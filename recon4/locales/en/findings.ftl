@@ -424,6 +424,11 @@ REVIEW-OUTDATED = Decision about an earlier measurement
     .meaning = The reviewer saw another registration of this pair.
     .detection = The pose of the edge differs from the one in the decision.
 
+REVIEW-HELD = Decisions do not move the map
+    .text1 = With the decisions about loop closures the map would move by { LENGTH($moved_m) } at most; it stays where it was.
+    .meaning = A move of at most 4 mm and 0.4 mrad is less than the refinement follows. The verdicts of the graph are the decided ones.
+    .detection = The poses of the map without decisions, compared with those of the map with them.
+
 ## Leveling and GNSS
 
 NOT-LEVELED = Not leveled
