@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ctypes
+from enum import IntEnum
 
 from recon4.sandbox.tuning import CONFINEMENT
 
-_MMAP_THRESHOLD, _TRIM_THRESHOLD = -3, -1
-"""``M_MMAP_THRESHOLD`` and ``M_TRIM_THRESHOLD`` of glibc's ``mallopt``."""
+
+class _Mallopt(IntEnum):
+    """Parameters of glibc's ``mallopt``."""
+
+    MMAP_THRESHOLD = -3
+    TRIM_THRESHOLD = -1
 
 
 def return_freed_memory() -> None:
@@ -19,6 +24,6 @@ def return_freed_memory() -> None:
     """
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt") and hasattr(libc, "malloc_trim"):
-        libc.mallopt(_MMAP_THRESHOLD, CONFINEMENT.returned_block_bytes)
-        libc.mallopt(_TRIM_THRESHOLD, CONFINEMENT.kept_bytes)
+        libc.mallopt(_Mallopt.MMAP_THRESHOLD, CONFINEMENT.returned_block_bytes)
+        libc.mallopt(_Mallopt.TRIM_THRESHOLD, CONFINEMENT.kept_bytes)
         libc.malloc_trim(0)
