@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.locales.languages import ENGLISH
+from recon4.locales.numbers import localized
+from recon4.locales.texts import Texts, texts
 from recon4.slices.tuning_files import CONTROL_LIMITS
 from recon4.untrusted.bounded import parse_float
 
@@ -34,16 +37,30 @@ class ControlLimits:
                     f"{name}: expected more than 0 and at most {CONTROL_LIMITS.most_m:g} m"
                 )
 
-    @property
-    def text(self) -> str:
-        """The limits as one phrase, in centimeters."""
-        whose = "usual limits" if self == ControlLimits() else "limits of this job"
-        return (
-            f"mean {_cm(self.mean_horizontal_m)} horizontal, {_cm(self.mean_height_m)} height; "
-            f"largest {_cm(self.max_horizontal_m)} horizontal, {_cm(self.max_height_m)} height; "
-            f"distances {_cm(self.distances_m)}; σ of survey and picking {_cm(self.survey_sd_m)} "
-            f"({whose})"
-        )
+    def text(self, say: Texts) -> str:
+        """The limits as one phrase of a language (`control_texts`), in centimeters."""
+
+        def shown(limit_m: float | None) -> str:
+            if limit_m is None:
+                return say.part("control-limits", "free", {})
+            value = localized(f"{100.0 * limit_m:g}", say.language)
+            return say.part("control-limits", "cm", {"value": value})
+
+        values = {
+            "mean_flat": shown(self.mean_horizontal_m),
+            "mean_height": shown(self.mean_height_m),
+            "most_flat": shown(self.max_horizontal_m),
+            "most_height": shown(self.max_height_m),
+            "distances": shown(self.distances_m),
+            "sd": shown(self.survey_sd_m),
+            "whose": say.part("control-limits", "usual" if self == ControlLimits() else "own", {}),
+        }
+        return say.part("control-limits", "whole", values)
+
+
+def control_texts(language: str = ENGLISH) -> Texts:
+    """The texts of verdicts on control points in a language."""
+    return texts(language, "control")
 
 
 def parse_limits(text: str) -> ControlLimits:
@@ -69,7 +86,3 @@ def parse_limits(text: str) -> ControlLimits:
         max_height_m=max_up,
         distances_m=distances,
     )
-
-
-def _cm(limit_m: float | None) -> str:
-    return "not required" if limit_m is None else f"{100.0 * limit_m:g} cm"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from recon4.locales.texts import Texts
 from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import Role
 from recon4.slices.tuning import CONTROL_VERDICT
@@ -49,7 +50,11 @@ class ControlVerdict:
 
 
 def requirements_of(
-    rows: Sequence[Residual], distances: tuple[float | None, int], limits: ControlLimits
+    rows: Sequence[Residual],
+    distances: tuple[float | None, int],
+    limits: ControlLimits,
+    *,
+    say: Texts,
 ) -> tuple[Requirement, ...]:
     """The limits of a job with what the points of one role measured.
 
@@ -57,15 +62,16 @@ def requirements_of(
         rows: The residuals.
         distances: Largest error of a distance [m], and how many points are measured fully.
         limits: Of the job.
+        say: `control_texts` of a language.
     """
     up = [abs(row.up_m) for row in rows if row.up_m is not None]
     lines: list[Line] = [
         *_horizontal(rows, limits),
-        ("mean height", "height", _mean(up), len(up), limits.mean_height_m),
-        ("largest height", "height", max(up, default=None), len(up), limits.max_height_m),
-        ("distances between points", "distances", *distances, limits.distances_m),
+        ("mean-height", "height", _mean(up), len(up), limits.mean_height_m),
+        ("largest-height", "height", max(up, default=None), len(up), limits.max_height_m),
+        ("distances", "distances", *distances, limits.distances_m),
     ]
-    return tuple(_line(line) for line in lines if line[-1] is not None)
+    return tuple(_line(line, say) for line in lines if line[-1] is not None)
 
 
 Line = tuple[str, Component, float | None, int, float | None]
@@ -88,30 +94,32 @@ def _horizontal(rows: Sequence[Residual], limits: ControlLimits) -> list[Line]:
         over = [d for d in (row.known_2d_m for row in rows) if d is not None and d > most_m]
         largest = max([*flat, *over], default=None)
         return [
-            ("mean horizontal", "horizontal", _mean(flat), len(flat), limits.mean_horizontal_m),
-            ("largest horizontal", "horizontal", largest, len(flat), limits.max_horizontal_m),
+            ("mean-horizontal", "horizontal", _mean(flat), len(flat), limits.mean_horizontal_m),
+            ("largest-horizontal", "horizontal", largest, len(flat), limits.max_horizontal_m),
         ]
     lines: list[Line] = []
     parts: tuple[tuple[Component, list[float]], ...] = (("east", east), ("north", north))
     for name, part in parts:
         mean_limit_m = _shared(limits.mean_horizontal_m)
         max_limit_m = _shared(limits.max_horizontal_m)
-        lines.append((f"mean {name}", name, _mean(part), len(part), mean_limit_m))
-        lines.append((f"largest {name}", name, max(part, default=None), len(part), max_limit_m))
+        lines.append((f"mean-{name}", name, _mean(part), len(part), mean_limit_m))
+        lines.append((f"largest-{name}", name, max(part, default=None), len(part), max_limit_m))
     return lines
 
 
-def _line(line: Line) -> Requirement:
-    label, component, value_m, points, limit_m = line
+def _line(line: Line, say: Texts) -> Requirement:
+    name, component, value_m, points, limit_m = line
     assert limit_m is not None
     over = value_m is not None and value_m > limit_m
     holds: bool | None = not over
-    text = "✕ exceeded" if over else "✓ holds"
+    result = "exceeded" if over else "holds"
     if value_m is None:
-        holds, text = None, "– not measured"
+        holds, result = None, "unmeasured"
     elif points < CONTROL_LIMITS.least_points:
-        above = ", above the limit" if over else ""
-        holds, text = None, f"– {points} of {CONTROL_LIMITS.least_points} points needed{above}"
+        holds, result = None, "few-above" if over else "few"
+    values = {"points": points, "needed": CONTROL_LIMITS.least_points}
+    text = say.part("limit-result", result, values)
+    label = say.part("limit-label", name, {})
     return Requirement(label, component, points, value_m, limit_m, holds, text)
 
 
@@ -119,75 +127,98 @@ def control_verdict(
     role: Role | None,
     lines: Sequence[Requirement],
     *,
-    outliers: Sequence[tuple[str, float, float]],
-    tested: int,
+    rows: Sequence[Residual],
     left: int,
+    say: Texts,
 ) -> ControlVerdict:
     """The verdict of the deciding points.
 
     Args:
         role: Of these points; None = no point was measured.
         lines: Their limits.
-        outliers: Id, residual [m] and σ of points far beyond their σ, of both roles.
-        tested: How many points have a stated σ.
+        rows: Residuals of all points, of both roles.
         left: Points that were not measured in this map.
+        say: `control_texts` of a language.
     """
-    more = f" {left} more not measured." if left else ""
+    more = say.part("control-verdict", "left", {"left": left}) if left else ""
     if role is None:
-        return ControlVerdict("note", f"– No verdict: no point is measured in this map.{more}")
+        return ControlVerdict("note", say.part("control-verdict", "none", {}) + more)
     holds = [line.holds for line in lines]
-    level: Level = "bad" if False in holds else "good"
-    words = f"Outside the limits at the {role} points" if level == "bad" else ""
-    if not words and (None in holds or not holds):
-        level, words = "note", f"No verdict at the {role} points"
-    words = words or f"Within the limits at the {role} points"
+    level: Level = "good"
+    name = "within"
+    if False in holds:
+        level, name = "bad", "outside"
+    elif None in holds or not holds:
+        level, name = "note", "unsure"
+    at = say.part("control-verdict", f"role-{role}", {})
+    words = say.part("control-verdict", name, {"role": at})
     if level == "good" and role == "control":
-        level, words = "note", f"{words}, but no independent point was checked"
-    if level != "bad" and outliers:
+        level, words = "note", say.part("control-verdict", "unchecked", {"words": words})
+    if level != "bad" and any(row.outlier for row in rows):
         level = "warning"
-    sign = {"good": "✓", "warning": "⚠", "bad": "✕", "note": "–"}[level]
-    parts = "; ".join(_components(lines)) or "no limit is required"
-    return ControlVerdict(level, f"{sign} {words}: {parts}.{_outliers(outliers, tested)}{more}")
+    values = {
+        "sign": {"good": "✓", "warning": "⚠", "bad": "✕", "note": "–"}[level],
+        "words": words,
+        "parts": "; ".join(_components(lines, say)) or say.part("control-verdict", "no-limit", {}),
+        "outliers": _outliers(rows, say),
+        "left": more,
+    }
+    return ControlVerdict(level, say.part("control-verdict", "whole", values))
 
 
-def _components(lines: Sequence[Requirement]) -> list[str]:
+def _components(lines: Sequence[Requirement], say: Texts) -> list[str]:
     """Each component with its sign, its points and what is missing or exceeded."""
     out = []
     for name in dict.fromkeys(line.component for line in lines):
         own = [line for line in lines if line.component == name]
         holds = [line.holds for line in own]
-        sign = _SIGNS[False if False in holds else (None if None in holds else True)]
         points = min(line.points for line in own)
-        count = "not measured" if not points else f"{points} point{'s' if points > 1 else ''}"
-        if 0 < points < CONTROL_LIMITS.least_points:
-            count += f", {CONTROL_LIMITS.least_points} needed"
-        over = [line for line in own if line.value_m is not None and line.value_m > line.limit_m]
-        said = "".join(
-            f", {line.label} {_cm(line.value_m or 0.0)} of {_cm(line.limit_m)} cm" for line in over
+        count = say.part(
+            "control-verdict", "points" if points else "unmeasured", {"points": points}
         )
-        out.append(f"{name} {sign} ({count}{said})")
+        if 0 < points < CONTROL_LIMITS.least_points:
+            needed = {"needed": CONTROL_LIMITS.least_points}
+            count += say.part("control-verdict", "needed", needed)
+        values = {
+            "name": say.part("limit-component", name, {}),
+            "sign": _SIGNS[False if False in holds else (None if None in holds else True)],
+            "count": count,
+            "over": "".join(_over(line, say) for line in own),
+        }
+        out.append(say.part("control-verdict", "component", values))
     return out
 
 
-def _outliers(found: Sequence[tuple[str, float, float]], tested: int) -> str:
+def _over(line: Requirement, say: Texts) -> str:
+    """What exceeds a limit; empty = nothing."""
+    if line.value_m is None or line.value_m <= line.limit_m:
+        return ""
+    value, limit = 100.0 * line.value_m, 100.0 * line.limit_m
+    return say.part(
+        "control-verdict", "over", {"label": line.label, "value": value, "limit": limit}
+    )
+
+
+def _outliers(rows: Sequence[Residual], say: Texts) -> str:
     """Points whose residual their σ does not explain."""
+    tested = sum(row.sigmas is not None for row in rows)
+    found = [(row.id, row.across_m, row.sigmas or 0.0) for row in rows if row.outlier]
     if not tested:
-        return " Outliers are not tested: the map states no σ."
+        return say.part("control-outliers", "untested", {})
     if not found:
         return ""
     named = [
-        f"{name} ({_cm(abs(d))} cm, {sigmas:.0f} σ)"
+        say.part("control-outliers", "one", {"name": name, "off": 100.0 * abs(d), "sigmas": sigmas})
         for name, d, sigmas in found[: CONTROL_VERDICT.named]
     ]
-    more = (
-        f" and {len(found) - CONTROL_VERDICT.named} more"
-        if len(found) > CONTROL_VERDICT.named
-        else ""
-    )
-    said = f" ⚠ Far beyond the stated σ: {', '.join(named)}{more}."
-    if tested > 2 and 2 * len(found) > tested:
-        return f"{said} These are most points: map and survey differ by more than the map states."
-    return f"{said} Look whether the right place was measured."
+    left = len(found) - CONTROL_VERDICT.named
+    most = tested > 2 and 2 * len(found) > tested
+    values = {
+        "named": ", ".join(named),
+        "more": say.part("control-outliers", "more", {"count": left}) if left > 0 else "",
+        "advice": say.part("control-outliers", "most" if most else "look", {}),
+    }
+    return say.part("control-outliers", "far", values)
 
 
 def _shared(limit_m: float | None) -> float | None:
@@ -196,7 +227,3 @@ def _shared(limit_m: float | None) -> float | None:
 
 def _mean(values: Sequence[float]) -> float | None:
     return float(np.mean(values)) if values else None
-
-
-def _cm(length_m: float) -> str:
-    return f"{100.0 * length_m:.1f}"

@@ -6,17 +6,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from recon4.locales.texts import Texts
 from recon4.model.tuning import GEOID
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.tuning import HEIGHT_HINTS
 
-_TWO_HEIGHTS = (
-    "This is as with a geoid: either the map or the survey has heights above sea level "
-    "(orthometric), and the other above the ellipsoid."
-)
 
-
-def common_height(up_m: Sequence[float], horizontal_m: Sequence[float]) -> str:
+def common_height(up_m: Sequence[float], horizontal_m: Sequence[float], say: Texts) -> str:
     """Whether all measured heights are off by the same, and the points in place horizontally."""
     if not up_m:
         return ""
@@ -26,14 +22,13 @@ def common_height(up_m: Sequence[float], horizontal_m: Sequence[float]) -> str:
     in_place = max(horizontal_m, default=0.0) < HEIGHT_HINTS.nearly_m
     if not (alike and in_place and low_m < abs(usual_m) < high_m):
         return ""
-    points = f"All {len(up_m)} points are" if len(up_m) > 1 else "The point is"
-    return (
-        f"{points} {abs(usual_m):.2f} m too {'high' if usual_m > 0 else 'low'} in the map, and "
-        f"horizontally in place. {_TWO_HEIGHTS}"
-    )
+    part = f"{'all' if len(up_m) > 1 else 'one'}-{'high' if usual_m > 0 else 'low'}"
+    return say.part("height-hint", part, {"points": len(up_m), "off": abs(usual_m)})
 
 
-def beside_map(points: Sequence[ControlPoint], heights_m: tuple[float, float] | None) -> str:
+def beside_map(
+    points: Sequence[ControlPoint], heights_m: tuple[float, float] | None, say: Texts
+) -> str:
     """Whether all points lie as far below or above the map as sea level and ellipsoid are apart."""
     if not points or heights_m is None:
         return ""
@@ -42,8 +37,12 @@ def beside_map(points: Sequence[ControlPoint], heights_m: tuple[float, float] | 
     low_m, high_m = GEOID.least_m, GEOID.most_m
     if not low_m < max(below_m, above_m) < high_m:
         return ""
-    return (
-        f"All {len(points)} points of the survey are {'below' if below_m > 0 else 'above'} the map "
-        f"by {max(below_m, above_m):.0f} m and more: their heights are {min(z_m):.1f} to "
-        f"{max(z_m):.1f} m, the map's {heights_m[0]:.1f} to {heights_m[1]:.1f} m. {_TWO_HEIGHTS}"
-    )
+    values = {
+        "points": len(points),
+        "off": max(below_m, above_m),
+        "low": min(z_m),
+        "high": max(z_m),
+        "map_low": heights_m[0],
+        "map_high": heights_m[1],
+    }
+    return say.part("height-hint", "below" if below_m > 0 else "above", values)

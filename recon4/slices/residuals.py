@@ -14,7 +14,9 @@ from typing import Literal
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.slices.control_limits import ControlLimits
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Texts
+from recon4.slices.control_limits import ControlLimits, control_texts
 from recon4.slices.control_points import ControlPoint, Role
 from recon4.slices.control_verdict import (
     ControlVerdict,
@@ -125,6 +127,13 @@ class ControlContext:
     map_heights_m: tuple[float, float] | None = None
     """Lowest and highest height of the map in the survey's coordinates [m]."""
     limits: ControlLimits = field(default_factory=ControlLimits)
+    language: str = ENGLISH
+    """Of the texts."""
+
+    @property
+    def say(self) -> Texts:
+        """The texts in this language."""
+        return control_texts(self.language)
 
 
 def residuals(
@@ -149,7 +158,7 @@ def residuals(
         )
         for p in found
     )
-    figures = tuple(_figures(role, rows, found, limits=context.limits) for role in ROLES)
+    figures = tuple(_figures(role, rows, found, context=context) for role in ROLES)
     figures = tuple(one for one in figures if one.points)
     missing = tuple(p.id for p in points if p.id not in measured and p.id not in context.outdated)
     outdated = tuple(p.id for p in points if p.id not in measured and p.id in context.outdated)
@@ -164,11 +173,11 @@ def residuals(
         verdict=control_verdict(
             judge.role if judge else None,
             judge.requirements if judge else (),
-            outliers=[(row.id, row.across_m, row.sigmas or 0.0) for row in rows if row.outlier],
-            tested=sum(row.sigmas is not None for row in rows),
+            rows=rows,
             left=len(missing) + len(outdated),
+            say=context.say,
         ),
-        limits=context.limits.text,
+        limits=context.limits.text(context.say),
         hint=_hint(rows, points, context),
     )
 
@@ -206,7 +215,7 @@ def _sigmas(along: Array, d: Array, cov: Array) -> float:
 
 
 def _figures(
-    role: Role, rows: Sequence[Residual], points: Sequence[ControlPoint], *, limits: ControlLimits
+    role: Role, rows: Sequence[Residual], points: Sequence[ControlPoint], *, context: ControlContext
 ) -> ResidualStatistics:
     mine = [(row, point) for row, point in zip(rows, points, strict=True) if row.role == role]
     own = [row for row, _ in mine]
@@ -228,7 +237,7 @@ def _figures(
         max_up_m=max(up, default=None),
         rmse_3d_m=_rms(space),
         relative_m=relative,
-        requirements=requirements_of(own, (relative, len(space)), limits),
+        requirements=requirements_of(own, (relative, len(space)), context.limits, say=context.say),
     )
 
 
@@ -271,6 +280,6 @@ def _relative(full: Sequence[tuple[Residual, ControlPoint]]) -> float | None:
 
 def _hint(rows: Sequence[Residual], points: Sequence[ControlPoint], context: ControlContext) -> str:
     if not rows:
-        return beside_map(points, context.map_heights_m)
+        return beside_map(points, context.map_heights_m, context.say)
     horizontal = _known(row.known_2d_m for row in rows)
-    return common_height(_known(row.up_m for row in rows), horizontal)
+    return common_height(_known(row.up_m for row in rows), horizontal, context.say)

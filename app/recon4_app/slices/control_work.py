@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.languages import ENGLISH
 from recon4.model.site_control import SITE_GRID
 from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
@@ -41,9 +42,9 @@ def preview_control(file: SurveyFile, choice: ColumnChoice) -> ControlPreview:
     return read_control(file.data, name=file.name, choice=choice, crs=crs)
 
 
-def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:
-    """Residuals of the points found in the map."""
-    return _residuals(artifacts, state)
+def control_report(artifacts: Artifacts, state: ControlState, language: str) -> ControlReport:
+    """Residuals of the points found in the map, with the verdict in a language."""
+    return _residuals(artifacts, state, language)
 
 
 def control_file(
@@ -71,7 +72,7 @@ def control_file(
     return residual_csv(found, comment=line)
 
 
-def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
+def _residuals(artifacts: Artifacts, state: ControlState, language: str = ENGLISH) -> ControlReport:
     own = map_frame(artifacts)
     measured = state.measured_in(Path(artifacts["map"]).name)
     covariances = _covariances(artifacts, measured)
@@ -92,6 +93,7 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
             outdated=state.picks.keys() - measured.keys(),
             map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
             limits=ControlLimits(**state.limits.model_dump()),
+            language=language,
         ),
     )
 

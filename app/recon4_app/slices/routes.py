@@ -24,7 +24,7 @@ from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Refused
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.pages import page_response
+from recon4_app.pages import Language, page_response
 from recon4_app.projects.routes import REPORT_POLICY
 from recon4_app.slices import control_work, readers, slice_work
 from recon4_app.slices.exports import ExportRequest
@@ -290,13 +290,17 @@ def keep_control(project_id: str, state: ControlState, server: Server) -> Contro
 
 
 @router.get("/control/report", dependencies=LOOK, summary="Residuals")
-async def control_report(project_id: str, server: Server, caller: CalledBy) -> ControlReport:
+async def control_report(
+    project_id: str, server: Server, caller: CalledBy, *, language: Language
+) -> ControlReport:
     """Map minus survey, separate for control and check points, with every limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
-        server.slices.run_interactive(terms, control_work.control_report, artifacts, state)
+        server.slices.run_interactive(
+            terms, control_work.control_report, artifacts, state, language
+        )
     )
 
 

@@ -203,6 +203,25 @@ def test_limits_of_the_job_decide_and_are_named():
     assert "distances" not in [line.component for line in found.figures[0].requirements]
 
 
+def test_the_verdict_is_said_in_a_language():
+    points = [ControlPoint(str(k), (9.0 * k, k * k, 0.0)) for k in range(4)]
+    measured = full({point.id: np.add(point.xyz_m, (0.03, 0.0, 40.0)) for point in points[:3]})
+    strict = ControlLimits(mean_horizontal_m=0.025, distances_m=None)
+
+    found = residuals(points, measured, ControlContext(limits=strict, language="de"))
+
+    assert found.verdict.text.startswith(
+        "✕ Außerhalb der Grenzen an den Kontrollpunkten: Lage ✕ (3"
+    )
+    assert "Mittel Lage 3,0 von 2,5 cm" in found.verdict.text
+    assert found.verdict.text.endswith("1 weitere nicht gemessen.")
+    assert found.limits.startswith("Mittel 2,5 cm Lage, 12 cm Höhe") and "nicht verlangt" in (
+        found.limits
+    )
+    assert found.hint.startswith("Alle 3 Punkte liegen in der Karte 40,00 m zu hoch")
+    assert found.figures[0].requirements[0].text == "✕ überschritten"
+
+
 def test_the_points_of_the_thesis_have_its_figures_and_are_too_few_for_a_verdict():
     """V Table 3.3."""
     points = [ControlPoint("pt1", (100.0, 200.0, 300.0)), ControlPoint("pt2", (0.0, 0.0, 0.0))]
