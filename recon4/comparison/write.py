@@ -20,10 +20,10 @@ from recon4.store.atomic import atomic_file, write_json
 
 ENDINGS = (".laz", ".csv", ".json")
 POINT = np.dtype(
-    [("p_m", "<f4", 3), ("distance", "<i2"), ("lod", "<u2"), ("state", "u1"), ("zero", "u1", 3)]
+    [("p_m", "<f4", 3), ("distance", "<i2"), ("lod", "<u2"), ("state", "u1"), ("normal", "i1", 3)]
 )
 """A core point for the page: coordinates in the first map [m], distance and level of detection in
-steps of `PAGE_POINTS.step_m`, `CoreState`."""
+steps of `PAGE_POINTS.step_m`, `CoreState`, normal in steps of 1 / 127."""
 
 
 def sink_of(path: Path, frame: MapFrame, low_m: NDArray[np.float64]) -> Sink:
@@ -150,4 +150,5 @@ def page_points(part: CoreDifferences) -> NDArray[np.void]:
         steps = np.rint(np.nan_to_num(values.astype(np.float64)) / PAGE_POINTS.step_m)
         out[name] = np.clip(steps, limits.min, limits.max)
     out["state"] = part.state
+    out["normal"] = np.rint(127.0 * part.normal)
     return out

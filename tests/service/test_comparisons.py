@@ -59,6 +59,8 @@ def test_the_points_of_a_comparison_are_those_of_its_laz_file(server, made, tmp_
     assert "immutable" in answer.headers["cache-control"]
     assert len(points) == len(las) == made["found"]["counts"]["core_points"]
     assert np.allclose(points["p_m"], las.xyz, atol=1e-4)
+    normal = points["normal"][points["state"] < 2] / 127.0
+    assert np.allclose(np.linalg.norm(normal, axis=1), 1.0, atol=0.02)
     step_m = server.get(BASE).json()["step_m"]
     known = points["state"] < 2
     off = points["distance"][known] * step_m - np.asarray(las["distance_m"])[known]

@@ -28,6 +28,7 @@ import { VIEWS } from "./views.js";
  * @property {(view: string) => void} forget
  * @property {ReturnType<typeof import("./notes.js").notesOf>} notes
  * @property {ReturnType<typeof import("./profile.js").profileOf>} profile
+ * @property {ReturnType<typeof import("./compare.js").compareOf>} compare
  * @property {() => void} csv
  * @property {(time: number) => void} seek
  * @property {(p: number[]) => void} goTo

@@ -20,6 +20,7 @@ import "../shared/page_head.js";
 import { openShare } from "../shared/share.js";
 import { aimOf } from "./aim.js";
 import { drawBar, drawHelp, drawStatus } from "./bar.js";
+import { compareOf } from "./compare.js";
 import { between, panned, pixelM, rayAt, zoomed } from "./camera.js";
 import { moveByGestures } from "./controls.js";
 import { flightOf } from "./flying.js";
@@ -198,6 +199,7 @@ const toggles = togglesOf(change);
 const marking = markingOf(stage);
 const notes = notesOf(draw, () => ({ camera: camera(), screen: screen() }));
 const saved = savedOf(draw);
+const compare = compareOf({ change, draw, canvas: () => run.canvas });
 const profile = profileOf({ draw, dark: () => dark.matches, change: widened });
 
 function view(/** @type {string} */ name, parallel = camera().parallel) {
@@ -227,6 +229,7 @@ function widened(of, width) {
 function open(/** @type {string} */ query) {
   const next = parse(query);
   change(next);
+  compare.show();
 }
 
 const goTo = (/** @type {number[]} */ p) =>
@@ -254,6 +257,7 @@ const act = {
   forget: (view) => attempt(byId("message"), () => saved.remove(view)),
   notes,
   profile,
+  compare,
   csv: downloadMeasurements,
   change,
   goTo,
@@ -370,7 +374,9 @@ async function begin() {
   draw();
   place().focus({ preventScroll: true });
   await run.canvas.tiles.readSample(storedOf(shown.colorShown()));
-  const lists = page.guest ? [] : [notes, saved].map((one) => one.read().catch(showProblem));
+  const lists = page.guest
+    ? []
+    : [notes, saved, compare].map((one) => one.read().catch(showProblem));
   const [walk] = await Promise.all([readMapWalk(id), ...lists]);
   page.walk = walk;
   run.canvas.layers(walk.positions_m, walk.nodes_m);

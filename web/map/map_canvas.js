@@ -34,6 +34,7 @@ import { t } from "../shared/texts.js";
  * @import {WebGLRenderTarget} from "../shared/vendor/three/three.module.min.js"
  * @import {ColorBy} from "./state.js"
  * @import {Reader, Stored} from "./tiles.js"
+ * @import {CorePoints} from "./compare_points.js"
  * @typedef {object} Drawing what is drawn
  * @property {Camera} camera
  * @property {ColorBy} color
@@ -78,6 +79,8 @@ export class MapCanvas {
   #asked = false;
   /** @type {{walk?: Line, nodes?: Points}} */
   #layers = {};
+  /** @type {CorePoints | null} */
+  #differences = null;
   pace = new Pace();
   tiles;
   /** Figures of the last frames, for the caption and for tests. */
@@ -152,6 +155,15 @@ export class MapCanvas {
     this.#news();
   }
 
+  /** Shows differences in place of the map; null = the map again. */
+  differ(/** @type {CorePoints | null} */ points) {
+    if (this.#differences) this.#scene.remove(this.#differences.object);
+    if (points) this.#scene.add(points.object);
+    points?.follow(this.#material.uniforms);
+    this.#differences = points;
+    this.#news();
+  }
+
   /** Has the image drawn again: points have arrived, or its size has changed. */
   #news() {
     this.#finished = false;
@@ -208,7 +220,7 @@ export class MapCanvas {
     this.#begin(drawing, this.#coarse);
     this.#renderer.render(this.#scene, this.#camera);
     this.#finish(drawing, this.#coarse);
-    const points = parts.reduce((sum, part) => sum + part.points, 0);
+    const points = parts.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
     Object.assign(this.drawn, { points, rested: false });
     this.#begun(began, points, true);
   }
@@ -235,7 +247,7 @@ export class MapCanvas {
     if (this.#refining.next >= queue.length) {
       this.#finish(drawing, this.#fine);
       this.#finished = true;
-      const all = queue.reduce((sum, part) => sum + part.points, 0);
+      const all = queue.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
       Object.assign(this.drawn, { points: all, rested: this.tiles.complete });
       this.#refining = null;
     }
@@ -243,6 +255,7 @@ export class MapCanvas {
   }
 
   #choose(/** @type {Drawing} */ { camera, planes }, /** @type {number} */ budget) {
+    if (this.#differences) return { counts: this.#index.tiles.map(() => 0) };
     return choose(this.#index.tiles, { camera, screen: this.screen, planes, budget });
   }
 

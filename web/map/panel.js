@@ -8,6 +8,7 @@ import { shareText } from "../shared/format.js";
 import { decimal, t, written } from "../shared/texts.js";
 import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
+import { compareSection } from "./compare.js";
 import { corrections } from "./corrections.js";
 import { measuredSection } from "./measured_panel.js";
 import { notesSection } from "./notes.js";
@@ -42,8 +43,8 @@ export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */
         <h2 id="layers-title">${t("layers")}</h2>
         ${layers(act)}
       </section>
-      ${page.guest ? nothing : corrections(index)} ${placesSections(act)} ${measuredSection(act)}
-      ${page.guest ? nothing : [notesSection(act), savedSection(act)]}`,
+      ${page.guest ? nothing : [compareSection(act), corrections(index)]} ${placesSections(act)}
+      ${measuredSection(act)} ${page.guest ? nothing : [notesSection(act), savedSection(act)]}`,
     element,
   );
 }

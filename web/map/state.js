@@ -1,6 +1,7 @@
 // What the page shows; the address of the page is this state. No DOM, no network.
 
 import { t } from "../shared/texts.js";
+import { NOT_COMPARED, comparedIn, comparedQuery } from "./compare_state.js";
 import { KINDS } from "./measure.js";
 
 /**
@@ -8,6 +9,7 @@ import { KINDS } from "./measure.js";
  * @import {Clip} from "./clip.js"
  * @import {Measurement, MeasureKind} from "./measure.js"
  * @import {Mark} from "./places.js"
+ * @import {Compared} from "./compare_state.js"
  * @typedef {"height" | "intensity" | "normalized" | "class" | "time" | "uncertainty"
  *   | "thickness" | "plain"} ColorBy
  * @typedef {"findings" | "marks" | "notes" | "walk" | "nodes"} Layer
@@ -24,6 +26,7 @@ import { KINDS } from "./measure.js";
  * @property {boolean} standing whether a drag looks around
  * @property {Measurement[]} measurements
  * @property {Mark | null} mark the stretch or place that is marked
+ * @property {Compared} compare what is shown of another map
  */
 
 /** @type {Record<ColorBy, string>} */
@@ -83,6 +86,7 @@ export const usualState = () => ({
   standing: false,
   measurements: [],
   mark: null,
+  compare: NOT_COMPARED,
 });
 
 /** The state in the query of an address; what is not valid becomes the usual. */
@@ -118,6 +122,7 @@ export function parse(/** @type {string} */ query) {
   state.standing = given.get("standing") === "1" && !state.camera?.parallel;
   state.measurements = given.getAll("m").slice(0, MOST_MEASUREMENTS).flatMap(measurementOf);
   state.mark = markOf(given);
+  state.compare = comparedIn(given);
   return state;
 }
 
@@ -211,6 +216,7 @@ export function format(/** @type {MapState} */ state) {
   if (!state.depth) query.set("depth", "0");
   if (state.size !== 1) query.set("size", short(state.size, 2));
   if (state.standing) query.set("standing", "1");
+  comparedQuery(state.compare, query);
   if (state.mark?.span) query.set("span", list(state.mark.span));
   if (state.mark?.place.length) query.set("place", list(state.mark.place.flat()));
   for (const { kind, points, name, figure } of state.measurements)

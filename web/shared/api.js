@@ -17,6 +17,7 @@ export * from "./api/review.js";
 export * from "./api/phones.js";
 export * from "./api/live.js";
 export * from "./api/map.js";
+export * from "./api/comparisons.js";
 export * from "./api/annotations.js";
 export * from "./api/slices.js";
 export * from "./api/rigs.js";

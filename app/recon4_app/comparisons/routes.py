@@ -103,7 +103,7 @@ def cancel(project_id: str, comparison_id: str, *, server: Server, request: Requ
 )
 def read_points(project_id: str, comparison_id: str, server: Server) -> FileResponse:
     """20 bytes each, little-endian: x, y, z in the map [m], float32; distance, int16, and level of
-    detection, uint16, in steps of `step_m`; the state, uint8; three bytes of nothing.
+    detection, uint16, in steps of `step_m`; the state, uint8; the normal, int8 x 3, of 127.
 
     States: 0 below the level of detection, 1 significant, 2 without a partner, 3 without a normal,
     4 too few points.

@@ -1,0 +1,30 @@
+### Zwei Karten im Vergleich, auf der Seite der Karte in 3-D.
+
+compare = Vergleichen
+cmp-with = Mit
+cmp-earlier = Die Karte vom { $time }
+cmp-project = Projekt { $name }
+cmp-nothing = Es gibt keine frühere Karte dieses Projekts und kein anderes Projekt mit einer Karte.
+cmp-align = Zuerst auf diese Karte legen (ICP)
+cmp-align-hint = Für Karten verschiedener Aufnahmen ohne gemeinsames Bezugssystem. Eine gemeinsame Verschiebung sieht man dann nicht mehr.
+cmp-order = Unterschiede berechnen
+cmp-waits = Wartet, bis die Berechnung beginnt …
+cmp-runs = Unterschiede werden berechnet: { $percent } %
+cmp-cancel = Abbrechen
+cmp-failed = Keine Unterschiede: { $note }
+cmp-gone = Die Punkte dieses Vergleichs wurden nach einer Woche entfernt. Bitte neu berechnen.
+cmp-show = Zeigen
+cmp-differences = Unterschiede
+cmp-off = Nur diese Karte
+cmp-reach = Ende der Farben [mm]
+cmp-behind = { $mm } mm dahinter
+cmp-front = { $mm } mm davor
+cmp-significant = Signifikant (95 %)
+cmp-below = Unter der Nachweisgrenze
+cmp-alone = Ohne Gegenstück
+cmp-other = Nicht vergleichbar
+cmp-figures = Median { $median } mm, 95 % unter { $high } mm; Nachweisgrenze { $lod } mm.
+cmp-usual = Eine Karte nennt keine Unsicherheiten: es gelten die einer üblichen guten Karte.
+cmp-older = Von einem früheren Lauf dieser Karte.
+cmp-before = Schon verglichen
+cmp-download = LAZ herunterladen

@@ -1,0 +1,30 @@
+### Two maps compared on the page of the map in 3-D.
+
+compare = Compare
+cmp-with = With
+cmp-earlier = The map of { $time }
+cmp-project = Project { $name }
+cmp-nothing = There is no earlier map of this project and no other project with a map.
+cmp-align = Lay it on this map first (ICP)
+cmp-align-hint = For maps of different recordings without a common CRS. A common shift is then no longer seen.
+cmp-order = Compute differences
+cmp-waits = Waits for its turn …
+cmp-runs = Computing differences: { $percent } %
+cmp-cancel = Cancel
+cmp-failed = No differences: { $note }
+cmp-gone = The points of this comparison were removed after a week. Compute them again.
+cmp-show = Show
+cmp-differences = Differences
+cmp-off = This map only
+cmp-reach = Color end [mm]
+cmp-behind = { $mm } mm behind
+cmp-front = { $mm } mm in front
+cmp-significant = Significant (95 %)
+cmp-below = Below the level of detection
+cmp-alone = Without a partner
+cmp-other = Not comparable
+cmp-figures = Median { $median } mm, 95 % below { $high } mm; level of detection { $lod } mm.
+cmp-usual = A map states no uncertainties: those of a usual good map were used.
+cmp-older = Of an earlier run of this map.
+cmp-before = Compared before
+cmp-download = Download LAZ
