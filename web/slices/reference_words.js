@@ -4,6 +4,9 @@ import { t, written } from "../shared/texts.js";
 
 /** @typedef {[RegExp, string]} Sentence its groups are the values of a text */
 
+const LOCAL = new RegExp(
+  "^It is in (?<crs>.+); the map is local, " + "so that its coordinates are used unchanged\\.$",
+);
 /** @type {Sentence[]} */
 const SENTENCES = [
   [
@@ -25,12 +28,7 @@ const SENTENCES = [
   [/^then (?<how>.+)$/, "alignment-then"],
   [/^In (?<crs>.+), the CRS of the map\.$/, "note-same-crs"],
   [/^Transformed from (?<crs>.+) to (?<own>.+)\.$/, "note-transformed"],
-  [
-    new RegExp(
-      "^It is in (?<crs>.+); the map is local, so that its coordinates are used unchanged\\.$",
-    ),
-    "note-local",
-  ],
+  [LOCAL, "note-local"],
 ];
 const FITS = new RegExp(
   "^(?<sign>✓ The reference fits|✕ The reference does not fit): where both are, " +
