@@ -32,23 +32,33 @@ const SENTENCES = [
 ];
 const FITS = new RegExp(
   "^(?<sign>✓ The reference fits|✕ The reference does not fit): where both are, " +
-    "(?:(?<walls>\\d+) % of the walls)?(?: and )?(?:(?<level>\\d+) % of the floors and ceilings)? " +
+    "(?:(?<walls>\\d+) % of the walls)?(?: and )?" +
+    "(?:(?<level>\\d+) % of the floors and ceilings)? " +
     "lie within (?<cm>\\S+) cm of a surface of the same orientation$",
 );
 
-/** One sentence or part of one; what is not known stays. */
-function phrase(/** @type {string} */ text) {
+/**
+ * One sentence or part of one; what is not known stays.
+ * @param {string} text
+ * @returns {string}
+ */
+function phrase(text) {
   for (const [pattern, id] of SENTENCES) {
     const found = text.match(pattern);
     if (!found) continue;
-    const values = Object.entries(found.groups ?? {}).map(([name, value]) => [
-      name,
-      name === "how" ? phrase(value) : name === "each" ? listed(value) : value,
-    ]);
-    return t(id, Object.fromEntries(values.map(([name, value]) => [name, number(value)])));
+    const groups = Object.entries(found.groups ?? {});
+    return t(id, Object.fromEntries(groups.map(([name, value]) => [name, quoted(name, value)])));
   }
   return text;
 }
+
+/**
+ * A value of a sentence.
+ * @param {string} name
+ * @param {string} value
+ */
+const quoted = (name, value) =>
+  name === "how" ? phrase(value) : name === "each" ? listed(value) : number(value);
 
 /** A decimal number as the language writes it; other texts stay. */
 const number = (/** @type {string} */ text) => (/^-?\d+\.\d+$/.test(text) ? written(text) : text);
