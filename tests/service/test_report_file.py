@@ -44,5 +44,15 @@ def test_the_report_of_a_draft_is_not_signed_and_is_in_the_language_of_the_reque
     assert "ENTWURF" in PdfReader(tmp_path / "a.pdf").pages[0].extract_text()
 
 
+def test_the_report_is_also_a_page_in_the_language_of_the_request(server):
+    answer = server.get("/api/projects/draft/client.html", headers={"Accept-Language": "de"})
+
+    assert answer.status_code == 200, answer.text
+    assert answer.headers["content-type"] == "text/html; charset=utf-8"
+    assert answer.headers["content-security-policy"].startswith("sandbox; default-src 'none'")
+    assert '<html lang="de">' in answer.text and "ENTWURF" in answer.text
+
+
 def test_a_project_that_is_not_there_has_no_report(server):
-    assert server.get("/api/projects/nothing/report.pdf").status_code == 404
+    for name in ("report.pdf", "client.html"):
+        assert server.get(f"/api/projects/nothing/{name}").status_code == 404

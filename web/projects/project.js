@@ -9,6 +9,7 @@ import {
   mapUrl,
   readCurrentUser,
   readProject,
+  clientReportUrl,
   reportPdfUrl,
   reportUrl,
   viewerUrl,
@@ -136,7 +137,8 @@ function drawFiles() {
   showExports(mapped);
   render(project ? approvalLines(project.approval) : nothing, byId("approval"));
   const found = project?.summary.findings ? ["csv", "geojson"] : [];
-  const rows = [files.map(fileRow), mapped ? reportRow() : nothing, found.map(findingsRow)];
+  const reports = mapped ? [reportRow(), clientReportRow()] : nothing;
+  const rows = [files.map(fileRow), reports, found.map(findingsRow)];
   render(rows, within(byId("files"), "ul"));
 }
 
@@ -171,6 +173,12 @@ const reportRow = () =>
     <a href=${reportPdfUrl(state.id)} download @click=${askOnce(filePlaces, reportPdfName)}
       >${t("report-pdf")}</a
     ><small>report.pdf</small>
+  </li>`;
+
+/** The same as a page. */
+const clientReportRow = () =>
+  html`<li>
+    <a href=${clientReportUrl(state.id)} target="_blank" rel="noopener">${t("report-page")}</a>
   </li>`;
 
 /** A download of the findings: a table, or for a GIS. */

@@ -1943,6 +1943,10 @@ export interface Operations {
     path: { project_id: string };
     response: CalibrationSlices | null;
   };
+  "GET /api/projects/{project_id}/client.html": {
+    path: { project_id: string };
+    response: string;
+  };
   "GET /api/projects/{project_id}/comparisons": {
     path: { project_id: string };
     response: Comparisons;

@@ -119,6 +119,7 @@ share = Teilen…
 fact-preset = Voreinstellung { $preset }
 fact-rig = Rig { $rig }
 report-pdf = Bericht für den Auftraggeber, PDF
+report-page = Bericht für den Auftraggeber, Seite
 findings-as = Befunde, { $format }
 map-in-3d = Karte in 3-D
 result-quality-report = Qualitätsbericht

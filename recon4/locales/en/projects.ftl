@@ -119,6 +119,7 @@ share = Share…
 fact-preset = preset { $preset }
 fact-rig = rig { $rig }
 report-pdf = Report for the client, PDF
+report-page = Report for the client, page
 findings-as = Findings, { $format }
 map-in-3d = Map in 3-D
 result-quality-report = Quality report

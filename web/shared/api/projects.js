@@ -84,6 +84,8 @@ export const findingHelpUrl = (/** @type {string} */ kind) =>
   at(`/docs/reference/findings.html#${name(kind.toLowerCase())}`);
 export const viewerUrl = (/** @type {string} */ id) => at(`/projects/${name(id)}/viewer/`);
 export const reportUrl = (/** @type {string} */ id) => at(`/api/projects/${name(id)}/report`);
+export const clientReportUrl = (/** @type {string} */ id) =>
+  at(`/api/projects/${name(id)}/client.html`);
 export const reportPdfUrl = (/** @type {string} */ id) =>
   at(`/api/projects/${name(id)}/report.pdf`);
 /**
