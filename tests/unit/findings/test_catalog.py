@@ -9,6 +9,8 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.findings.explain import explained, listed, markdown
 from recon4.findings.wording import catalog, headline, said, text_of, whole_text
+from recon4.locales.languages import languages
+from recon4.locales.texts import texts
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.usability import Usability
@@ -108,7 +110,11 @@ def test_the_page_of_the_findings_is_the_catalog():
     assert page == markdown(), "run make docs"
 
 
-def test_the_pages_have_the_headlines_of_the_catalog():
-    page = (ROOT / "web" / "shared" / "format.js").read_text("utf-8")
+@pytest.mark.parametrize("language", languages())
+def test_the_pages_have_the_headlines_of_the_catalog(language):
+    said = texts(language, "shared")
+    page = {"good": "state-sound", "check": "state-check", "do not use": "state-unusable"}
 
-    assert {one for one in Usability if f'"{headline(one)}"' not in page} == set()
+    assert {one: said(page[str(one)]) for one in Usability} == {
+        one: headline(one, language) for one in Usability
+    }
