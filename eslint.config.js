@@ -1,6 +1,8 @@
 import js from "@eslint/js";
 import globals from "globals";
 
+import textsFromCatalog from "./tools/eslint_texts.js";
+
 export default [
   { ignores: ["web/shared/vendor/**"] }, // of others, as published
   js.configs.recommended,
@@ -20,6 +22,12 @@ export default [
         },
       ],
     },
+  },
+  {
+    files: ["web/**"],
+    ignores: ["web/shared/api_page.js", "web/projects/schema.js"], // HTTP API, in English
+    plugins: { recon4: { rules: { "texts-from-catalog": textsFromCatalog } } },
+    rules: { "recon4/texts-from-catalog": "error" },
   },
   { files: ["tests/web/**"], languageOptions: { globals: globals.node } },
 ];

@@ -119,7 +119,7 @@ export class SettingEditor extends HTMLElement {
           ><span>${t("setting-find")}</span
           ><input
             type="search"
-            placeholder="voxel, odometry, GNSS…"
+            placeholder=${t("setting-example")}
             autocomplete="off"
             @input=${search}
         /></label>
@@ -151,7 +151,7 @@ export class SettingEditor extends HTMLElement {
   #group(/** @type {GroupView} */ { name, text, settings }) {
     const fits = settings.map((setting) => this.#fits(setting));
     return html`<details class="group" ?hidden=${!fits.includes(true)}>
-      <summary>${name}</summary>
+      <summary lang="en">${name}</summary>
       <p class="quiet" lang="en">${text}</p>
       ${settings.map((setting, k) => this.#setting(setting, !fits[k]))}
     </details>`;
@@ -184,7 +184,9 @@ export class SettingEditor extends HTMLElement {
     const id = `setting-${path}`;
     const changed = this.#textOf(setting) !== String(value);
     return html`<div class="setting ${changed ? "changed" : ""}" ?hidden=${hidden}>
-      <label for=${id}><span>${name}${unit ? html`<small> ${unit}</small>` : nothing}</span></label>
+      <label for=${id} lang="en"
+        ><span>${name}${unit ? html`<small> ${unit}</small>` : nothing}</span></label
+      >
       ${this.#input(setting, problem !== "")}
       <p class="hint" id="${id}-hint">
         <span lang="en">${text}</span>
@@ -212,7 +214,7 @@ export class SettingEditor extends HTMLElement {
         aria-invalid=${invalid}
         @change=${change}
       >
-        ${options.map((one) => html`<option .selected=${one === text}>${one}</option>`)}
+        ${options.map((one) => html`<option lang="en" .selected=${one === text}>${one}</option>`)}
       </select>`;
     const type = (/** @type {Event} */ event) => {
       this.#state.texts.set(path, targetOf(event).value);

@@ -185,7 +185,7 @@ function antennaShapes(/** @type {number[]} */ arm) {
   return [
     { ...line([[0, 0, 0], arm], "gnss"), dashed: true },
     ...cylinder(put, ANTENNA_M, "gnss"),
-    label(above(arm, 0.045), "gnss", "GNSS antenna"),
+    label(above(arm, 0.045), "gnss", t("gnss-antenna")),
   ];
 }
 

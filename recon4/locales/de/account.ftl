@@ -45,7 +45,7 @@ old-password = Altes Passwort
 new-password = Neues Passwort, mindestens 12 Zeichen
 change-password = Passwort ändern
 programs = Programme können dasselbe wie diese Seiten:
-http-api = HTTP-API
+http-api = HTTP‑API
 no-login = Dieser Server hat keine Anmeldung
 password-changed = Das Passwort ist geändert; die anderen Sitzungen sind beendet
 
@@ -58,7 +58,7 @@ session-device = Gerät
 from-address = Von
 session-began = Angemeldet
 session-seen = Zuletzt gesehen
-action = Handlung
+action = Aktion
 session-end-of = Sitzung von { $who }, { $device }, beenden
 session-end = Beenden
 session-this = Diese hier

@@ -379,6 +379,7 @@ quantity-clock = Uhr
 
 ## Einstellungen
 
+setting-example = voxel, odometry, GNSS…
 setting-int = ganze Zahl
 setting-float = Zahl
 setting-text = Text

@@ -379,6 +379,7 @@ quantity-clock = clock
 
 ## Settings
 
+setting-example = voxel, odometry, GNSS…
 setting-int = whole number
 setting-float = number
 setting-text = text

@@ -3,6 +3,7 @@
 import json
 import re
 from collections import Counter
+from html.parser import HTMLParser
 
 import pytest
 from starlette.requests import HTTPConnection
@@ -19,6 +20,7 @@ PAGES = [
     if path.name != "head.html"
 ]
 TRANSLATED = [file for file in PAGES if "data-texts=" in html_of(file)]
+LABELS = {"aria-label", "title", "alt", "placeholder", "label"}
 ASKED = re.compile(r'(?<![\w.])t\(\s*"([a-z0-9-]+)"')
 IMPORTED = re.compile(r'^(?:import|export)\b[^;]*?"(\.{1,2}/[^"]+\.js)";', re.MULTILINE)
 
@@ -103,6 +105,33 @@ def test_no_page_has_a_name_twice():
     for one in files:
         counted = Counter(name for file in one for name in names[file])
         assert [name for name, n in counted.items() if n > 1] == [], one
+
+
+class _Words(HTMLParser):
+    """The texts and labels of a page as its file has them, without those from the Fluent files."""
+
+    def __init__(self):
+        super().__init__()
+        self.found, self.skipped = [], 0
+
+    def handle_starttag(self, tag, attrs):
+        self.skipped += tag in {"code", "script", "style"}
+        self.found += [value or "" for name, value in attrs if name in LABELS]
+
+    def handle_endtag(self, tag):
+        self.skipped -= tag in {"code", "script", "style"}
+
+    def handle_data(self, data):
+        self.found += [data] * (self.skipped == 0)
+
+
+@pytest.mark.parametrize("file", TRANSLATED)
+def test_a_translated_page_says_nothing_besides_its_texts(file):
+    words = _Words()
+    words.feed(html_of(file))
+    own = [re.sub(r"\{\{ [a-z0-9-]+ \}\}|\brecon4\b|https://…", "", one) for one in words.found]
+
+    assert [one.strip() for one in own if re.search(r"[^\W\d_]{2}", one)] == []
 
 
 def test_the_phone_names_presets_as_the_shell_does():
