@@ -29,6 +29,13 @@ export function planeText(/** @type {string} */ name) {
  */
 export const cutText = (kind, name) => `${KINDS[kind]} ${planeText(name)}`;
 
+/** The name of another map: an earlier one, or that of another project. */
+export function sourceText(/** @type {string} */ label) {
+  const [, kind, name = ""] = label.match(/^(Map of|Project) (.+)$/) ?? [];
+  if (!kind) return label;
+  return kind === "Project" ? t("source-project", { name }) : t("source-earlier", { time: name });
+}
+
 /**
  * What a slice image shows.
  * @param {Pick<import("./state.js").SliceState, "source" | "color" | "surface"> &
@@ -36,7 +43,8 @@ export const cutText = (kind, name) => `${KINDS[kind]} ${planeText(name)}`;
  * @param {OtherMap[]} sources
  */
 export function imageText({ source, color, points, surface }, sources) {
-  const name = source ? (sources.find((one) => one.id === source)?.label ?? source) : t("this-map");
+  const label = sources.find((one) => one.id === source)?.label ?? source;
+  const name = source ? sourceText(label) : t("this-map");
   return t("image-text", { name, color: COLORS[color], points, surface: SURFACES[surface] });
 }
 

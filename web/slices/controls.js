@@ -2,6 +2,7 @@
 
 import { html, nothing, targetOf } from "../shared/dom.js";
 import { language, t } from "../shared/texts.js";
+import { sourceText } from "./captions.js";
 import { choice } from "./columns.js";
 import { anglesOf, COLORS, normalFrom, SURFACES } from "./state.js";
 
@@ -206,7 +207,7 @@ function referenceField({ ref: chosen, color: before }, { references }, change) 
 export function besideFields(state, facts, { change }) {
   /** @type {Array<[string, string]>} */
   const sources = [["", t("this-map")]];
-  for (const one of facts?.sources ?? []) sources.push([one.id, one.label]);
+  for (const one of facts?.sources ?? []) sources.push([one.id, sourceText(one.label)]);
   /** @type {Array<[string, string]>} */
   const colors = [["", state.beside ? t("same-color") : t("one-slice")]];
   for (const [key, text] of ALL_COLORS)
