@@ -2,10 +2,12 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
+import { whyText } from "../../web/shared/class_words.js";
 import { addTexts } from "../../web/shared/texts.js";
 import { alignmentText, fitText, notesText } from "../../web/slices/reference_words.js";
 
-addTexts("de", readFileSync("recon4/locales/de/slices.ftl", "utf8"));
+for (const file of ["slices", "shared"])
+  addTexts("de", readFileSync(`recon4/locales/de/${file}.ftl`, "utf8"));
 
 const LIE = "lie within 2 cm of a surface of the same orientation";
 
@@ -42,4 +44,20 @@ test("an alignment is said part by part, and what is not known stays", () => {
   );
   assert.equal(alignmentText("none"), "keine");
   assert.equal(notesText(["In EPSG:25832, the CRS of the map.", "New."]).slice(-9), "rte. New.");
+});
+
+test("why no class is corrected is German", () => {
+  assert.equal(whyText("there is no point in it"), "dort ist kein Punkt");
+  assert.match(
+    whyText("there is no point in it: the map ends 3.2 m away"),
+    /endet 3,2 m entfernt$/,
+  );
+  assert.equal(
+    whyText("all points in it are ground already"),
+    "alle Punkte darin sind schon Boden",
+  );
+  assert.match(
+    whyText("no point in it has a class that is corrected; it has building (5), high noise (2)"),
+    /; dort sind Gebäude \(5\), Rauschen, vereinzelt \(2\)$/,
+  );
 });

@@ -3,7 +3,7 @@
 import { html, nothing, render, targetOf } from "../shared/dom.js";
 import { slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
-import { classText } from "../shared/class_corrections.js";
+import { classText } from "../shared/class_words.js";
 import { shareText } from "../shared/format.js";
 import { decimal, t, written } from "../shared/texts.js";
 import { numberField as field } from "./number_field.js";

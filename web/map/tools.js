@@ -2,7 +2,7 @@
 
 import { idHere } from "../shared/address.js";
 import { pickOnMap } from "../shared/api.js";
-import { classText } from "../shared/class_corrections.js";
+import { classText } from "../shared/class_words.js";
 import { decimal, t } from "../shared/texts.js";
 import { dot, minus, pixelM, rayAt } from "./camera.js";
 import { boxOver, yawOfSection } from "./clip.js";

@@ -7,9 +7,10 @@ import {
   remakeMap,
   withdrawCorrection,
 } from "./api.js";
+import { classText, whyText } from "./class_words.js";
 import { attempt, html, messagePlace, nothing, render, targetOf, within } from "./dom.js";
 import { count, when } from "./format.js";
-import { t, wordOf } from "./texts.js";
+import { t } from "./texts.js";
 
 /**
  * @import {CorrectionCount, CorrectionSpec, CorrectionView, CorrectionsView} from "./http_types"
@@ -23,9 +24,6 @@ import { t, wordOf } from "./texts.js";
 
 const DELIVERED = ""; // all points that the map delivers
 const EVERY = "*"; // and those that it leaves out
-/** A class of points in words. */
-export const classText = (/** @type {string} */ title) => wordOf("class", title);
-
 export class ClassCorrections extends HTMLElement {
   #given = /** @type {Given | null} */ (null);
   #written = ""; // what was given last
@@ -175,7 +173,7 @@ export class ClassCorrections extends HTMLElement {
   #countText() {
     const counted = this.#counted;
     if (!counted) return "";
-    if (counted.refused) return t("correct-nothing", { why: counted.refused });
+    if (counted.refused) return t("correct-nothing", { why: whyText(counted.refused) });
     const now = Object.entries(counted.now).sort(([, a], [, b]) => b - a);
     const parts = now.map(([title, n]) => {
       const word = classText(title);
