@@ -21,17 +21,19 @@ from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 
 from recon4.errors import NoSpace, Recon4Error, UnknownFormat, WrongSettings
+from recon4.locales.texts import texts
 from recon4.store.atomic import is_full
 from recon4_app.access.people import MAY, Person
 from recon4_app.errors import STORAGE, AppError, NoRoom, Remedy
 from recon4_app.network.behind import route_path
-from recon4_app.pages import page_response
+from recon4_app.pages import SHARED_TEXTS, language_of, page_response
 
 log = logging.getLogger(__name__)
 
 LOST = "shared/lost.html"
 """The error page of browsers; ``{title}`` and ``{detail}`` are filled in."""
-TITLES = {403: "Not allowed", 404: "Page not found"}
+TITLES = {403: "lost-not-allowed", 404: "lost-not-found"}
+"""Of the error page, by status: names of texts."""
 FRAMEWORK_MESSAGES: Mapping[int, str] = {
     404: "there is no such address on this server",
     405: "this address does not take that method",
@@ -163,8 +165,9 @@ def _wants_page(request: Request) -> bool:
 def _page(
     request: Request, status: int, detail: str, *, headers: Mapping[str, str] | None
 ) -> HTMLResponse:
-    title = TITLES.get(status, "The request failed")
-    page = page_response(LOST, request, {"title": title, "detail": html.escape(detail)})
+    say = texts(language_of(request), SHARED_TEXTS)
+    fills = {"title": say(TITLES.get(status, "lost-failed")), "detail": html.escape(detail)}
+    page = page_response(LOST, request, fills)
     page.status_code = status
     page.headers.update(headers or {})
     return page

@@ -33,7 +33,7 @@ _ADDRESS = re.compile(r"""(?<=\s)((?:href|src|action)=")(?=/)""")
 SHARED_TEXTS = "shared"
 """File of the texts that all pages have in common."""
 _TEXTS = re.compile(r'<html [^>]*data-texts="([a-z -]+)"')
-"""Files of texts of a page that is translated; the others are English in every language."""
+"""Files of texts of a page; the others have the shared ones, around content in English."""
 _TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
 LANGUAGE_COOKIE = "recon4_language"
 """The choice on a page; `web/shared/texts.js` sets it."""
@@ -60,7 +60,7 @@ def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) ->
         fills: HTML for the places of the page: ``title`` for ``{title}``.
     """
     page = html_of(file, prefix_of(request.scope))
-    language = language_of(request) if _TEXTS.search(page) else ENGLISH
+    language = language_of(request)
     page = _in_language(page, language)
     for place, content in fills.items():
         page = page.replace(f"{{{place}}}", content)

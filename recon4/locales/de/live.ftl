@@ -55,7 +55,6 @@ dance-legend = Etwa 60 s an einem Ort mit Wänden in der Nähe. x zeigt nach vor
 help = Hilfe
 name-the-place = Ort benennen…
 dance-it = Kalibriertanz…
-all-projects = Alle Projekte
 ceiling = Zeigen, was über Kopfhöhe ist, etwa Decken (H)
 legend-well = gut gesehen: oft und aus der Nähe
 legend-poor = schlecht gesehen: näher oder noch einmal vorbeigehen

@@ -21,6 +21,7 @@ copied = ✓ Kopiert
 
 head-where = Wo diese Seite ist
 head-projects = Projekte
+all-projects = Alle Projekte
 head-pages = Seiten des Projekts
 head-project = Projekt
 head-map = Karte
@@ -87,6 +88,9 @@ unit-versions = Versionen
 
 ## Anfragen
 
+lost-not-allowed = Nicht erlaubt
+lost-not-found = Seite nicht gefunden
+lost-failed = Die Anfrage ist fehlgeschlagen
 no-response = Der Server antwortet nicht. Läuft er noch?
 bad-response = Antwort des Servers: { $status }
 

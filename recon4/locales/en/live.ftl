@@ -55,7 +55,6 @@ dance-legend = About 60 s at a place with walls near you. x points forward, y to
 help = Help
 name-the-place = Name the place…
 dance-it = Calibration dance…
-all-projects = All projects
 ceiling = Show what is above head height, as ceilings (H)
 legend-well = seen well: often, and from near
 legend-poor = seen poorly: go nearer, or past it again

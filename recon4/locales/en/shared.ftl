@@ -21,6 +21,7 @@ copied = ✓ Copied
 
 head-where = Where you are
 head-projects = Projects
+all-projects = All projects
 head-pages = Pages of the project
 head-project = Project
 head-map = Map
@@ -87,6 +88,9 @@ unit-versions = versions
 
 ## Requests
 
+lost-not-allowed = Not allowed
+lost-not-found = Page not found
+lost-failed = The request failed
 no-response = The server does not answer. Is it still running?
 bad-response = The server returned { $status }
 

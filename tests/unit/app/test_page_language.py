@@ -6,12 +6,13 @@ from collections import Counter
 from html.parser import HTMLParser
 
 import pytest
-from starlette.requests import HTTPConnection
+from starlette.requests import HTTPConnection, Request
 
 from recon4.locales.languages import ENGLISH, ROOT, languages
 from recon4.locales.texts import messages_of, texts
 from recon4.settings.presets import PRESET_TEXTS
 from recon4_app import pages
+from recon4_app.error_responses import _page
 from recon4_app.pages import WEB, html_of, language_of, page_response, text_files
 
 PAGES = [
@@ -67,13 +68,19 @@ def test_a_page_has_all_of_its_texts_in_each_language(file, language):
     assert "Cookie" in sent.headers["vary"]
 
 
-@pytest.mark.parametrize("file", ["shared/api.html"])
-def test_a_page_without_translation_is_english_for_everybody(file):
-    sent = page_response(file, asking("de"))
+def test_english_content_is_marked_within_the_bar_of_the_language():
+    page = page_response("shared/api.html", asking("de")).body.decode()
 
-    assert '<html lang="en"' in sent.body.decode()
-    assert sent.headers["content-language"] == "en"
-    assert texts_of(sent.body.decode()).keys() == {"en"}
+    assert '<html lang="de"' in page and '<main class="api" lang="en">' in page
+    assert texts_of(page).keys() == {"de"}
+
+
+def test_a_lost_page_has_its_title_in_the_language():
+    request = Request(asking("de").scope | {"method": "GET", "path": "/x"})
+    page = _page(request, 404, "nothing {{ title }}", headers=None).body.decode()
+
+    assert "<title>Seite nicht gefunden · recon4</title>" in page and "Alle Projekte" in page
+    assert '<p lang="en">nothing {{ title }}</p>' in page, "what is said is no text of ours"
 
 
 def test_scripts_find_their_texts_in_the_page_and_english_ones_only_if_some_lack():
