@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import msgspec
 
@@ -155,51 +156,65 @@ def statements(outcome: ControlOutcome, language: str = ENGLISH) -> list[str]:
     return [*lines, *_walk_limits(found, said), *_level_of_accuracy(found, said)]
 
 
-def outcome_text(outcome: ControlOutcome) -> str:
-    """Residuals and tests as tables for a terminal, in centimeters."""
+def outcome_text(
+    outcome: ControlOutcome, language: str = ENGLISH, blunders: Sequence[str] | None = None
+) -> str:
+    """Residuals and tests as tables for a terminal, in centimeters.
+
+    Args:
+        outcome: Of the map.
+        language: Of its texts.
+        blunders: Suspected ones in this language; None = as the outcome has them.
+    """
+    say = partial(texts(language, "report").part, "control-table")
     rows = [
         (
-            f"{one.id} ({one.role})",
-            *map(_cm, one.adjusted_m),
-            _cm(_length(one.adjusted_m[:2])),
-            _cm(_length(one.adjusted_m)),
-            *_test_cells(one.test),
+            f"{one.id} ({say(one.role, {})})",
+            *_cells(*one.adjusted_m, _length(one.adjusted_m[:2]), _length(one.adjusted_m), say=say),
+            *_test_cells(one.test, say),
         )
         for one in outcome.points
     ]
-    head = ("Point", "dE cm", "dN cm", "dH cm", "2-D cm", "3-D cm")
-    tests = ("redundancy", "MDE H cm", "MDE V cm", "w (limit)", "")
+    head = ("point", "de", "dn", "dh", "d2", "d3", "redundancy", "mde-h", "mde-v", "w")
     figures = [
         (
-            f"{found.role}, {found.points}",
-            *map(_cm, (found.rmse_h_m, found.rmse_v_m, found.rmse_3d_m)),
-            *map(_cm, (found.max_h_m, found.max_v_m)),
+            f"{say(found.role, {})}, {found.points}",
+            *_cells(found.rmse_h_m, found.rmse_v_m, found.rmse_3d_m, say=say),
+            *_cells(found.max_h_m, found.max_v_m, say=say),
         )
         for found in (accuracy_of(outcome, role) for role in ("control", "check"))
         if found.points
     ]
+    names = ("role-points", "rmse-h", "rmse-v", "rmse-3d", "max-h", "max-v")
     sd = "" if outcome.scale_sd is None else f" ± {1e6 * outcome.scale_sd:.0f}"
+    known: dict[str, str | int | float] = {
+        "crs": outcome.crs,
+        "freedom": outcome.freedom,
+        "scale": f"{1e6 * (outcome.scale - 1.0):+.0f}{sd}",
+    }
+    found = outcome.blunders if blunders is None else blunders
     return "\n".join(
         [
-            text_table((*head, *tests), rows),
-            text_table(
-                ("Role, points", "RMSE H cm", "RMSE V cm", "RMSE 3-D cm", "max H", "max V"), figures
-            ),
-            f"{outcome.crs}; {outcome.freedom} degrees of freedom; scale of the survey "
-            f"{1e6 * (outcome.scale - 1.0):+.0f}{sd} ppm, not applied",
-            *statements(outcome),
-            *(f"Suspected: {text}" for text in outcome.blunders),
+            text_table((*(say(name, {}) for name in head), ""), rows),
+            text_table(tuple(say(name, {}) for name in names), figures),
+            say("known", known),
+            *statements(outcome, language),
+            *(say("suspected", {"text": text}) for text in found),
         ]
     )
 
 
-def _test_cells(test: PointTest | None) -> tuple[str, ...]:
+_Say = Callable[[str, Mapping[str, str | int | float]], str]
+
+
+def _test_cells(test: PointTest | None, say: _Say) -> tuple[str, ...]:
     if test is None:
         return ("", "", "", "", "")
-    r = "/".join(f"{value:.2f}" for value in test.redundancy)
-    found = (_cm(test.least_found_h_m), _cm(test.least_found_v_m))
-    said = "BLUNDER" if test.w > test.limit else "single-handed" if test.single_handed else ""
-    return (r, *found, f"{test.w:.1f} ({test.limit:.1f})", said)
+    r = "/".join(say("redundancy-of", {"value": value}) for value in test.redundancy)
+    found = _cells(test.least_found_h_m, test.least_found_v_m, say=say)
+    said = "blunder" if test.w > test.limit else "single-handed" if test.single_handed else ""
+    ratio = say("w-of", {"w": test.w, "limit": test.limit})
+    return (r, *found, ratio, say(said, {}) if said else "")
 
 
 def _walk_limits(found: RoleAccuracy, said: Texts) -> Sequence[str]:
@@ -242,5 +257,5 @@ def _mean(values: Sequence[float]) -> float | None:
     return sum(values) / len(values) if values else None
 
 
-def _cm(value_m: float | None) -> str:
-    return "–" if value_m is None else f"{100.0 * value_m:.1f}"
+def _cells(*values_m: float | None, say: _Say) -> tuple[str, ...]:
+    return tuple("–" if one is None else say("cm", {"value": 100.0 * one}) for one in values_m)

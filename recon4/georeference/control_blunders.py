@@ -20,7 +20,8 @@ from recon4.georeference.control_fit import (
 )
 from recon4.georeference.tuning_control import BLUNDERS
 from recon4.locales.languages import ENGLISH
-from recon4.locales.texts import texts
+from recon4.locales.numbers import localized
+from recon4.locales.texts import Texts, texts
 from recon4.units import FOOT_M
 
 
@@ -51,20 +52,26 @@ class Blunder:
 
     @property
     def text(self) -> str:
-        """One sentence, with what to do; `recon4.report` says it in other languages."""
-        said = texts(ENGLISH, "report")
-        values = {"names": " and ".join(self.points), "offset": _offset(self.offset_m)}
-        return said.part("blunder", self.kind, values)
+        """One sentence in English, with what to do."""
+        return self.said(ENGLISH)
+
+    def said(self, language: str) -> str:
+        """One sentence in a language, with what to do."""
+        say = texts(language, "report")
+        values = {
+            "names": say.part("blunder", "and", {}).join(self.points),
+            "offset": _offset(self.offset_m, say),
+        }
+        return say.part("blunder", self.kind, values)
 
 
-def _offset(offset_m: tuple[float, float, float] | None) -> str:
-    said = texts(ENGLISH, "report")
+def _offset(offset_m: tuple[float, float, float] | None, say: Texts) -> str:
     if offset_m is None:
-        return said.part("blunder", "far", {})
-    length = f"{float(np.linalg.norm(offset_m)):.3f}"
-    east, north, up = (f"{value:+.3f}" for value in offset_m)
+        return say.part("blunder", "far", {})
+    length = localized(f"{float(np.linalg.norm(offset_m)):.3f}", say.language)
+    east, north, up = (localized(f"{value:+.3f}", say.language) for value in offset_m)
     values = {"length": length, "east": east, "north": north, "up": up}
-    return said.part("blunder", "offset-of", values)
+    return say.part("blunder", "offset-of", values)
 
 
 def named_blunders(

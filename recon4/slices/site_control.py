@@ -23,6 +23,7 @@ from recon4.georeference.control_stage import (
     system_of,
 )
 from recon4.georeference.crs_file import read_crs
+from recon4.locales.languages import ENGLISH
 from recon4.model.plain import to_plain
 from recon4.model.site_control import SeenTarget, SiteControl
 from recon4.model.trajectory import Trajectory
@@ -177,9 +178,10 @@ def require_agreement(trial: ControlTrial) -> None:
         raise GeoreferenceError(f"the map is not put on these points: {texts}")
 
 
-def trial_text(trial: ControlTrial) -> str:
+def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
     """Residuals, tests and statements of a trial in lines."""
-    return outcome_text(msgspec.convert(to_plain(trial.record), ControlOutcome))
+    outcome = msgspec.convert(to_plain(trial.record), ControlOutcome)
+    return outcome_text(outcome, language, [one.said(language) for one in trial.blunders])
 
 
 def _is_leveled(level: Path) -> bool:

@@ -16,6 +16,7 @@ from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
+from recon4_app.pages import Language
 from recon4_app.slices import site_work
 from recon4_app.slices.model import Strict
 
@@ -42,6 +43,7 @@ async def try_site(
     server: Server,
     *,
     caller: CalledBy,
+    language: Language,
     crs: Annotated[str, Query(max_length=64)] = "",
 ) -> site_work.SiteTrial:
     """Residuals and tests of the measured points after a rigid fit; nothing is changed."""
@@ -49,7 +51,9 @@ async def try_site(
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
-        server.slices.run_background(terms, site_work.try_site, artifacts, state, crs)
+        server.slices.run_background(
+            terms, site_work.try_site, artifacts, state, crs, language=language
+        )
     )
 
 

@@ -31,7 +31,7 @@ class SiteTrial:
     """Ids of surveyed points that were not measured in this map."""
 
 
-def try_site(artifacts: Artifacts, state: ControlState, crs: str) -> SiteTrial:
+def try_site(artifacts: Artifacts, state: ControlState, crs: str, *, language: str) -> SiteTrial:
     """Lay the map on its control points by a rigid fit, and test them; nothing is changed.
 
     Raises:
@@ -39,8 +39,8 @@ def try_site(artifacts: Artifacts, state: ControlState, crs: str) -> SiteTrial:
     """
     trial = _try(artifacts, state, crs)
     return SiteTrial(
-        text=trial_text(trial),
-        forbidden=tuple(one.text for one in forbidding(trial)),
+        text=trial_text(trial, language),
+        forbidden=tuple(one.said(language) for one in forbidding(trial)),
         unseen=trial.unseen,
     )
 

@@ -269,6 +269,34 @@ blunder =
     .far = weit
     .and = { " und " }
 
+# Restfehler und Tests als Tabellen.
+control-table =
+    .control = Passpunkt
+    .check = Kontrollpunkt
+    .point = Punkt
+    .de = dE cm
+    .dn = dN cm
+    .dh = dH cm
+    .d2 = 2-D cm
+    .d3 = 3-D cm
+    .redundancy = Redundanz
+    .mde-h = MDE Lage cm
+    .mde-v = MDE Höhe cm
+    .w = w (Grenze)
+    .role-points = Rolle, Punkte
+    .rmse-h = RMSE Lage cm
+    .rmse-v = RMSE Höhe cm
+    .rmse-3d = RMSE 3-D cm
+    .max-h = max. Lage
+    .max-v = max. Höhe
+    .redundancy-of = { DECIMAL($value, digits: 2) }
+    .w-of = { DECIMAL($w, digits: 1) } ({ DECIMAL($limit, digits: 1) })
+    .cm = { DECIMAL($value, digits: 1) }
+    .blunder = GROBER FEHLER
+    .single-handed = allein kontrolliert
+    .known = { $crs }; { $freedom } Freiheitsgrade; Maßstab der Vermessung { $scale } ppm, nicht angewandt
+    .suspected = Vermutet: { $text }
+
 people =
     .place = Stelle x, y, z [m]
     .note = Notiz

@@ -268,6 +268,34 @@ blunder =
     .far = far
     .and = { " and " }
 
+# Residuals and tests as tables.
+control-table =
+    .control = control
+    .check = check
+    .point = Point
+    .de = dE cm
+    .dn = dN cm
+    .dh = dH cm
+    .d2 = 2-D cm
+    .d3 = 3-D cm
+    .redundancy = redundancy
+    .mde-h = MDE H cm
+    .mde-v = MDE V cm
+    .w = w (limit)
+    .role-points = Role, points
+    .rmse-h = RMSE H cm
+    .rmse-v = RMSE V cm
+    .rmse-3d = RMSE 3-D cm
+    .max-h = max H
+    .max-v = max V
+    .redundancy-of = { DECIMAL($value, digits: 2) }
+    .w-of = { DECIMAL($w, digits: 1) } ({ DECIMAL($limit, digits: 1) })
+    .cm = { DECIMAL($value, digits: 1) }
+    .blunder = BLUNDER
+    .single-handed = single-handed
+    .known = { $crs }; { $freedom } degrees of freedom; scale of the survey { $scale } ppm, not applied
+    .suspected = Suspected: { $text }
+
 people =
     .place = place x, y, z [m]
     .note = note

@@ -36,3 +36,6 @@ def test_points_that_measure_nothing_are_within_no_limits():
 def test_a_blunder_is_named_although_a_direction_of_it_is_controlled_by_no_other_point():
     test = PointTest((0.0, 0.6, 0.6), w=9.0, limit=4.0, single_handed=True)
     assert "BLUNDER" in outcome_text(outcome(FLAT, test=test))
+    german = outcome_text(outcome(FLAT, test=test), "de", ["P0 liegt falsch."])
+    assert "P0 (Passpunkt)" in german and "9,0 (4,0)  GROBER FEHLER" in german
+    assert german.endswith("Vermutet: P0 liegt falsch.")
