@@ -3,9 +3,9 @@
 
 ## Ansicht
 
-first-place = ersten (blauen) Ort
-second-place = zweiten (orangen) Ort
-pick-point = Punkt { $n } von { $count } im { $place } wählen
+first-place = erster (blauer) Ort
+second-place = zweiter (oranger) Ort
+pick-point = Punkt { $n } von { $count } wählen: { $place }
 view-above = Oben
 view-side = Seite
 view-free = Frei
