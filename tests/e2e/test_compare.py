@@ -9,19 +9,19 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import looks
-from tests.e2e.test_map_page import SHOW
-from tests.project_builder import build_project
+from tests.e2e.test_map_page import SHOW, at
+from tests.project_builder import ROOM_M, build_project
 from tests.served import served
 
 pytestmark = pytest.mark.e2e
 
 TOP = "camera=8,5,1.5,0,-90,14,1"
-MOVED_M = 0.05
+MOVED_M, FAR_M = 0.05, 2.0
 
 
 def projects(root):
-    build_project(root / "office", points=150_000, normals=True)
-    build_project(root / "office", points=150_000, normals=True, moved_m=MOVED_M)
+    for moved_m in (FAR_M, 0.0, MOVED_M):
+        build_project(root / "office", points=150_000, normals=True, moved_m=moved_m)
 
 
 server = served(projects)
@@ -73,3 +73,54 @@ def test_the_map_before_the_last_one_is_shown_as_differences(server, page):
     panel.get_by_role("button", name="This map only").click()
     expect(page.locator("#status .shown")).to_have_text(re.compile(r"^60.\d{3} of .*points$"))
     assert on_canvas(page, color="red") < 50
+
+
+@looks("desktop light")
+def test_a_divider_shows_the_other_map_to_its_right(server, page):
+    base = "/api/projects/office/comparisons"
+    earliest = server.get(base).json()["others"][1]["id"]
+    made = server.post(base, json={"against": earliest}).json()["id"]
+    server.wait(made, lambda view: view["job"]["finished"])
+    page.goto(f"{server.url}/projects/office/map/?{TOP}&z=..&color=plain&compare={made}&swipe=1")
+    divider = page.get_by_role("slider", name="Divider between this map and the other one")
+    expect(divider).to_have_value("100")
+    rested(page)
+    assert beyond_the_wall(page) == 0
+
+    divider.press("Home")  # the other map fills the window
+    expect(page).to_have_url(re.compile("swipe=0$"))
+    rested(page)
+    assert beyond_the_wall(page) > 100  # there its wall was
+
+    box = page.locator("#map").bounding_box()
+    y = box["y"] + box["height"] / 2
+    page.mouse.move(box["x"], y)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"], y, steps=4)
+    page.mouse.up()
+    expect(divider).to_have_value("100")
+    rested(page)
+    assert beyond_the_wall(page) == 0
+    divider.press("ArrowLeft")
+    expect(page).to_have_url(re.compile(r"swipe=0\.995"))
+    page.locator("#panel").get_by_role("button", name="Differences", exact=True).click()
+    expect(divider).to_have_count(0)
+
+
+def rested(page):
+    """Wait until all points of the image are drawn."""
+    expect(page.locator("#status .shown")).to_have_text(re.compile(r"points$"))
+    page.wait_for_function("() => recon4Map.run.canvas.drawn.rested")
+
+
+def beyond_the_wall(page):
+    """Pixels that are drawn where only the other map has a wall."""
+    page.evaluate(SHOW, "hidden")
+    page.evaluate("() => (document.querySelector('#divider').style.visibility = 'hidden')")
+    (left, y), (right, _) = at(page, ROOM_M[0] + 1.0, 2.0), at(page, ROOM_M[0] + 3.0, 2.0)
+    clip = {"x": left, "y": y - 40.0, "width": right - left, "height": 80.0}
+    png = page.screenshot(clip=clip)
+    page.evaluate(SHOW, "")
+    page.evaluate("() => (document.querySelector('#divider').style.visibility = '')")
+    rgb = np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
+    return int((np.abs(rgb - rgb[0, 0]).max(axis=2) > 12).sum())

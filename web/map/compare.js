@@ -1,4 +1,4 @@
-// Another map beside this one: ordered, watched, and shown as differences.
+// Another map beside this one: ordered, watched, shown as differences or behind a divider.
 
 import { idHere } from "../shared/address.js";
 import {
@@ -6,13 +6,25 @@ import {
   comparisonUrl,
   listComparisons,
   orderComparison,
+  pointReader,
   readCorePoints,
+  readMapIndex,
 } from "../shared/api.js";
-import { attempt, byId, html, nothing, targetOf, within } from "../shared/dom.js";
+import {
+  attempt,
+  byId,
+  html,
+  nothing,
+  render,
+  showError,
+  targetOf,
+  within,
+} from "../shared/dom.js";
 import { count, when } from "../shared/format.js";
 import { decimal, t } from "../shared/texts.js";
 import { ALONE, BELOW, OTHER, RAMP, usualReach } from "./compare_colors.js";
 import { CorePoints } from "./compare_points.js";
+import { MapBeside } from "./compare_swipe.js";
 import { NOT_COMPARED } from "./compare_state.js";
 import { css } from "./colors.js";
 import { numberField } from "./number_field.js";
@@ -21,6 +33,7 @@ import { page } from "./page.js";
 /**
  * @import {Act} from "./bar.js"
  * @import {Compared} from "./compare_state.js"
+ * @import {Stored} from "./tiles.js"
  * @import {MapCanvas} from "./map_canvas.js"
  * @import {Comparisons, ComparisonView, OtherMap} from "../shared/http_types"
  */
@@ -33,7 +46,9 @@ const known = {
   watching: 0,
   /** @type {CorePoints | null} */
   points: null,
-  shown: "", // id of the comparison whose points were read
+  /** @type {MapBeside | null} */
+  other: null,
+  shown: "", // what was read: the id of a comparison, and how it is shown
   align: false,
 };
 
@@ -43,9 +58,10 @@ const reachOf = (/** @type {ComparisonView} */ one) =>
 
 /**
  * What is done with comparisons; the caller shows refusals.
- * @param {{change: Act["change"], draw: () => void, canvas: () => MapCanvas | null}} stage
+ * @param {{change: Act["change"], draw: () => void, canvas: () => MapCanvas | null,
+ *   values: () => Stored | ""}} stage `values`: by what the map is colored
  */
-export function compareOf({ change, draw, canvas }) {
+export function compareOf({ change, draw, canvas, values }) {
   async function read() {
     known.list = await listComparisons(id);
     const running = known.list.comparisons.some(({ state }) =>
@@ -62,28 +78,37 @@ export function compareOf({ change, draw, canvas }) {
 
   async function draws() {
     const one = chosen();
-    if (!one?.kept || !one.found || page.state.compare.swipe !== null) return clear();
-    if (known.shown !== one.id) {
+    const { swipe } = page.state.compare;
+    if (!one?.kept || !one.found) return clear();
+    const wanted = `${one.id} ${swipe === null}`;
+    if (known.shown !== wanted) {
       clear();
-      known.shown = one.id;
-      const data = await readCorePoints(id, one.id);
-      if (known.shown !== one.id) return; // another one was chosen meanwhile
-      const sizes = { step: known.list?.step_m ?? 1, spacing: one.core_spacing_m };
-      known.points = new CorePoints(data, sizes);
+      known.shown = wanted;
+      const made = swipe === null ? await pointsOf(one) : await otherOf(one);
+      if (known.shown !== wanted) return made.dispose(); // another one was chosen meanwhile
+      if (made instanceof MapBeside) known.other = made;
+      else known.points = made;
+      known.other?.begin(values()).catch(report);
     }
     known.points?.color(reachOf(one));
     canvas()?.differ(known.points);
+    if (known.other) known.other.part = swipe ?? 1;
+    canvas()?.beside(known.other);
   }
 
   function clear() {
     canvas()?.differ(null);
+    canvas()?.beside(null);
     known.points?.dispose();
-    Object.assign(known, { points: null, shown: "" });
+    known.other?.dispose();
+    Object.assign(known, { points: null, other: null, shown: "" });
   }
 
   return {
     read,
     show,
+    /** Colors the other map by other values. */
+    color: () => known.other?.color(values()).catch(report),
     /** Changes what is shown of the other map. */
     async set(/** @type {Partial<Compared>} */ next) {
       change({ compare: { ...page.state.compare, ...next } });
@@ -102,6 +127,50 @@ export function compareOf({ change, draw, canvas }) {
         await read();
       }),
   };
+}
+
+const report = (/** @type {unknown} */ problem) => showError(byId("message"), problem);
+
+async function pointsOf(/** @type {ComparisonView} */ one) {
+  const data = await readCorePoints(id, one.id);
+  return new CorePoints(data, { step: known.list?.step_m ?? 1, spacing: one.core_spacing_m });
+}
+
+/** The other map as it was compared. */
+async function otherOf(/** @type {ComparisonView} */ { against, found }) {
+  const [kind, name] = against.split(":");
+  const project = kind === "project" ? name : id;
+  const index = await readMapIndex(project, found?.second.key);
+  const other = new MapBeside(index, pointReader(project, index), found?.T_a_b ?? []);
+  other.tiles.onProblem = report;
+  return other;
+}
+
+/**
+ * The divider between the two maps, over the canvas.
+ * @param {HTMLElement} element
+ * @param {Act} act
+ */
+export function drawDivider(element, act) {
+  const { swipe } = page.state.compare;
+  const slides = (/** @type {Event} */ event) =>
+    act.compare.set({ swipe: Number(targetOf(event).value) / 100 });
+  render(
+    swipe === null || !chosen()?.found
+      ? nothing
+      : html`<span class="here" .style=${`right: ${100 - 100 * swipe}%`}>${t("cmp-here")}</span
+          ><span .style=${`left: ${100 * swipe}%`}>${t("cmp-there")}</span
+          ><input
+            type="range"
+            min="0"
+            max="100"
+            step="0.5"
+            aria-label=${t("cmp-divider")}
+            .value=${String(100 * swipe)}
+            @input=${slides}
+          />`,
+    element,
+  );
 }
 
 /** What another map is called. */
@@ -198,6 +267,9 @@ function shown(/** @type {Act} */ act) {
     <div class="buttons" role="group" aria-label=${t("cmp-show")}>
       ${mode(t("cmp-differences"), page.state.compare.swipe === null, () =>
         act.compare.set({ swipe: null }),
+      )}
+      ${mode(t("cmp-swipe"), page.state.compare.swipe !== null, () =>
+        act.compare.set({ swipe: 0.5 }),
       )}
       ${mode(t("cmp-off"), false, () => act.compare.set(NOT_COMPARED))}
     </div>

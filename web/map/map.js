@@ -20,7 +20,7 @@ import "../shared/page_head.js";
 import { openShare } from "../shared/share.js";
 import { aimOf } from "./aim.js";
 import { drawBar, drawHelp, drawStatus } from "./bar.js";
-import { compareOf } from "./compare.js";
+import { compareOf, drawDivider } from "./compare.js";
 import { between, panned, pixelM, rayAt, zoomed } from "./camera.js";
 import { moveByGestures } from "./controls.js";
 import { flightOf } from "./flying.js";
@@ -89,8 +89,10 @@ function change(/** @type {Partial<MapState>} */ next) {
   Object.assign(page.state, next);
   if (next.camera) say(byId("message"), ""); // what was refused is asked again
   if (next.cutCeiling && page.index) page.state.clip.heights = shown.usualHeights(page.index);
-  if (run.canvas && shown.colorShown() !== color)
+  if (run.canvas && shown.colorShown() !== color) {
     run.canvas.tiles.color(storedOf(shown.colorShown())).catch(showProblem);
+    compare.color();
+  }
   draw();
   clearTimeout(run.address);
   run.address = setTimeout(
@@ -144,6 +146,7 @@ function draw() {
   drawBar(byId("bar"), act);
   drawPanel(byId("panel"), act);
   drawProfile(byId("profile"), profile);
+  drawDivider(byId("divider"), act);
   askVolumes(draw);
   drawOver();
   drawCaption();
@@ -199,7 +202,12 @@ const toggles = togglesOf(change);
 const marking = markingOf(stage);
 const notes = notesOf(draw, () => ({ camera: camera(), screen: screen() }));
 const saved = savedOf(draw);
-const compare = compareOf({ change, draw, canvas: () => run.canvas });
+const compare = compareOf({
+  change,
+  draw,
+  canvas: () => run.canvas,
+  values: () => storedOf(shown.colorShown()),
+});
 const profile = profileOf({ draw, dark: () => dark.matches, change: widened });
 
 function view(/** @type {string} */ name, parallel = camera().parallel) {

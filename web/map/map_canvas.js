@@ -1,8 +1,8 @@
 // The canvas of the map: draws points while the camera moves, and all of them when it rests.
 
-import { axesOf, eyeOf, focalPx } from "./camera.js";
+import { focalPx } from "./camera.js";
 import { rampOf } from "./colors.js";
-import { choose, depthsOf } from "./lod.js";
+import { choose } from "./lod.js";
 import { Pace } from "./pace.js";
 import {
   BACKGROUNDS,
@@ -14,6 +14,7 @@ import {
   screenMaterial,
   sheetOf,
 } from "./materials.js";
+import { placeCamera } from "./projection.js";
 import { MapTiles } from "./tiles.js";
 import {
   BufferGeometry,
@@ -35,6 +36,7 @@ import { t } from "../shared/texts.js";
  * @import {ColorBy} from "./state.js"
  * @import {Reader, Stored} from "./tiles.js"
  * @import {CorePoints} from "./compare_points.js"
+ * @import {MapBeside} from "./compare_swipe.js"
  * @typedef {object} Drawing what is drawn
  * @property {Camera} camera
  * @property {ColorBy} color
@@ -81,6 +83,8 @@ export class MapCanvas {
   #layers = {};
   /** @type {CorePoints | null} */
   #differences = null;
+  /** @type {MapBeside | null} */
+  #beside = null;
   pace = new Pace();
   tiles;
   /** Figures of the last frames, for the caption and for tests. */
@@ -164,9 +168,17 @@ export class MapCanvas {
     this.#news();
   }
 
+  /** Shows another map to the right of its divider; null = this map only. */
+  beside(/** @type {MapBeside | null} */ other) {
+    if (other) other.tiles.onNews = () => this.#news();
+    this.#beside = other;
+    this.#news();
+  }
+
   /** Has the image drawn again: points have arrived, or its size has changed. */
   #news() {
     this.#finished = false;
+    this.drawn.rested = false;
     this.#refining = null;
     this.#ask();
   }
@@ -215,10 +227,9 @@ export class MapCanvas {
   #drawCoarse(/** @type {Drawing} */ drawing) {
     const began = performance.now();
     this.#refining = null;
-    const { counts } = this.#choose(drawing, this.pace.moving);
-    const parts = this.tiles.show(counts);
+    const parts = this.#parts(drawing, this.pace.moving);
     this.#begin(drawing, this.#coarse);
-    this.#renderer.render(this.#scene, this.#camera);
+    this.#paint(this.#coarse);
     this.#finish(drawing, this.#coarse);
     const points = parts.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
     Object.assign(this.drawn, { points, rested: false });
@@ -229,9 +240,7 @@ export class MapCanvas {
   #refine(/** @type {Drawing} */ drawing) {
     const began = performance.now();
     if (!this.#refining) {
-      const { counts } = this.#choose(drawing, this.pace.resting);
-      this.tiles.want(counts, drawing.camera);
-      this.#refining = { queue: this.tiles.show(counts), next: 0 };
+      this.#refining = { queue: this.#parts(drawing, this.pace.resting, true), next: 0 };
       this.#begin(drawing, this.#fine);
     }
     const { queue } = this.#refining;
@@ -242,21 +251,60 @@ export class MapCanvas {
       object.visible = true;
       points += more;
     }
-    this.#renderer.setRenderTarget(this.#fine);
-    this.#renderer.render(this.#scene, this.#camera);
+    this.#paint(this.#fine);
     if (this.#refining.next >= queue.length) {
       this.#finish(drawing, this.#fine);
       this.#finished = true;
       const all = queue.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
-      Object.assign(this.drawn, { points: all, rested: this.tiles.complete });
+      Object.assign(this.drawn, {
+        points: all,
+        rested: this.#sides().every(({ tiles }) => tiles.complete),
+      });
       this.#refining = null;
     }
     this.#begun(began, points);
   }
 
-  #choose(/** @type {Drawing} */ { camera, planes }, /** @type {number} */ budget) {
-    if (this.#differences) return { counts: this.#index.tiles.map(() => 0) };
-    return choose(this.#index.tiles, { camera, screen: this.screen, planes, budget });
+  /** This map, and the other one. */
+  #sides() {
+    const own = { tiles: this.tiles, boxes: this.#index.tiles };
+    return this.#beside ? [own, this.#beside] : [own];
+  }
+
+  /**
+   * Sets what is drawn of the maps within a budget.
+   * @param {Drawing} drawing
+   * @param {number} budget
+   * @param {boolean} reads whether what is missing is read
+   */
+  #parts({ camera, planes }, budget, reads = false) {
+    const sides = this.#sides();
+    const view = { camera, screen: this.screen, planes, budget: budget / sides.length };
+    return sides.flatMap(({ tiles, boxes }) => {
+      const counts = this.#differences ? boxes.map(() => 0) : choose(boxes, view).counts;
+      if (reads) tiles.want(counts, camera);
+      return tiles.show(counts);
+    });
+  }
+
+  /** Draws what is visible; of two maps each on its side of the divider. */
+  #paint(/** @type {WebGLRenderTarget} */ into) {
+    const { width, height } = into;
+    const split = Math.round(width * (this.#beside?.part ?? 1));
+    const paint = (
+      /** @type {Scene} */ scene,
+      /** @type {number} */ from,
+      /** @type {number} */ to,
+    ) => {
+      into.scissor.set(from, 0, to - from, height);
+      this.#renderer.setRenderTarget(into);
+      this.#renderer.render(scene, this.#camera);
+    };
+    into.scissorTest = this.#beside !== null;
+    paint(this.#scene, 0, split);
+    if (this.#beside) paint(this.#beside.scene, split, width);
+    into.scissorTest = false;
+    this.#renderer.setRenderTarget(into);
   }
 
   /**
@@ -269,10 +317,12 @@ export class MapCanvas {
       Math.min(devicePixelRatio, SHARPEST) * (into === this.#coarse ? this.pace.sharpness : 1);
     const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
     if (into.width !== wide || into.height !== tall) into.setSize(wide, tall);
-    const range = this.#place(drawing.camera);
+    const tiles = this.#sides().flatMap(({ boxes }) => boxes);
+    const view = { screen: this.screen, bounds: boundsOf({ tiles }) };
+    const { near, far, turn } = placeCamera(this.#camera, drawing.camera, view);
+    this.#material.uniforms.turn.value = turn;
     this.#look(drawing, ratio);
     const { uniforms } = this.#screen;
-    const { near, far } = range;
     if (drawing.camera.parallel) uniforms.nearness.value.set(-near, near - far);
     else uniforms.nearness.value.set(1 / near, 1 / far - 1 / near);
     uniforms.scale.value = drawing.camera.parallel ? 1 / drawing.camera.distance : 0;
@@ -282,55 +332,6 @@ export class MapCanvas {
     this.#renderer.setRenderTarget(into);
     this.#renderer.setClearColor(0, 1);
     this.#renderer.clear();
-  }
-
-  /** Gives three our camera; returns the depths between which it draws. */
-  #place(/** @type {Camera} */ camera) {
-    const { right, up, ahead } = axesOf(camera);
-    const eye = eyeOf(camera);
-    const back = ahead.map((x) => -x);
-    const { matrixWorld, matrixWorldInverse, projectionMatrix } = this.#camera;
-    const rows = [0, 1, 2].map((k) => [right[k], up[k], back[k], eye[k]]);
-    matrixWorld.set(...rows.flat(), 0, 0, 0, 1);
-    matrixWorldInverse.copy(matrixWorld).invert();
-    const { width, height } = this.screen;
-    const depths = depthsOf(camera, boundsOf(this.#index));
-    const margin = 1 + 0.01 * (depths.far - depths.near);
-    const far = Math.max(depths.far + margin, 2);
-    const near = camera.parallel
-      ? depths.near - margin
-      : Math.max(depths.near - margin, far / 4000, 0.03);
-    if (camera.parallel) {
-      const tall = (camera.distance * height) / focalPx({ width, height }) / 2;
-      const wide = (tall * width) / height;
-      const [a, b] = [-2 / (far - near), -(far + near) / (far - near)];
-      projectionMatrix.set(1 / wide, 0, 0, 0, 0, 1 / tall, 0, 0, 0, 0, a, b, 0, 0, 0, 1);
-    } else {
-      const tall = focalPx({ width, height }) / (height / 2);
-      const [a, b] = [-(far + near) / (far - near), (-2 * far * near) / (far - near)];
-      projectionMatrix.set(
-        (tall * height) / width,
-        0,
-        0,
-        0,
-        0,
-        tall,
-        0,
-        0,
-        0,
-        0,
-        a,
-        b,
-        0,
-        0,
-        -1,
-        0,
-      );
-    }
-    this.#camera.projectionMatrixInverse.copy(projectionMatrix).invert();
-    const { turn } = this.#material.uniforms;
-    turn.value = [0, 1, 2].flatMap((k) => [right[k], up[k], back[k]]);
-    return { near, far };
   }
 
   /**
@@ -356,6 +357,7 @@ export class MapCanvas {
     });
     uniforms.planeCount.value = Math.min(planes.length, MOST_PLANES);
     this.#material.uniformsNeedUpdate = true;
+    this.#beside?.follow(uniforms, { color, ends });
     if (this.#layers.walk) this.#layers.walk.visible = layers.walk;
     if (this.#layers.nodes) this.#layers.nodes.visible = layers.nodes;
   }

@@ -19,7 +19,7 @@ import {
 } from "../shared/vendor/three/three.module.min.js";
 
 /**
- * @import {MapIndex} from "../shared/http_types"
+ * @import {Box} from "./lod.js"
  * @import {Material} from "../shared/vendor/three/three.module.min.js"
  */
 
@@ -29,7 +29,7 @@ export const PLAIN = { dark: [0.82, 0.84, 0.86], light: [0.74, 0.76, 0.79] };
 const CLASS_CODES = 68;
 
 /** The box of all points: what is drawn lies in it. */
-export function boundsOf(/** @type {MapIndex} */ { tiles }) {
+export function boundsOf(/** @type {{tiles: Array<Pick<Box, "low_m" | "high_m">>}} */ { tiles }) {
   /**
    * @param {"low_m" | "high_m"} end
    * @param {(...of: number[]) => number} best

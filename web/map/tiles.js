@@ -12,7 +12,7 @@ import {
 /**
  * @import {MapIndex} from "../shared/http_types"
  * @import {Camera, Ray} from "./camera.js"
- * @import {Material, Scene} from "../shared/vendor/three/three.module.min.js"
+ * @import {Material, Matrix4, Scene} from "../shared/vendor/three/three.module.min.js"
  * @typedef {"xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"} Stored
  * @typedef {{start: number, stop: number}} Part
  * @typedef {object} Reader
@@ -38,6 +38,7 @@ export class MapTiles {
   #material;
   #reader;
   #onLook;
+  #move;
   /** @type {Chunk[][]} */
   #chunks;
   #reading = new Set();
@@ -55,9 +56,11 @@ export class MapTiles {
 
   /**
    * @param {MapIndex} index
-   * @param {{scene: Scene, material: Material, reader: Reader, onLook: (look: Look) => void}} into
+   * @param {{scene: Scene, material: Material, reader: Reader, onLook: (look: Look) => void,
+   *   move?: Matrix4}} into `move` maps its points into the scene
    */
-  constructor(index, { scene, material, reader, onLook }) {
+  constructor(index, { scene, material, reader, onLook, move }) {
+    this.#move = move;
     this.#index = index;
     this.#scene = scene;
     this.#material = material;
@@ -271,6 +274,7 @@ export class MapTiles {
     const { low_m: low, high_m: high } = tile;
     const [x, y, z] = minus(high, low);
     object.matrixWorld.set(x, 0, 0, low[0], 0, y, 0, low[1], 0, 0, z, low[2], 0, 0, 0, 1);
+    if (this.#move) object.matrixWorld.premultiply(this.#move);
     Object.assign(object, {
       matrixAutoUpdate: false,
       matrixWorldAutoUpdate: false,

@@ -28,3 +28,7 @@ cmp-usual = Eine Karte nennt keine Unsicherheiten: es gelten die einer üblichen
 cmp-older = Von einem früheren Lauf dieser Karte.
 cmp-before = Schon verglichen
 cmp-download = LAZ herunterladen
+cmp-swipe = Teiler
+cmp-divider = Teiler zwischen dieser Karte und der anderen
+cmp-here = Diese Karte
+cmp-there = Die andere

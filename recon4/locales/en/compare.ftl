@@ -28,3 +28,7 @@ cmp-usual = A map states no uncertainties: those of a usual good map were used.
 cmp-older = Of an earlier run of this map.
 cmp-before = Compared before
 cmp-download = Download LAZ
+cmp-swipe = Swipe
+cmp-divider = Divider between this map and the other one
+cmp-here = This map
+cmp-there = The other one

@@ -7,8 +7,12 @@ import { name, readBytes, request } from "../http.js";
 
 const map = (/** @type {string} */ id) => at(`/api/projects/${name(id)}/map`);
 
-export const readMapIndex = (/** @type {string} */ project_id) =>
-  request("GET /api/projects/{project_id}/map", { path: { project_id } });
+/**
+ * @param {string} project_id
+ * @param {string} key of an earlier map; empty = the latest
+ */
+export const readMapIndex = (project_id, key = "") =>
+  request("GET /api/projects/{project_id}/map", { path: { project_id }, query: { key } });
 export const readMapWalk = (/** @type {string} */ project_id) =>
   request("GET /api/projects/{project_id}/map/walk", { path: { project_id } });
 /**

@@ -30,6 +30,7 @@ export class Matrix4 {
   set(...elements: number[]): this;
   copy(matrix: Matrix4): this;
   invert(): this;
+  premultiply(matrix: Matrix4): this;
 }
 export class BufferAttribute {
   constructor(
@@ -119,6 +120,8 @@ export class WebGLRenderTarget {
   depthTexture: DepthTexture;
   width: number;
   height: number;
+  scissor: Vector4;
+  scissorTest: boolean;
   setSize(width: number, height: number): void;
   dispose(): void;
 }
