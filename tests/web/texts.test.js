@@ -1,13 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { addTexts, decimal, hasText, language, t } from "../../web/shared/texts.js";
+import { addTexts, decimal, hasText, language, t, wordOf } from "../../web/shared/texts.js";
 
 addTexts(
   "de",
   `width = { DECIMAL($m, digits: 1) } m
 part = { PERCENT($ratio, digits: 1) }
 points = { COUNT($points) } Punkte
+step-loop-closures = Schleifenschlüsse
 off = { DECIMAL($m, digits: 1, sign: 1) } m, { DEGREES($rad, digits: 0) }, { LENGTH($short) }
 gaps = { $count ->
     [one] eine Lücke
@@ -15,7 +16,10 @@ gaps = { $count ->
 }
 `,
 );
-addTexts("en", "width = { DECIMAL($m, digits: 1) } m wide\nonly = English { $count }");
+addTexts(
+  "en",
+  "step-graph = graph\nwidth = { DECIMAL($m, digits: 1) } m wide\nonly = English { $count }",
+);
 
 test("numbers are written as the language does, with the digits that the text asks for", () => {
   assert.equal(language(), "de");
@@ -35,4 +39,10 @@ test("what a language lacks is English, and what nobody has is its name", () => 
   assert.equal(t("only", { count: "12345" }), "English 12345");
   assert.ok(hasText("only") && !hasText("nothing"));
   assert.equal(t("nothing"), "nothing");
+});
+
+test("a word of the server is shown in the language, or as the server wrote it", () => {
+  assert.equal(wordOf("step", "Loop closures"), "Schleifenschlüsse");
+  assert.equal(wordOf("step", "of tomorrow"), "of tomorrow");
+  assert.equal(wordOf("step", "Graph"), "Graph");
 });

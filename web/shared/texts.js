@@ -88,7 +88,8 @@ export const hasText = (/** @type {string} */ id) =>
   state.bundles.some((bundle) => bundle.hasMessage(id));
 
 /**
- * What a word of the server is called, by the message PREFIX-WORD; else the word itself.
+ * What a word of the server is called, by the message PREFIX-WORD; else the word itself, which
+ * keeps its capital letters also where the message is the same.
  * @param {string} prefix
  * @param {string} word
  * @param {Values} [values]
@@ -98,7 +99,8 @@ export function wordOf(prefix, word, values = {}) {
     .toLowerCase()
     .replace(/[^a-z0-9]+/g, "-")
     .replace(/^-|-$/g, "")}`;
-  return hasText(id) ? t(id, values) : word;
+  const text = hasText(id) ? t(id, values) : word;
+  return text.toLowerCase() === word.toLowerCase() ? word : text;
 }
 
 /** A number as the language writes it: decimal(12.34, 1) -> "12,3". */
