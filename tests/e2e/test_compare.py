@@ -75,6 +75,7 @@ def test_the_map_before_the_last_one_is_shown_as_differences(server, page):
     assert on_canvas(page, color="red") < 50
 
 
+@pytest.mark.study
 @looks("desktop light")
 def test_a_divider_shows_the_other_map_to_its_right(server, page):
     base = "/api/projects/office/comparisons"

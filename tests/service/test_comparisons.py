@@ -70,6 +70,7 @@ def test_the_points_of_a_comparison_are_those_of_its_laz_file(server, made, tmp_
     assert np.median(points["distance"][on_wall]) * step_m == pytest.approx(MOVED_M, abs=1e-3)
 
 
+@pytest.mark.study
 def test_maps_without_a_common_frame_fail_with_what_to_do(server):
     view = finished(server, against="project:other")
 

@@ -77,6 +77,7 @@ def test_local_maps_meet_only_if_they_are_of_one_recording(tmp_path):
             common_frame(first, unrelated, align=False)
 
 
+@pytest.mark.study
 def test_an_unrelated_map_is_laid_on_the_other_by_icp(office, tmp_path):
     build_project(tmp_path / "again", points=150_000, normals=True)
     first, second = open_side(office), open_side(tmp_path / "again")
