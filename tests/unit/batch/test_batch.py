@@ -68,6 +68,7 @@ def test_every_walk_has_a_row(alone):
     assert [row["result"] for row in table] == [row["result"] for row in rows]
 
 
+@pytest.mark.study
 def test_two_workers_make_the_same_bytes(walks, alone, tmp_path, capsys):
     assert main(["batch", str(walks), "--out", str(tmp_path / "out"), "--workers", "2"]) == 1
 

@@ -102,6 +102,7 @@ def test_an_audit_changes_nothing(audited):
     assert audited.rig is None
 
 
+@pytest.mark.study
 def test_a_confirmed_calibration_is_written_and_used(wrong, calibrated, tmp_path):
     found = calibrated
     figures = found.save(tmp_path)

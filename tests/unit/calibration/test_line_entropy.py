@@ -58,6 +58,7 @@ def test_the_map_is_sharpest_with_the_true_mount(walk):
     assert occupied(walk, rig, cube_m=0.05) < occupied(walk, wrong.recorded, cube_m=0.05)
 
 
+@pytest.mark.study
 def test_rotation_and_clock_are_found(walk):
     few = replace(walk, t_ns=walk.t_ns[::6], p_sensor=np.ascontiguousarray(walk.p_sensor[::6]))
     wrong = mounted_wrong(few, turn_deg=(0.8, -0.7, 1.0), shift_m=(0.0, 0.0, 0.0), ahead_s=0.03)

@@ -137,6 +137,7 @@ def test_a_gyroscope_whose_values_never_change_is_found_out_and_said(walk, rate,
     assert message[-1].remark == f"no-gyroscope {said}"
 
 
+@pytest.mark.study
 def test_a_long_path_keeps_its_start(walk):
     live_map = LiveMap(walk.store.rig, preset("indoor"))
 

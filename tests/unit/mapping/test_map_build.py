@@ -355,6 +355,7 @@ def test_surfaces_are_fitted_unless_the_documents_are_followed():
     assert preset("thesis").map.surface == "raw"
 
 
+@pytest.mark.study
 def test_the_tiles_of_a_map_do_not_show_in_its_surfaces(tmp_path):
     walk = room_walk(frames=30, points=20_000, noise_m=0.01)
 
