@@ -144,7 +144,7 @@ function responseTable({ responses = {} }) {
     const text = content?.schema ? typeLink(content.schema) : (kind ?? "nothing");
     return row(status, text, one.description ?? "");
   });
-  return [html`<h3>Responses</h3>`, table(["Status", "What", ""], rows)];
+  return [html`<h3>Responses</h3>`, table(["Status", "Type", "Description"], rows)];
 }
 
 /**
@@ -172,11 +172,11 @@ function operationDetails(path, method, operation) {
     html`<p>${withoutBackticks(operation.description)}</p>`,
     inputs.length
       ? html`<h3>Parameters</h3>
-          ${table(["Name", "In", "Type", "Constraints", ""], inputs)}`
+          ${table(["Name", "In", "Type", "Constraints", "Description"], inputs)}`
       : nothing,
     schema
       ? html`<h3>Body, JSON</h3>
-          ${table(["Field", "Type", "Constraints", ""], fieldRows(schema))}
+          ${table(["Field", "Type", "Constraints", "Description"], fieldRows(schema))}
           ${code(JSON.stringify(body?.json, null, 1))}`
       : nothing,
     body?.binary
@@ -230,7 +230,7 @@ const schemaSections = Object.entries(schemas).map(
       <summary><code>${name}</code></summary>
       <div>
         <p>${withoutBackticks(one.description)}</p>
-        ${table(["Field", "Type", "Constraints", ""], fieldRows(one))}
+        ${table(["Field", "Type", "Constraints", "Description"], fieldRows(one))}
       </div>
     </details>`,
 );
