@@ -85,9 +85,8 @@ def earlier_maps(root: Path) -> list[Path]:
         StoreError: If the folder is not a project or its ledger is damaged.
     """
     latest = read_artifacts(root).get("map")
-    rows = [row for row in read_stages(root) if row.stage == "map"]
-    rows.sort(key=lambda row: row.finished, reverse=True)
-    folders = [root / _ARTIFACTS / row.key for row in rows]
+    rows = reversed(read_stages(root))
+    folders = [root / _ARTIFACTS / row.key for row in rows if row.stage == "map"]
     return [one for one in folders if one != latest and (one / "tiles.json").is_file()]
 
 

@@ -139,7 +139,7 @@ class Ledger:
     def stages(self) -> list[FinishedStage]:
         """All finished stages in the order they finished."""
         with self._errors():
-            rows = self._db.execute(f"{_SELECT} ORDER BY finished, key").fetchall()
+            rows = self._db.execute(f"{_SELECT} ORDER BY finished, rowid").fetchall()
         return [FinishedStage(*row) for row in rows]
 
     def set_current(self, stage: str, key: str) -> None:

@@ -41,6 +41,15 @@ def test_stages_come_in_the_order_they_finished(tmp_path):
         assert [row.key for row in ledger.stages()] == ["k1", "k0"]
 
 
+def test_stages_of_the_same_second_come_in_the_order_in_which_they_were_written(tmp_path):
+    keys = ["k3", "k1", "k2"]
+    with Ledger(tmp_path / "l.sqlite") as ledger:
+        for key in keys:
+            ledger.add(replace(ROW, key=key))
+
+        assert [row.key for row in ledger.stages()] == keys
+
+
 def test_a_deleted_stage_is_removed_from_the_latest_run(tmp_path):
     with Ledger(tmp_path / "l.sqlite") as ledger:
         ledger.add(ROW)
