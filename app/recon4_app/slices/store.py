@@ -120,7 +120,7 @@ class Slices:
         rows = [row for row in read_stages(root) if row.stage == "map" and row.key != current]
         earlier = [
             OtherMap(f"map:{row.key}", f"Map of {row.finished[:16].replace('T', ' ')}")
-            for row in sorted(rows, key=lambda row: row.finished, reverse=True)
+            for row in reversed(rows)
             if (root / "artifacts" / row.key / "tiles.json").is_file()
         ]
         others = [
