@@ -1,10 +1,9 @@
 """Every page, judged by axe-core: names of controls, structure, contrast."""
 
-from pathlib import Path
-
 import pytest
 
 from recon4_app.pages import WEB
+from tests.e2e.axe import barriers, needs_axe
 from tests.e2e.conftest import both_looks, leave_out_viewer
 from tests.project_builder import build_project
 from tests.review_fixtures import copy_made
@@ -12,8 +11,6 @@ from tests.service.running import SLOW, server_thread
 
 pytestmark = pytest.mark.e2e
 
-AXE = Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
 PAGES = {
     "/": "projects/index.html",
     "/storage": "storage/storage.html",
@@ -30,7 +27,7 @@ PAGES = {
 }
 """Path -> its file in `web/`."""
 ELSEWHERE = {f"account/{name}.html" for name in ("account", "guest", "login", "pair")}
-"""Pages of a server with login."""
+"""Pages of a server with login: `test_login.py` judges them."""
 
 
 @pytest.fixture(scope="module")
@@ -43,20 +40,15 @@ def server(tmp_path_factory):
 
 
 @both_looks
-@pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")
+@needs_axe
 @pytest.mark.parametrize("path", PAGES)
 def test_a_page_has_no_barrier_that_axe_finds(server, page, path):
     leave_out_viewer(page)
     page.expect_failed = True
     page.goto(server.url + path)
     page.wait_for_load_state("networkidle")
-    page.evaluate(AXE.read_text("utf-8"))
 
-    found = page.evaluate("(tags) => axe.run(document, { runOnly: tags, iframes: false })", RULES)[
-        "violations"
-    ]
-
-    assert [(one["id"], node["html"][:120]) for one in found for node in one["nodes"]] == []
+    assert barriers(page) == []
 
 
 def test_every_page_is_judged():

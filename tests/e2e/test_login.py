@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, Route, expect
 
+from tests.e2e.axe import barriers, needs_axe
 from tests.e2e.conftest import EXPECTED_NOISE, browser_context, leave_out_viewer, looks
 from tests.served import office, served
 from tests.service.running import server_thread
@@ -48,6 +49,23 @@ def fits(page):
         .map((one) => one.outerHTML.slice(0, 80))"""
     )
     assert small == []
+
+
+@needs_axe
+@pytest.mark.parametrize("path", ["/login", "/pair", "/guest"])
+def test_a_page_before_the_login_has_no_barrier(server, page, path):
+    page.goto(server.url + path)
+    expect(page.get_by_role("heading", level=1)).to_be_visible()
+
+    assert barriers(page) == []
+
+
+@needs_axe
+def test_the_page_of_an_account_has_no_barrier(server, page):
+    sign_in(page, server, "rita", "/account")
+    expect(page.get_by_role("heading", level=1)).to_be_visible()
+
+    assert barriers(page) == []
 
 
 def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):

@@ -97,7 +97,7 @@ export class PageHead extends HTMLElement {
               class="who"
               href=${at("/account")}
               aria-label=${t("head-account", { name, role: t(`role-${role}`) })}
-              ><b>${name}</b><span class="role">${t(`role-${role}`)}</span></a
+              ><b>${name}</b> <span class="role">${t(`role-${role}`)}</span></a
             >`
       }<button type="button" @click=${() => this.#leave()}>${t("head-sign-out")}</button>`;
   }

@@ -34,7 +34,7 @@ head-storage = Speicher
 head-api = API
 head-help = Hilfe
 head-people = Personen
-head-account = Konto von { $name }, { $role }
+head-account = Konto von { $name } { $role }
 head-sign-out = Abmelden
 head-lost = Verbindung verloren, neuer Versuch
 

@@ -34,7 +34,7 @@ head-storage = Storage
 head-api = API
 head-help = Help
 head-people = People
-head-account = Account of { $name }, { $role }
+head-account = Account of { $name } { $role }
 head-sign-out = Sign out
 head-lost = Connection lost, trying again
 
