@@ -86,7 +86,7 @@ def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
     page.get_by_role("button", name="Sign in").click()
     page.wait_for_url(f"{server.url}/projects/office/")
     expect(page.get_by_role("heading", name="office")).to_be_visible()
-    expect(page.get_by_role("link", name="Account of rita, reviewer")).to_be_visible()
+    expect(page.get_by_role("link", name="Account of rita reviewer")).to_be_visible()
 
 
 @looks("desktop light", "phone dark")
