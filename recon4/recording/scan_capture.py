@@ -24,7 +24,7 @@ from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.slots import in_slots
-from recon4.recording.packets.velodyne.models import DATA_SIZE
+from recon4.recording.packets.streams import recognized
 from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -70,21 +70,30 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
         left = PROBE.scan_datagrams
         for batch in islice(read_datagrams(file, ImportReport()), PROBE.scan_batches):
             rows = np.arange(min(len(batch), left))
-            if np.any(batch.length[rows] == DATA_SIZE):
-                return ScanStreams(scans, heads, has_lidar=True)
+            others = []
             for row in rows.tolist():
                 payload = batch.payload(row)
                 if not is_scan_datagram(payload):
+                    others.append(row)
                     continue
                 key = address_text(int(batch.source[row])), int(batch.port[row])
                 if b'"ranges"' in payload:
                     scans[key] += 1
                 else:
                     heads[key] += 1
+            if _has_lidar(batch.take(np.array(others, dtype=np.intp))):
+                return ScanStreams(scans, heads, has_lidar=True)
             left -= len(rows)
             if left <= 0:
                 break
     return ScanStreams(scans, heads, has_lidar=False)
+
+
+def _has_lidar(datagrams: Datagrams) -> bool:
+    """Whether any sender sends data packets of a LiDAR to a port."""
+    keys = datagrams.source.astype(np.int64) << 16 | datagrams.port
+    streams = (datagrams.take(keys == key) for key in np.unique(keys))
+    return any((found := recognized(one)) is not None and found.kind == "data" for one in streams)
 
 
 def is_scan_capture(files: Sequence[Path]) -> bool:

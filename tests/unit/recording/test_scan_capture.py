@@ -33,6 +33,7 @@ from recon4.store.line_store import load_laser_scans, load_lines
 from tests.laser_rows import angles_of, rows_of, with_rows
 from tests.planar_walks import furnished_room, scanned, write_carmen
 from tests.scan_captures import DELAY_NS, captured, scan_datagrams, write_capture
+from tests.security.fuzz.kinds_robosense import packets_of
 from tests.warned import K, warned
 
 START_NS = 1_700_000_000_000_000_000
@@ -291,6 +292,15 @@ def test_a_capture_of_other_datagrams_has_no_scans(tmp_path):
     assert not is_laser2d(tmp_path / "walk.pcap")
     with pytest.raises(EmptyRecording, match="no datagrams of a 2-D laser"):
         read_laser2d([tmp_path / "walk.pcap"], ImportReport())
+
+
+def test_scans_beside_packets_of_a_lidar_of_any_make_are_no_walk_of_a_laser(tmp_path, scans):
+    sent = scan_datagrams(scans)
+    packets = packets_of("Helios 5515")
+    data = [(t_ns, 6699, row.tobytes()) for (t_ns, *_), row in zip(sent, packets, strict=False)]
+    write_capture(tmp_path / "walk.pcap", sorted([*sent, *data]))
+
+    assert not is_laser2d(tmp_path / "walk.pcap")
 
 
 def test_a_head_that_stands_all_the_time_is_refused(tmp_path):
