@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from recon4.recording.formats.cloud_headers import HEADER_FORMATS
+from recon4.recording.packets.families import FAMILIES
 from tests.security.fuzz.broken import BROKEN
 from tests.security.fuzz.corpus import CORPUS, read_kind
 from tests.security.fuzz.kinds import KINDS
@@ -62,6 +63,12 @@ def test_every_format_of_clouds_with_a_header_is_fuzzed() -> None:
     fuzzed = {Path(kind.file_name).suffix for kind in KINDS.values()}
 
     assert [one.name for one in HEADER_FORMATS if one.suffix not in fuzzed] == []
+
+
+def test_every_family_of_lidars_is_fuzzed() -> None:
+    fuzzed = {name.partition("-")[0] for name in KINDS}
+
+    assert [one.name for one in FAMILIES if one.name.lower() not in fuzzed] == []
 
 
 def test_a_mutant_depends_on_its_number_alone() -> None:

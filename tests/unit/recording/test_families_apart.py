@@ -5,6 +5,7 @@ from itertools import islice
 import numpy as np
 import pytest
 
+from recon4.model.lidars import LIDARS
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of
 from recon4.recording.formats.pcap import read_pcap
@@ -12,6 +13,7 @@ from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.streams import recognized
 from recon4.recording.report import ImportReport
+from tools.structure import ROOT
 
 MAKERS = {
     "packets/mrpt": "Velodyne",
@@ -56,6 +58,15 @@ def heads(folder) -> list[Datagrams]:
     for bag in bags:
         found += bag_packets(bag)
     return found
+
+
+def test_each_family_has_models_and_its_row_in_the_documentation():
+    makers = {facts.maker for facts in LIDARS.values()}
+    page = (ROOT / "docs/reference/packets.md").read_text("utf-8")
+
+    assert [
+        f.name for f in FAMILIES if f.name not in makers or f"\n| [{f.name}](" not in page
+    ] == []
 
 
 @pytest.mark.parametrize(("folder", "maker"), MAKERS.items())
