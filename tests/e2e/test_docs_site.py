@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import TimeoutError, expect
 
-from tests.e2e.test_accessibility import AXE, RULES
+from tests.e2e.axe import barriers, needs_axe
 from tests.served import served
 
 pytestmark = pytest.mark.e2e
@@ -64,7 +64,7 @@ def test_the_site_leads_back_to_the_projects(server, page):
     expect(page).to_have_url(f"{server.url}/")
 
 
-@pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")
+@needs_axe
 @pytest.mark.parametrize(
     "path",
     [
@@ -77,8 +77,5 @@ def test_the_site_leads_back_to_the_projects(server, page):
 def test_a_page_has_no_barrier_that_axe_finds(server, page, path):
     page.goto(f"{server.url}/docs/{path}")
     page.wait_for_function(SEARCH_IS_READY)
-    page.evaluate(AXE.read_text("utf-8"))
 
-    found = page.evaluate("(tags) => axe.run(document, { runOnly: tags })", RULES)["violations"]
-
-    assert [(one["id"], node["html"][:120]) for one in found for node in one["nodes"]] == []
+    assert barriers(page) == []
