@@ -54,15 +54,12 @@ class StructureCells(NamedTuple):
     of further echoes, (B, 5)."""
 
 
-def find_structure(
-    runs: CellRuns, walk_m: Array, *, most: int = STRUCTURE.most
-) -> Structure | None:
+def find_structure(runs: CellRuns, walk_m: Array) -> Structure | None:
     """What stands in a map.
 
     Args:
         runs: Returns that were counted.
         walk_m: Positions of the body in the map, (W, 3).
-        most: Cells that are kept; what is seen first in further ones has no such class.
 
     Returns:
         None where no ground is found below the walk.
@@ -70,7 +67,7 @@ def find_structure(
     Raises:
         OSError: If a run cannot be written or read.
     """
-    found = _cells(runs, most)
+    found = _cells(runs)
     if found is None:
         return None
     cells, cubes = found.cells, found.cubes
@@ -90,9 +87,9 @@ def find_structure(
     )
 
 
-def _cells(runs: CellRuns, most: int) -> StructureCells | None:
+def _cells(runs: CellRuns) -> StructureCells | None:
     """What was counted; None = nothing."""
-    parts = [_part(part) for part in runs.merged(least=STRUCTURE.least, most=most)]
+    parts = [_part(part) for part in runs.merged(least=STRUCTURE.least, most=STRUCTURE.most)]
     if not parts:
         return None
     key, z_m, above, cells_of, cube_key, of_cube = (

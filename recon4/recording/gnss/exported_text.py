@@ -21,7 +21,14 @@ from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC
 from recon4.model.samples import GnssQuality
 from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import DamagedLines
-from recon4.recording.gnss.records import Dating, FixRows, GnssFile, gnss_samples, week_ns
+from recon4.recording.gnss.records import (
+    Dating,
+    FixRows,
+    GnssFile,
+    gnss_samples,
+    seconds_ns,
+    week_ns,
+)
 from recon4.recording.gnss.tuning import GNSS_FILES
 from recon4.recording.report import ImportReport
 from recon4.recording.tables.text import table_blocks
@@ -73,7 +80,6 @@ _DATES = {"YMD": (0, 1, 2), "MDY": (2, 0, 1), "DMY": (2, 1, 0)}
 
 @dataclass(frozen=True, slots=True)
 class _Cells:
-    role: str
     unit: str
     first: int
     """Number of its first cell."""
@@ -86,7 +92,7 @@ _Columns = dict[str, _Cells]
 
 def is_exported_text(head: str) -> bool:
     """Whether a text has a line that names columns of a trajectory, and one of their units."""
-    return any(_columns(*pair) for pair in _pairs(head.split("\n")))
+    return any(_columns(*pair) for pair in pairwise(head.split("\n")))
 
 
 def read_exported_text(path: Path, report: ImportReport) -> GnssFile:
@@ -142,7 +148,8 @@ class _ExportedLines:
     def of(cls, columns: _Columns, name: str) -> _ExportedLines:
         """Choose columns of time; raises CorruptFile if there is none, or no height."""
         if not columns.keys() & {"ellipsoidal", "orthometric"}:
-            raise CorruptFile(f"{name}: expected a column H-Ell or H-MSL, got {_named(columns)}")
+            got = ", ".join(sorted(columns))
+            raise CorruptFile(f"{name}: expected a column H-Ell or H-MSL, got {got}")
         for clock, date, gps in (("utc", "date", False), ("gps", "gps_date", True)):
             if columns.keys() >= {clock, date}:
                 return cls(columns, Dating.UTC, gps, _dated(columns[clock], columns[date]))
@@ -171,7 +178,7 @@ class _ExportedLines:
         sd_m = [self._value(cells, role) for role in ("sd_e", "sd_n", "sd_u")]
         sd_m = [value if value > 0.0 else math.nan for value in sd_m]
         rpy_deg = tuple(self._value(cells, role) for role in ("roll", "pitch", "heading"))
-        quality = self._quality(cells, max(sd_m[:2]))
+        quality = self._quality(cells, math.hypot(*sd_m[:2]))
         rows.add(t_ns, (lat, lon, height_m, *sd_m), quality, rpy_deg=rpy_deg)
 
     def utc(self, rows: FixRows) -> Times:
@@ -198,10 +205,6 @@ class _ExportedLines:
         return GnssQuality.RTK_FLOAT if flat_m <= GNSS_FILES.float_m else GnssQuality.SINGLE
 
 
-def _pairs(lines: list[str]) -> Iterator[tuple[str, str]]:
-    return pairwise(lines)
-
-
 def _lines(path: Path) -> Iterator[str]:
     for block in table_blocks(path, max_bytes=GNSS_FILES.text_bytes):
         yield from block.splitlines()
@@ -223,14 +226,10 @@ def _columns(names: str, units: str) -> _Columns | None:
         cells = 3 if re.search(r"D\s+M\s+S", unit) else 1
         role = _ROLES.get(re.sub(r"[^a-z]", "", title.lower()), "")
         if role:
-            columns.setdefault(role, _Cells(role, unit, cell, cells))
+            columns.setdefault(role, _Cells(unit, cell, cells))
         cell += cells
     times = columns.keys() & {"gps", "utc"}
     return columns if times and columns.keys() >= {"lat", "lon"} else None
-
-
-def _named(columns: _Columns) -> str:
-    return ", ".join(sorted(columns))
 
 
 def _time(column: _Cells) -> Callable[[list[str]], int]:
@@ -263,11 +262,10 @@ def _week(cells: list[str], week: int, second: Callable[[list[str]], int]) -> in
 
 
 def _seconds_ns(text: str) -> int:
-    """Whole nanoseconds of seconds as text, which a float cannot hold."""
     match = _SECONDS.fullmatch(text)
     if match is None:
         raise ValueError(f"expected seconds, got {text!r}")
-    return int(match[1]) * SECOND_NS + int((match[2] or "").ljust(9, "0")[:9])
+    return seconds_ns(match)
 
 
 def _clock_ns(text: str) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from array import array
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
@@ -12,7 +13,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.gps_time import GPS_EPOCH_NS, is_absolute, utc_of_gps_ns
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Times
-from recon4.units import DAY_NS
+from recon4.units import DAY_NS, SECOND_NS
 
 COLUMNS = ("lat_deg", "lon_deg", "height_m", "sd_e_m", "sd_n_m", "sd_u_m")
 ATTITUDE = ("roll_deg", "pitch_deg", "heading_deg")
@@ -67,6 +68,11 @@ class GnssFile:
 def week_ns(week: int, second_ns: int) -> int:
     """GPS time since 1970 [ns], not corrected for leap seconds, of a week and a time in it."""
     return GPS_EPOCH_NS + week * int(Dating.WEEK) + second_ns
+
+
+def seconds_ns(seconds: re.Match[str]) -> int:
+    """Nanoseconds of whole seconds and their decimals as text, which a float cannot hold."""
+    return int(seconds[1]) * SECOND_NS + int((seconds[2] or "").ljust(9, "0")[:9])
 
 
 @dataclass(slots=True)

@@ -15,7 +15,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
 from recon4.model.samples import GnssQuality
 from recon4.recording.formats.damaged_lines import DamagedLines
-from recon4.recording.gnss.records import FixRows, GnssFile, gnss_samples, week_ns
+from recon4.recording.gnss.records import FixRows, GnssFile, gnss_samples, seconds_ns, week_ns
 from recon4.recording.gnss.tuning import GNSS_FILES
 from recon4.recording.report import ImportReport
 from recon4.recording.tables.text import table_blocks
@@ -165,7 +165,7 @@ def _time_ns(date: str, time: str) -> int:
         match = _SECONDS.fullmatch(time)
         if match is None or not date.isdecimal() or int(date) > GNSS_FILES.most_weeks:
             raise ValueError("expected a date and a time, or a GPS week and its seconds")
-        return week_ns(int(date), _ns(match))
+        return week_ns(int(date), seconds_ns(match))
     hour, minute, second = time.split(":")
     match = _SECONDS.fullmatch(second)
     if match is None:
@@ -173,12 +173,7 @@ def _time_ns(date: str, time: str) -> int:
     year, month, day_of_month = map(int, date.split("/"))
     day = datetime(year, month, day_of_month, tzinfo=UTC)
     whole = int(day.timestamp()) + int(hour) * 3600 + int(minute) * 60
-    return whole * SECOND_NS + _ns(match)
-
-
-def _ns(seconds: re.Match[str]) -> int:
-    """Whole nanoseconds of seconds as text, which a float cannot hold."""
-    return int(seconds[1]) * SECOND_NS + int((seconds[2] or "").ljust(9, "0")[:9])
+    return whole * SECOND_NS + seconds_ns(match)
 
 
 def _geodetic(position: Array, header: _Header, name: str) -> Array:
