@@ -14,6 +14,7 @@ from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.tiles import TileSet
 from recon4.review.approved import Approval, approval_of, approval_of_map
 from recon4.slices.map_crs import MapFrame, frame_of
+from recon4.store.ledger import FinishedStage
 from recon4.store.project import ProjectDescription, read_artifacts, read_stages
 from recon4.store.stage import read_manifest
 
@@ -84,10 +85,19 @@ def earlier_maps(root: Path) -> list[Path]:
     Raises:
         StoreError: If the folder is not a project or its ledger is damaged.
     """
+    return [root / _ARTIFACTS / row.key for row in earlier_map_rows(root)]
+
+
+def earlier_map_rows(root: Path) -> list[FinishedStage]:
+    """The runs of the stage ``map`` that made them; raises as `earlier_maps`."""
     latest = read_artifacts(root).get("map")
-    rows = reversed(read_stages(root))
-    folders = [root / _ARTIFACTS / row.key for row in rows if row.stage == "map"]
-    return [one for one in folders if one != latest and (one / "tiles.json").is_file()]
+    return [
+        row
+        for row in reversed(read_stages(root))
+        if row.stage == "map"
+        and root / _ARTIFACTS / row.key != latest
+        and (root / _ARTIFACTS / row.key / "tiles.json").is_file()
+    ]
 
 
 def _artifacts_of(folder: Path, latest: Mapping[str, Path]) -> dict[str, Path]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 from pathlib import Path
 
 import msgspec
@@ -16,15 +15,15 @@ from recon4.errors import StoreError
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
-from recon4_app.access.people import Permission, needs, person
+from recon4_app.access.people import Permission, needs
 from recon4_app.comparisons.model import Comparisons, ComparisonView, NewComparison
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
-from recon4_app.errors import NotFound, Refused
+from recon4_app.errors import NotFound
 from recon4_app.exports.tuning import KEPT_EXPORTS
 from recon4_app.jobs.model import CompareOrder, Inputs, Job, JobKind
+from recon4_app.jobs.orders import add_order, find_order, latest_map_key, refuse_others
 from recon4_app.jobs.routes import refuse_too_many
-from recon4_app.jobs.supervisor import now
 from recon4_app.network.rate_limit import at_most
 
 router = APIRouter(
@@ -44,7 +43,7 @@ def list_comparisons(project_id: str, server: Server) -> Comparisons:
     """List what the map was compared with, the newest first, and what it can be compared with."""
     server.projects.folder(project_id)
     jobs = server.jobs.of_project(project_id, JobKind.COMPARE)[: KEPT_EXPORTS.listed]
-    map_key = _map_key(server, project_id)
+    map_key = latest_map_key(server, project_id)
     return Comparisons(
         others=server.slices.sources(project_id) if map_key else [],
         comparisons=[_view(server, job, map_key) for job in jobs],
@@ -67,33 +66,23 @@ def order(
     server.slices.evidence(project_id)  # an approval that does not count
     server.slices.evidence(project_id, new.against)
     asked = CompareOrder(against=new.against, align=new.align, core_spacing_m=new.core_spacing_m)
-    job = Job(
-        id=secrets.token_hex(8),
-        project=project_id,
-        inputs=Inputs(recordings=(), compare=asked),
-        created=now(),
-        person=person(request).name,
-    )
-    server.jobs.add(job)
-    server.supervisor.wake(job)
+    job = add_order(server, project_id, Inputs(recordings=(), compare=asked), request=request)
     audit(request, "compare", f"{project_id}: {new.against}")
-    return _view(server, job, _map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id))
 
 
 @router.get("/{comparison_id}", summary="A comparison")
 def read_comparison(project_id: str, comparison_id: str, server: Server) -> ComparisonView:
     """Its progress, and its figures when it is finished."""
     job = _comparison(server, project_id, comparison_id)
-    return _view(server, job, _map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id))
 
 
 @router.post("/{comparison_id}/cancel", responses=REFUSALS, summary="Cancel a comparison")
 def cancel(project_id: str, comparison_id: str, *, server: Server, request: Request) -> None:
     """Stop a comparison; nothing of it is left."""
     job = _comparison(server, project_id, comparison_id)
-    who = person(request)
-    if who.name != job.person and not who.may(Permission.PROCESS):
-        raise Refused(f"{job.person or 'another person'} ordered it: ask them, or an admin")
+    refuse_others(request, job)
     server.supervisor.cancel(job)
     audit(request, "cancel comparison", project_id)
 
@@ -127,11 +116,7 @@ def download(project_id: str, comparison_id: str, server: Server) -> FileRespons
 
 
 def _comparison(server: ServerParts, project_id: str, comparison_id: str) -> Job:
-    server.projects.folder(project_id)
-    job = server.jobs.get(comparison_id)
-    if job.project != project_id or job.kind is not JobKind.COMPARE:
-        raise NotFound(f"project {project_id} has no comparison {comparison_id[:64]!r}")
-    return job
+    return find_order(server, project_id, comparison_id, kind=JobKind.COMPARE)
 
 
 def _made(server: ServerParts, job: Job, name: str) -> Path:
@@ -145,11 +130,6 @@ def _made(server: ServerParts, job: Job, name: str) -> Path:
     if path is None or not path.is_file() or path.is_symlink():
         raise NotFound("this comparison was removed, or is not made yet: order it again")
     return path
-
-
-def _map_key(server: ServerParts, project_id: str) -> str:
-    found = server.projects.artifact(project_id, "map")
-    return found.name if found else ""
 
 
 def _view(server: ServerParts, job: Job, map_key: str) -> ComparisonView:

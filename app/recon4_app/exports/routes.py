@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,16 +18,16 @@ from recon4.export.options import ExportOptions
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
-from recon4_app.access.people import Permission, needs, person
+from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
-from recon4_app.errors import STORAGE, Conflict, NoRoom, NotFound, Refused
+from recon4_app.errors import STORAGE, Conflict, NoRoom, NotFound
 from recon4_app.exports import export_work
 from recon4_app.exports.model import ExportChoices, ExportView, NewExport
 from recon4_app.exports.tuning import KEPT_EXPORTS
 from recon4_app.jobs.model import ExportOrder, Inputs, Job, JobKind
+from recon4_app.jobs.orders import add_order, find_order, latest_map_key, refuse_others
 from recon4_app.jobs.routes import refuse_too_many
-from recon4_app.jobs.supervisor import now
 from recon4_app.network.rate_limit import at_most
 from recon4_app.network.request_caller import CalledBy, Caller
 
@@ -50,7 +49,7 @@ def list_exports(project_id: str, server: Server) -> list[ExportView]:
     """
     server.projects.folder(project_id)
     jobs = server.jobs.of_project(project_id, JobKind.EXPORT)[: KEPT_EXPORTS.listed]
-    map_key = _map_key(server, project_id)
+    map_key = latest_map_key(server, project_id)
     return [_view(server, job, map_key) for job in jobs]
 
 
@@ -96,10 +95,10 @@ async def order(
 def cancel(project_id: str, export_id: str, *, server: Server, request: Request) -> ExportView:
     """Stop an export; nothing of the file is left."""
     job = _export(server, project_id, export_id)
-    _refuse_others(request, job)
+    refuse_others(request, job)
     job = server.supervisor.cancel(job)
     audit(request, "cancel export", f"{project_id}: {_file_of(job)}")
-    return _view(server, job, _map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id))
 
 
 @router.get("/{export_id}/file", response_class=FileResponse, summary="Download an export")
@@ -124,12 +123,12 @@ def download(project_id: str, export_id: str, server: Server) -> FileResponse:
 def remove(project_id: str, export_id: str, *, server: Server, request: Request) -> ExportView:
     """Remove a file; its row stays in the list."""
     job = _export(server, project_id, export_id)
-    _refuse_others(request, job)
+    refuse_others(request, job)
     if not job.over:
         raise Conflict("this export is not over: cancel it first")
     server.exports.remove(job)
     audit(request, "remove export", f"{project_id}: {_file_of(job)}")
-    return _view(server, job, _map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id))
 
 
 async def _estimate(
@@ -156,37 +155,14 @@ def _add(
             f"{free / 1e9:.1f} GB are free",
             remedy=STORAGE,
         )
-    job = Job(
-        id=secrets.token_hex(8),
-        project=project_id,
-        inputs=Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options)),
-        created=now(),
-        person=person(request).name,
-    )
-    server.jobs.add(job)
-    server.supervisor.wake(job)
+    asked = Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options))
+    job = add_order(server, project_id, asked, request=request)
     audit(request, "export", f"{project_id}: {new.file}")
-    return _view(server, job, _map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id))
 
 
 def _export(server: ServerParts, project_id: str, export_id: str) -> Job:
-    server.projects.folder(project_id)
-    job = server.jobs.get(export_id)
-    if job.project != project_id or job.kind is not JobKind.EXPORT:
-        raise NotFound(f"project {project_id} has no export {export_id[:64]!r}")
-    return job
-
-
-def _refuse_others(request: Request, job: Job) -> None:
-    """Refuse to change what another person ordered, without the permission to process."""
-    who = person(request)
-    if who.name != job.person and not who.may(Permission.PROCESS):
-        raise Refused(f"{job.person or 'another person'} ordered this file: ask them, or an admin")
-
-
-def _map_key(server: ServerParts, project_id: str) -> str:
-    found = server.projects.artifact(project_id, "map")
-    return found.name if found else ""
+    return find_order(server, project_id, export_id, kind=JobKind.EXPORT)
 
 
 def _file_of(job: Job) -> str:

@@ -15,13 +15,14 @@ from typing import Any, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
+from recon4.comparison.frames import earlier_map_rows
 from recon4.errors import StoreError
 from recon4.review.approval_state import ApprovalState, approval_state
 from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
 from recon4.review.evidence import Evidence
 from recon4.review.trusted_keys import UnknownSigner
 from recon4.store.atomic import write_json
-from recon4.store.project import read_artifacts, read_stages
+from recon4.store.project import read_artifacts
 from recon4.store.seal import begin_change, changing, check_sealed, end_change
 from recon4.untrusted.bounded import read_text_limited
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
@@ -116,12 +117,10 @@ class Slices:
     def sources(self, project_id: str) -> list[OtherMap]:
         """Other maps to compare with the latest: earlier ones, and those of other projects."""
         root = self._projects.folder(project_id)
-        current = Path(self._latest(project_id)["map"]).name
-        rows = [row for row in read_stages(root) if row.stage == "map" and row.key != current]
+        self._latest(project_id)  # raises if there is no map
         earlier = [
             OtherMap(f"map:{row.key}", f"Map of {row.finished[:16].replace('T', ' ')}")
-            for row in reversed(rows)
-            if (root / "artifacts" / row.key / "tiles.json").is_file()
+            for row in earlier_map_rows(root)
         ]
         others = [
             OtherMap(f"project:{card.id}", f"Project {card.name}")
