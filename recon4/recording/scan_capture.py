@@ -24,7 +24,7 @@ from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.slots import in_slots
-from recon4.recording.packets.streams import recognized
+from recon4.recording.packets.streams import by_sender, recognized
 from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -91,9 +91,8 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
 
 def _has_lidar(datagrams: Datagrams) -> bool:
     """Whether any sender sends data packets of a LiDAR to a port."""
-    keys = datagrams.source.astype(np.int64) << 16 | datagrams.port
-    streams = (datagrams.take(keys == key) for key in np.unique(keys))
-    return any((found := recognized(one)) is not None and found.kind == "data" for one in streams)
+    found = map(recognized, by_sender(datagrams))
+    return any(one is not None and one.kind == "data" for one in found)
 
 
 def is_scan_capture(files: Sequence[Path]) -> bool:

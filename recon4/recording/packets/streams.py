@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -125,13 +125,8 @@ def scan_pcap(
         EmptyRecording: If it holds no packet.
     """
     head = _head(path, max_packets, open_file, report=report or ImportReport())
-    keys = head.datagrams.source.astype(np.int64) << 16 | head.datagrams.port
-    _, first, packets = np.unique(keys, return_index=True, return_counts=True)
-    first = first[np.argsort(-packets, kind="stable")[: LIMITS.streams]]
     streams = [
-        stream
-        for row in sorted(first.tolist())
-        for stream in _streams(head, keys == keys[row], companions)
+        stream for one in by_sender(head.datagrams) for stream in _streams(head, one, companions)
     ]
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "samples"}
@@ -165,6 +160,17 @@ def fits(sensor: Sensor, source: str, port: int) -> bool:
     return sensor.address in {"", source} and sensor.port == port
 
 
+def by_sender(datagrams: Datagrams) -> Iterator[Datagrams]:
+    """The datagrams of each sender to each port in order of appearance, of the busiest only.
+
+    A file may name any number of senders, and each family is asked of every one.
+    """
+    keys = datagrams.source.astype(np.int64) << 16 | datagrams.port
+    _, first, packets = np.unique(keys, return_index=True, return_counts=True)
+    busiest = first[np.argsort(-packets, kind="stable")[: LIMITS.streams]]
+    return (datagrams.take(keys == keys[row]) for row in sorted(busiest.tolist()))
+
+
 def recognized(head: Datagrams, companions: Sequence[Companion] = ()) -> Recognized | None:
     """What the datagrams of one sender to one port are; None = of no family."""
     answers = (family.recognize(head, companions) for family in FAMILIES)
@@ -189,12 +195,10 @@ def late_stream(
         claimed: Senders and ports of the data streams known already.
         companions: Files beside the recording.
     """
-    rows = np.flatnonzero(datagrams.port == sensor.port)
-    for source in dict.fromkeys(datagrams.source[rows].tolist()):
-        address = address_text(source)
+    for mine in by_sender(datagrams.take(datagrams.port == sensor.port)):
+        address = address_text(int(mine.source[0]))
         if (address, sensor.port) in claimed or not fits(sensor, address, sensor.port):
             continue
-        mine = datagrams.take(rows[datagrams.source[rows] == source])
         found = recognized(mine, companions)
         if found is None or found.kind != "data":
             continue
@@ -245,10 +249,9 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
 
 
 def _streams(
-    head: _Head, mine: NDArray[np.bool_], companions: Sequence[Companion]
+    head: _Head, datagrams: Datagrams, companions: Sequence[Companion]
 ) -> list[PacketStream]:
     """What one sender sends to one port: one stream, or one of each sensor behind its address."""
-    datagrams = head.datagrams.take(mine)
     found = recognized(datagrams, companions)
     if found is None:
         kind = _samples_kind(datagrams.take(slice(HEAD.samples)))
