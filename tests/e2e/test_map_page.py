@@ -57,6 +57,19 @@ def at(page, x, y):
     ) * px
 
 
+@looks("desktop light")
+def test_the_page_says_that_the_map_is_opened_until_it_is_drawn(page, server):
+    held = []
+    page.route("**/sample?**", lambda route: held.append(route), times=1)
+    with page.expect_request("**/sample?**"):
+        page.goto(f"{server.url}/projects/office/map/")
+
+    expect(page.locator("#opening")).to_have_text("Opening the map…")
+    held.pop().continue_()
+    rested(page)
+    expect(page.locator("#opening")).to_be_hidden()
+
+
 @looks("desktop light", "phone dark")
 def test_the_map_is_drawn_and_fills_the_window(server, page, screenshot):
     opened(page, server)
@@ -261,3 +274,4 @@ def test_a_project_without_points_says_so(server, page):
     page.goto(f"{server.url}/projects/young/map/")
 
     expect(page.locator("#message")).to_contain_text("no points in 3-D")
+    expect(page.locator("#opening")).to_be_hidden()

@@ -178,6 +178,7 @@ function drawOver() {
 function drawCaption() {
   if (!run.canvas) return;
   const { points, rested } = run.canvas.drawn;
+  byId("opening").hidden ||= points > 0 || rested;
   const meters = 100 * pixelM(camera(), screen());
   const length = meters < 1 ? `${decimal(100 * meters, 1)} cm` : `${decimal(meters, 2)} m`;
   const scale = `100 px = ${length}`;

@@ -5,6 +5,7 @@
 
 title = Karte · recon4
 map = Karte
+opening-map = Die Karte wird geöffnet…
 map-keys = Karte in 3-D; Pfeile verschieben sie, die Leertaste wählt, was in der Mitte ist, ? zeigt alle Tasten
 title-of = Karte · { $project } · recon4
 picks-snap = Gewählte Punkte rasten an Ecken, Kanten und Ebenen ein

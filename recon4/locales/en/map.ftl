@@ -5,6 +5,7 @@
 
 title = Map · recon4
 map = Map
+opening-map = Opening the map…
 map-keys = Map in 3-D; arrows move it, Space picks what is in the middle, ? lists all keys
 title-of = Map · { $project } · recon4
 picks-snap = Picks snap to corners, edges and planes
