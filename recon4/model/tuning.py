@@ -83,6 +83,8 @@ class VolumeTuning(Struct, frozen=True, kw_only=True):
     """Longest edge [m]."""
     most_corners: int = 500
     """Corners of a polygon."""
+    most_places: int = 2000
+    """Places of a brush."""
     least_m2: float = 1e-9
     """Least area of a polygon [m²]."""
     axes: float = 1e-6

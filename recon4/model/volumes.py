@@ -1,4 +1,4 @@
-"""Volumes in a map: boxes, balls, and polygons that are extended along their normal."""
+"""Volumes in a map: boxes, balls, polygons extended along their normal, and strokes of a brush."""
 
 from __future__ import annotations
 
@@ -73,7 +73,39 @@ class Prism(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="p
             )
 
 
-Volume: TypeAlias = Box | Sphere | Prism
+class Brush(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="brush"):
+    """What a brush painted: all that lies within its radius of a path.
+
+    Neighboring places are joined by a straight line if they are at most a width of the brush apart;
+    farther ones are not: the pointer went from one surface to another, or was lifted.
+    """
+
+    path_m: tuple[Vector, ...]
+    """Places in the map, in the order in which they were painted [m]."""
+    radius_m: float
+    across: Vector | None = None
+    """Unit normal of the slice that was painted on: the distance to the path counts in its plane
+    alone; None = round in all directions."""
+    thick_m: float = 0.0
+    """Of the slice, half of it on each side of its first place [m]; 0 without ``across``."""
+
+    def __post_init__(self) -> None:
+        if not 1 <= len(self.path_m) <= VOLUMES.most_places:
+            raise ConfigError(
+                f"brush: expected 1 to {VOLUMES.most_places} places, got {len(self.path_m)}"
+            )
+        normal = () if self.across is None else self.across
+        _check("brush", (*(x for place in self.path_m for x in place), *normal))
+        _check_lengths("brush", (self.radius_m, *(() if self.across is None else (self.thick_m,))))
+        if self.across is None and self.thick_m != 0.0:
+            raise ConfigError("brush: only a stroke on a slice has a thickness")
+        if self.across is not None and abs(float(np.linalg.norm(normal)) - 1.0) > VOLUMES.axes:
+            raise ConfigError(f"brush: expected a normal of length 1, got {self.across}")
+        low, high = bounds_of(self)
+        _check_lengths("brush", tuple(map(float, high - low)))
+
+
+Volume: TypeAlias = Box | Sphere | Prism | Brush
 
 
 def contains(volume: Volume, p_map: Array) -> NDArray[np.bool_]:
@@ -81,6 +113,8 @@ def contains(volume: Volume, p_map: Array) -> NDArray[np.bool_]:
     if isinstance(volume, Sphere):
         away_m = np.linalg.norm(p_map - np.array(volume.center_m), axis=1)
         return np.asarray(away_m <= volume.radius_m)
+    if isinstance(volume, Brush):
+        return _painted(volume, p_map)
     p = (p_map - _origin(volume)) @ _axes(volume).T
     if isinstance(volume, Box):
         return np.asarray(np.all(np.abs(p) <= np.array(volume.size_m) / 2.0, axis=1))
@@ -99,6 +133,11 @@ def corners_of(volume: Volume) -> Array:
         low, high = np.full(3, -volume.radius_m), np.full(3, volume.radius_m)
     elif isinstance(volume, Box):
         low, high = -np.array(volume.size_m) / 2.0, np.array(volume.size_m) / 2.0
+    elif isinstance(volume, Brush):
+        path = (np.array(volume.path_m) - _origin(volume)) @ _axes(volume).T
+        low, high = path.min(axis=0) - volume.radius_m, path.max(axis=0) + volume.radius_m
+        if volume.across is not None:
+            low[2], high[2] = -volume.thick_m / 2.0, volume.thick_m / 2.0
     else:
         polygon = np.array(volume.polygon_m)
         low = np.array([*polygon.min(axis=0), volume.low_m])
@@ -123,13 +162,48 @@ def moved(volume: Volume, T_new_old: SE3) -> Volume:
     origin = _vector(T_new_old @ _origin(volume))
     if isinstance(volume, Sphere):
         return msgspec.structs.replace(volume, center_m=origin)
+    if isinstance(volume, Brush):
+        path = tuple(map(_vector, T_new_old @ np.array(volume.path_m)))
+        turned = volume.across and _vector(T_new_old.R @ np.array(volume.across))
+        return msgspec.structs.replace(volume, path_m=path, across=turned)
     u, v = (_vector(T_new_old.R @ np.array(axis)) for axis in (volume.u, volume.v))
     if isinstance(volume, Box):
         return msgspec.structs.replace(volume, center_m=origin, u=u, v=v)
     return msgspec.structs.replace(volume, origin_m=origin, u=u, v=v)
 
 
+def _painted(brush: Brush, p_map: Array) -> NDArray[np.bool_]:
+    """Which points a brush painted, (N, 3) [m] -> (N,)."""
+    corners = corners_of(brush)
+    near = np.all((p_map >= corners.min(axis=0)) & (p_map <= corners.max(axis=0)), axis=1)
+    rows = np.flatnonzero(near)
+    axes, path = _axes(brush), np.array(brush.path_m)
+    p = (p_map[rows] - path[0]) @ axes.T
+    path = (path - path[0]) @ axes.T
+    if brush.across is not None:
+        thin = np.abs(p[:, 2]) <= brush.thick_m / 2.0
+        rows, p = rows[thin], p[thin]
+        p[:, 2] = path[:, 2] = 0.0
+    order = np.argsort(p[:, 0])
+    rows, p, inside = rows[order], p[order], np.zeros(len(rows), np.bool_)
+    to = path[np.minimum(np.arange(len(path)) + 1, len(path) - 1)] - path
+    to[np.linalg.norm(to, axis=1) > 2.0 * brush.radius_m] = 0.0
+    low, high = np.minimum(path[:, 0], path[:, 0] + to[:, 0]), np.maximum(to[:, 0], 0.0)
+    begins = np.searchsorted(p[:, 0], low - brush.radius_m)
+    ends = np.searchsorted(p[:, 0], path[:, 0] + high + brush.radius_m, side="right")
+    for start, step, begin, end in zip(path, to, begins, ends, strict=True):
+        d = p[begin:end] - start
+        along = np.clip(d @ step / max(float(step @ step), 1e-18), 0.0, 1.0)
+        away = d - along[:, None] * step
+        inside[begin:end] |= np.einsum("ni,ni->n", away, away) <= brush.radius_m**2
+    painted = np.zeros(len(p_map), np.bool_)
+    painted[rows[inside]] = True
+    return painted
+
+
 def _origin(volume: Volume) -> Array:
+    if isinstance(volume, Brush):
+        return np.array(volume.path_m[0])
     return np.array(volume.origin_m if isinstance(volume, Prism) else volume.center_m)
 
 
@@ -137,6 +211,13 @@ def _axes(volume: Volume) -> Array:
     """Unit vectors u, v and u × v, rows of (3, 3)."""
     if isinstance(volume, Sphere):
         return np.eye(3)
+    if isinstance(volume, Brush):
+        if volume.across is None:
+            return np.eye(3)
+        normal = np.array(volume.across)
+        u = np.cross(normal, np.eye(3)[int(np.abs(normal).argmin())])
+        u /= np.linalg.norm(u)
+        return np.array([u, np.cross(normal, u), normal])
     return np.array([volume.u, volume.v, np.cross(volume.u, volume.v)])
 
 

@@ -14,7 +14,7 @@ import msgspec
 
 from recon4.errors import ConfigError
 from recon4.model.class_corrections import Reclassified, class_named
-from recon4.model.volumes import Box, Prism, Sphere, Volume
+from recon4.model.volumes import Box, Brush, Prism, Sphere, Volume
 from recon4.review.tuning import CORRECTION_FILES
 from recon4.untrusted.bounded import read_text_limited
 from recon4.untrusted.names import check_note
@@ -121,21 +121,22 @@ def _volume(cells: Mapping[str, str]) -> Volume:
             return Sphere(center_m=(x, y, z), radius_m=_number(cells, "radius"))
         case "prism":
             low, high = _number(cells, "low"), _number(cells, "high")
-            return Prism(polygon_m=_polygon(cells.get("polygon", "")), low_m=low, high_m=high)
+            corners = tuple((x, y) for x, y in _places(cells, "polygon", "x y"))
+            return Prism(polygon_m=corners, low_m=low, high_m=high)
+        case "brush":
+            path = tuple((x, y, z) for x, y, z in _places(cells, "path", "x y z"))
+            return Brush(path_m=path, radius_m=_number(cells, "radius"))
         case other:
-            raise ConfigError(f"shape: expected box, sphere or prism, got {other!r}")
+            raise ConfigError(f"shape: expected box, sphere, prism or brush, got {other!r}")
 
 
-def _polygon(text: str) -> tuple[tuple[float, float], ...]:
-    """Corners of ``x y, x y, x y`` or ``x y | x y | x y``."""
-    corners: list[tuple[float, float]] = []
-    for corner in text.replace("|", ",").split(","):
-        numbers = corner.split()
-        if len(numbers) != 2:
-            raise ConfigError(f"polygon: expected corners as 'x y, x y, x y', got {text[:60]!r}")
-        x, y = (_float(one, "polygon") for one in numbers)
-        corners.append((x, y))
-    return tuple(corners)
+def _places(cells: Mapping[str, str], name: str, form: str) -> list[list[float]]:
+    """Places of ``x y, x y, x y`` or ``x y | x y | x y``."""
+    text, many = cells.get(name, ""), len(form.split())
+    places = [place.split() for place in text.replace("|", ",").split(",")]
+    if any(len(numbers) != many for numbers in places):
+        raise ConfigError(f"{name}: expected places as '{form}, {form}', got {text[:60]!r}")
+    return [[_float(one, name) for one in numbers] for numbers in places]
 
 
 def _number(cells: Mapping[str, str], name: str, *, usual: float | None = None) -> float:

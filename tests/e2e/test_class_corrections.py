@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import looks
+from tests.e2e.test_map_page import rested
 from tests.e2e.test_pages import fits
 from tests.project_builder import ROOM_M
 from tests.served import office, served
@@ -51,3 +52,50 @@ def test_points_in_a_polygon_and_in_the_clip_box_get_another_class(server, page,
     expect(panel.get_by_text("2 not in the map yet")).to_be_visible()
     panel.get_by_role("button", name="Undo").last.click()
     expect(panel.get_by_text("1 not in the map yet")).to_be_visible()
+
+
+@looks("desktop light")
+def test_what_a_brush_painted_gets_another_class(server, page, screenshot):
+    page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5&t=0.4&u=8&v=5&m=0.03")
+    expect(page.locator(".facing strong")).to_be_visible()
+    page.get_by_text("Correct classes").click()
+    page.get_by_role("button", name="Brush").click()
+    page.get_by_label("Radius of the brush").fill("0.3")
+    page.get_by_label("Radius of the brush").press("Enter")
+    page.locator("slice-view canvas").first.scroll_into_view_if_needed()
+    middle = page.locator("slice-view canvas").first.bounding_box()
+    x = middle["x"] + middle["width"] / 2 - 8.0 / 0.03  # the wall x = 0
+    drag(page, (x, middle["y"] + middle["height"] / 2), (x + 1, middle["y"] + 60))
+    screenshot(page, "slices-brush")
+    counted(page)
+    page.locator("class-corrections").get_by_role("button", name="Apply").click()
+    expect(
+        page.locator("class-corrections").get_by_text("not in the map yet").first
+    ).to_be_visible()
+
+    page.goto(f"{server.url}/projects/office/map/")
+    rested(page)
+    page.keyboard.press("k")
+    middle = page.locator("#map").bounding_box()
+    x, y = middle["x"] + middle["width"] * 0.35, middle["y"] + middle["height"] / 2
+    drag(page, (x, y), (x + 200, y + 40))
+    screenshot(page, "map-brush")
+    counted(page)
+    places = page.evaluate("window.recon4Map.page.brush.strokes.flat().length")
+    assert places > 5
+    page.get_by_role("button", name="Remove the last stroke").click()
+    assert page.evaluate("window.recon4Map.page.brush.strokes.length") == 0
+
+
+def drag(page, start, end):
+    page.mouse.move(*start)
+    page.mouse.down()
+    page.mouse.move(*end, steps=6)
+    page.mouse.up()
+
+
+def counted(page):
+    """Count the points that were painted."""
+    panel = page.locator("class-corrections")
+    panel.get_by_role("button", name="Count the points").click()
+    expect(panel.get_by_role("status")).to_have_text(re.compile(r"\d+ points, now: "))

@@ -56,6 +56,7 @@ export const KEYS = [
   ["Enter", t("do-enter")],
   ["B", t("do-box")],
   ["X", t("do-section")],
+  ["K", t("do-brush")],
   ["Z", t("do-ceilings")],
   ["C", t("do-color")],
   ["N", t("do-note")],

@@ -1,14 +1,17 @@
-// Correct classes: what is inside the clip box gets another class.
+// Correct classes: what is inside the clip box, or painted, gets another class.
 
 import { idHere } from "../shared/address.js";
 import "../shared/class_corrections.js";
 import { html } from "../shared/dom.js";
 import { t } from "../shared/texts.js";
+import { paintedVolume } from "./brush.js";
+import { brushFields } from "./brush_fields.js";
 import { page } from "./page.js";
 
 /**
  * @import {Volume} from "../shared/class_corrections.js"
  * @import {MapIndex} from "../shared/http_types"
+ * @import {Act} from "./bar.js"
  * @import {Clip} from "./clip.js"
  */
 
@@ -36,16 +39,25 @@ export function volumeOf({ box, heights: [lowest, highest], section }) {
 const hintOf = (/** @type {Clip} */ { box, section }) =>
   section ? t("hint-section") : box ? t("hint-empty") : t("hint-box");
 
-/** The section of the panel. */
-export const corrections = (/** @type {MapIndex} */ { key }) =>
+/**
+ * The section of the panel.
+ * @param {MapIndex} index
+ * @param {Act} act
+ */
+export const corrections = ({ key }, act) =>
   html`<section aria-labelledby="classes-title">
     <h2 id="classes-title">${t("correct-classes")}</h2>
+    ${brushFields(act)}
     <class-corrections
       .given=${{
         project: idHere(),
         map: key,
-        volume: volumeOf(page.state.clip),
+        volume: paintedVolume() ?? volumeOf(page.state.clip),
         hint: hintOf(page.state.clip),
+      }}
+      @applied=${() => {
+        page.brush.strokes = [];
+        act.change({});
       }}
     ></class-corrections>
   </section>`;

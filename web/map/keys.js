@@ -36,6 +36,7 @@ const keysOf = (act, more) => ({
   s: act.snapping,
   b: () => act.tool("box"),
   x: () => act.tool("section"),
+  k: () => act.tool("brush"),
   g: () => act.tool("stand"),
   n: () => act.tool("note"),
   p: act.fly,

@@ -36,7 +36,7 @@ import { drawProfile, profileOf } from "./profile.js";
 import { followJobs, takeNews } from "./rebuilt.js";
 import { savedOf, share } from "./saved.js";
 import { format, parse } from "./state.js";
-import { choose, clicked, dragged, face, finish, target } from "./tools.js";
+import { canceled, choose, clicked, dragged, face, finish, target } from "./tools.js";
 import { togglesOf } from "./toggles.js";
 import { VIEWS, viewOf } from "./views.js";
 import { downloadMeasurements } from "./measured_panel.js";
@@ -166,6 +166,7 @@ function drawOver() {
       times: state.mark ? timesOf(state.mark) : "",
       stretch: state.mark ? lineOf(state.mark, page.walk) : [],
       drag: drag ?? aim.dragShown(),
+      brush: page.brush,
       aim: page.aim.on,
       tool,
       volumeOf,
@@ -195,6 +196,7 @@ const stage = {
   change,
   flyTo,
   draw,
+  under,
   view: (/** @type {string} */ name, /** @type {boolean} */ parallel) => view(name, parallel),
   stop: () => cancelAnimationFrame(run.turn),
 };
@@ -323,15 +325,12 @@ function listen() {
     camera,
     screen,
     standing: () => page.state.standing,
-    dragging: () => page.tool === "box" || page.tool === "section",
+    dragging: () => ["box", "section", "brush"].includes(page.tool),
     move,
     under,
     click,
     drag: (from, to, done) => dragged(from, to, { ...stage, done }),
-    cancel: () => {
-      page.drag = null;
-      draw();
-    },
+    cancel: () => canceled(stage),
   });
   place().addEventListener("dblclick", (event) => {
     if (page.tool === "") target([event.offsetX, event.offsetY], stage).catch(showProblem);

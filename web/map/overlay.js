@@ -1,7 +1,7 @@
 // What lies over the map as lines and texts: measurements, clip box, section, findings.
 
 import { nothing, svg } from "../shared/dom.js";
-import { add, axesOf, eyeOf, minus, dot, toScreen } from "./camera.js";
+import { add, axesOf, eyeOf, focalPx, minus, dot, toScreen } from "./camera.js";
 import { cornersOfBox } from "./clip.js";
 import { resultOf } from "./measure.js";
 
@@ -23,6 +23,7 @@ const MOST_SHOWN = 60; // characters of a text beside a pin
  * @param {{camera: Camera, screen: Screen}} view
  * @param {{measurements: Measurement[], draft: number[][], clip: Clip, heights: [number, number],
  *   pins: Pin[], chosen: Pin | null, stretch: number[][], drag: number[][] | null,
+ *   brush: {strokes: number[][][], radius: number},
  *   times: string, aim: boolean, tool: string, volumeOf: (one: Measurement) => any}} shown
  * @returns {Content}
  */
@@ -43,6 +44,13 @@ export function overlay({ camera, screen }, shown) {
   const dot = (/** @type {number[]} */ p, /** @type {string} */ kind) => {
     const to = at(p);
     return to ? svg`<circle class=${kind} cx=${to.x} cy=${to.y} r="4" />` : nothing;
+  };
+  /** What the brush covers around a place. */
+  const dab = (/** @type {number[]} */ p) => {
+    const to = at(p);
+    const away = camera.parallel ? camera.distance : (to?.depth ?? 1);
+    const r = (shown.brush.radius * focalPx(screen)) / away;
+    return to ? svg`<circle class="brush" cx=${to.x} cy=${to.y} r=${r} />` : nothing;
   };
   const text = (/** @type {number[]} */ p, /** @type {string} */ words) => {
     const to = at(p);
@@ -66,7 +74,8 @@ export function overlay({ camera, screen }, shown) {
   const { measurements, draft, clip, pins, stretch, drag, tool } = shown;
   const section = clip.section ? sectionLines(clip.section, shown.heights) : [];
   const corners = clip.box ? cornersOfBox(clip.box) : [];
-  return svg`${clip.box ? EDGES.map(([a, b]) => line(corners[a], corners[b], "clip")) : nothing}
+  return svg`<g class="brushed">${shown.brush.strokes.flat().map(dab)}</g>
+    ${clip.box ? EDGES.map(([a, b]) => line(corners[a], corners[b], "clip")) : nothing}
     ${section.map(([a, b]) => line(a, b, "clip"))}
     ${measurements.map((one) => [
       path(one.points, one.kind === "area" || one.kind === "volume"),

@@ -14,7 +14,7 @@ import { lineOf } from "./places.js";
  * @import {Pin} from "./places.js"
  * @import {ProfileView} from "./profile.js"
  * @import {NoteDraft} from "./notes.js"
- * @typedef {"" | "measure" | "box" | "section" | "stand" | "note"} Tool
+ * @typedef {"" | "measure" | "box" | "section" | "stand" | "note" | "brush"} Tool
  */
 
 const CUT_M = 2.2; // above the floor: frames of rooms stay, ceilings go
@@ -37,6 +37,8 @@ export const page = {
   /** @type {Array<{p: number[], sd: number, crs: number[] | null, snap: string}>} */
   draft: [],
   snapping: true,
+  /** What was painted to get another class: strokes of places, and the radius of the brush [m]. */
+  brush: { radius: 0.1, strokes: /** @type {number[][][]} */ ([]) },
   /** By keyboard: whether the cross is shown, and where a drag began [m]. */
   aim: { on: false, from: /** @type {number[] | null} */ (null) },
   /** @type {Record<string, MapVolume | Error | null>} by their points and base; null = asked for */

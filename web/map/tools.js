@@ -5,6 +5,7 @@ import { pickOnMap } from "../shared/api.js";
 import { classText } from "../shared/class_words.js";
 import { decimal, t } from "../shared/texts.js";
 import { dot, minus, pixelM, rayAt } from "./camera.js";
+import { liftBrush, paint } from "./brush.js";
 import { boxOver, yawOfSection } from "./clip.js";
 import { nearestTo, standingAt } from "./flight.js";
 import { KINDS, resultOf } from "./measure.js";
@@ -22,6 +23,7 @@ import { heightsShown, page, planes } from "./page.js";
  * @property {(camera: Camera) => void} flyTo
  * @property {(name: string, parallel: boolean) => void} view
  * @property {() => void} draw
+ * @property {(at: number[]) => number[] | null} under the point that is drawn under a pixel
  * @property {(found: HitPoint) => void} [note] begins one there
  * @property {(of: Measurement) => void} [profile] shows it
  */
@@ -85,6 +87,7 @@ function pointText(/** @type {HitPoint} */ point) {
  */
 export function clicked(at, stage) {
   if (page.tool === "stand") return stand(at, stage);
+  if (page.tool === "brush") return Promise.resolve(paint(at, at, { ...stage, done: true }));
   const answer = pointAt(at, stage);
   answer.catch(() => {}); // it is awaited in its turn
   const { tool, measuring } = page;
@@ -171,12 +174,13 @@ function finishMeasurement(/** @type {Stage} */ stage) {
 }
 
 /**
- * A drag of a tool over the image from above.
+ * A drag of a tool: of a brush over what is seen, of others over the image from above.
  * @param {number[]} from
  * @param {number[]} to
  * @param {Stage & {done: boolean}} stage
  */
 export function dragged(from, to, stage) {
+  if (page.tool === "brush") return paint(from, to, stage);
   page.drag = stage.done ? null : [from, to];
   if (!stage.done) return stage.draw();
   const [a, b] = [from, to].map((at) => onLevel(at, stage));
@@ -196,6 +200,13 @@ export function dragged(from, to, stage) {
     stage.change({ clip: { ...clip, section } });
     face(stage);
   }
+}
+
+/** A second finger, or the system, ended a drag. */
+export function canceled(/** @type {Stage} */ stage) {
+  liftBrush();
+  page.drag = null;
+  stage.draw();
 }
 
 /** Turns the camera straight to the section. */
@@ -271,7 +282,9 @@ export function choose(tool, stage, kind = page.measuring) {
     section: t("drag-section"),
     stand: t("click-stand"),
     note: t("click-note"),
+    brush: t("drag-brush"),
   };
+  liftBrush();
   page.reading = hints[page.tool];
   const above = Math.abs(stage.camera().pitch + Math.PI / 2) < 0.02 && stage.camera().parallel;
   if ((page.tool === "box" || page.tool === "section") && !above) stage.view("top", true);

@@ -123,6 +123,14 @@ export interface BoxSpec {
   v?: [number, number, number];
 }
 
+export interface BrushSpec {
+  shape: "brush";
+  path_m: Array<[number, number, number]>;
+  radius_m: number;
+  across?: [number, number, number] | null;
+  thick_m?: number;
+}
+
 export interface CalibratedVersion {
   rig: string;
   create?: boolean;

@@ -14,7 +14,7 @@ const GRIP_PX = 22;
 /**
  * @import {WindowSpec} from "../shared/http_types"
  * @import {SliceState} from "./state.js"
- * @import {ColorOf, Pen} from "./view.js"
+ * @import {ColorOf, Pen} from "./marks.js"
  * @typedef {{what: "a"} | {what: "b"} | {what: "line", from: number[], a: number[], b: number[]} |
  *   {what: "new", from: number[], px: number[]}} Drag what a pointer moves
  */

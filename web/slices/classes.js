@@ -1,8 +1,10 @@
-// Correct classes: a polygon in the slice, as thick as it, gives its points another class.
+// Correct classes: a polygon in the slice, as thick as it, or a brush, gives its points another
+// class.
 
-import { html, nothing, render } from "../shared/dom.js";
+import { html, nothing, render, targetOf } from "../shared/dom.js";
 import "../shared/class_corrections.js";
 import { t } from "../shared/texts.js";
+import { RADII_M, brushVolume } from "./brush.js";
 import { axesOf } from "./state.js";
 
 /**
@@ -30,11 +32,16 @@ export function prismOf(state, corners) {
  * @param {SlicesPage} page
  * @returns {Panel}
  */
-export function classesPanel(host, { id, state, outline }) {
+export function classesPanel(host, { id, state, outline, brush }) {
   const map = { key: "", known: false };
 
   function draw() {
     const { corners, drawing } = outline();
+    const { on, radius, strokes } = brush();
+    const resize = (/** @type {Event} */ event) => {
+      const m = Number(targetOf(event).value);
+      brush({ radius: Math.min(RADII_M.most, Math.max(RADII_M.least, m || radius)) });
+    };
     const earlier = state().source !== "";
     const button = (
       /** @type {string} */ text,
@@ -55,23 +62,44 @@ export function classesPanel(host, { id, state, outline }) {
           earlier
             ? html`<p class="quiet">${t("choose-this-map")}</p>`
             : html`<div class="buttons">
-                ${button(t("draw-polygon"), () => outline("draw"), { pressed: drawing })}
-                ${button(t("remove-corner"), () => outline("back"), {
-                  disabled: !corners.length,
-                })}
-                ${button(t("remove-polygon"), () => outline("clear"), {
-                  disabled: !corners.length,
-                })}
-              </div>`
+                  ${button(t("draw-polygon"), () => outline("draw"), { pressed: drawing })}
+                  ${button(t("remove-corner"), () => outline("back"), {
+                    disabled: !corners.length,
+                  })}
+                  ${button(t("remove-polygon"), () => outline("clear"), {
+                    disabled: !corners.length,
+                  })}
+                </div>
+                <div class="buttons">
+                  ${button(t("brush"), () => brush({ on: !on }), { pressed: on })}
+                  ${button(t("remove-strokes"), () => brush({ strokes: [] }), {
+                    disabled: !strokes.length,
+                  })}
+                </div>
+                <div class="correction-fields">
+                  <label
+                    ><span>${t("brush-radius")}</span
+                    ><input
+                      type="number"
+                      step="0.05"
+                      min=${RADII_M.least}
+                      max=${RADII_M.most}
+                      .value=${String(radius)}
+                      @change=${resize}
+                  /></label>
+                </div>`
         }
         <class-corrections
           .given=${{
             project: id,
             map: map.key,
-            volume: earlier ? null : prismOf(state(), corners),
+            volume: earlier ? null : (brushVolume(state(), brush()) ?? prismOf(state(), corners)),
             hint: t("polygon-hint"),
           }}
-          @applied=${() => outline("clear")}
+          @applied=${() => {
+            outline("clear");
+            brush({ on: false, strokes: [] });
+          }}
         ></class-corrections>`,
       host,
     );

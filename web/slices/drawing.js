@@ -7,6 +7,7 @@ import { byId, html, nothing, render, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { frameText } from "../shared/frame.js";
 import { t, written } from "../shared/texts.js";
+import { noBrush } from "./brush.js";
 import { cutText } from "./captions.js";
 import { besideFields, controls } from "./controls.js";
 import { legend } from "./legend.js";
@@ -36,6 +37,7 @@ export const page = {
   measured: /** @type {PickView[]} */ ([]), // at most two points
   picked: /** @type {PickView | null} */ (null),
   outline: /** @type {import("./findings.js").Outline} */ ({ corners: [], drawing: false }),
+  brush: noBrush(), // what is painted gets another class
   reading: "", // what is known of the picked points
   mode: /** @type {"split" | "swipe"} */ ("split"),
   swipe: 50, // where the second slice begins [%]

@@ -10,6 +10,7 @@ import { t } from "../shared/texts.js";
 
 /**
  * @import {PickView, SliceFacts, SliceImageRequest} from "../shared/http_types"
+ * @import {Brush} from "./brush.js"
  * @import {SliceState} from "./state.js"
  * @typedef {object} SlicesPage what the panels need of the page
  * @property {string} id of the project
@@ -20,6 +21,7 @@ import { t } from "../shared/texts.js";
  * @property {() => Promise<void>} reload
  * @property {() => PickView | null} measured the picked point
  * @property {(action?: "draw" | "back" | "clear") => Outline} outline changes the polygon
+ * @property {(next?: Partial<Brush>) => Brush} brush changes the brush
  * @typedef {object} Outline the polygon whose points get another class
  * @property {Array<[number, number]>} corners u, v [m]
  * @property {boolean} drawing whether clicks are its corners

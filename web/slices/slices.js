@@ -15,6 +15,7 @@ import {
 } from "../shared/api.js";
 import { attempt, byId, detailOf, only, say, showError, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
+import { brushMarks, brushOf } from "./brush.js";
 import { distanceText, imageText, lengthText, planeText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
 import { help } from "./help.js";
@@ -48,7 +49,10 @@ function change(next, { keep = false } = {}) {
   const state = { ...before, ...next };
   page.state = state;
   const place = (/** @type {SliceState} */ one) => format({ ...one, color: "height", t: 0 });
-  if (place(before) !== place(state)) outline("clear");
+  if (place(before) !== place(state)) {
+    outline("clear");
+    brush({ on: false, strokes: [] });
+  }
   if (!keep && place(before) !== place(state)) clearMeasure();
   const { u, v, m } = state;
   if (u === null || v === null) first.frame = second.frame = null;
@@ -182,7 +186,9 @@ function mark() {
   const text = from && to ? lengthText(from, to) : "";
   const points = measuring || measured.length ? measured : picked ? [picked] : [];
   const along = shown ? stretchMarks(stretch, shown) : [];
-  const marks = [...along, { points: points.map((one) => one.uv), text }, ...outlineMarks()];
+  const marks = [...along, { points: points.map((one) => one.uv), text }, ...outlineMarks()].concat(
+    brushMarks(page.brush),
+  );
   first.marks = marks;
   second.marks = marks;
 }
@@ -209,11 +215,18 @@ function outline(/** @type {"draw" | "back" | "clear" | undefined} */ action = u
     back: { corners: corners.slice(0, -1), drawing },
     clear: { corners: [], drawing: false },
   }[action];
+  if (page.outline.drawing) brush({ on: false });
   read(page.outline.drawing ? t("click-corners") : "");
   mark();
   found.show();
   return page.outline;
 }
+
+const brush = brushOf(page, [first, second], (on) => {
+  if (on && page.outline.drawing) outline("draw");
+  mark();
+  found.show();
+});
 
 function clearMeasure() {
   Object.assign(page, { measured: [], picked: null });
@@ -266,6 +279,7 @@ const KEYS = {
   0: () => showAll(),
   Escape: () => {
     if (page.outline.drawing) outline("draw");
+    brush({ on: false });
     measure(false);
   },
   "?": () => showHelp(),
@@ -332,6 +346,7 @@ const fillFindings = () =>
     reload,
     measured: () => page.picked,
     outline,
+    brush,
   });
 
 async function reload() {

@@ -2,7 +2,7 @@
 
 /**
  * @import {SliceImageView} from "../shared/http_types"
- * @import {Mark} from "./view.js"
+ * @import {Mark} from "./marks.js"
  */
 
 /** A part of the walk is marked in a slice that is at most so far away [m]. */

@@ -7,6 +7,7 @@ import { render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar, roundStep } from "../shared/scale_bar.js";
 import { decimal, t } from "../shared/texts.js";
+import { drawMark } from "./marks.js";
 import { imageSize } from "./state.js";
 
 const EDGE = { left: 56, bottom: 26 };
@@ -16,12 +17,9 @@ const CLICK_PX = 5; // a pointer that moves farther drags
 
 /**
  * @import {SliceImageView, WindowSpec} from "../shared/http_types"
- * @typedef {{points: number[][], dots?: number[][], text?: string, tone?: string}} Mark a line on
- *   the plane, its dots (else each point), its caption and its color
+ * @import {ColorOf, Mark, Pen} from "./marks.js"
  * @typedef {{u: number, v: number, m: number}} Frame middle [m] and meters per pixel
  * @typedef {{u: number, v: number, reach: number}} Place of a click, and how far around it [m]
- * @typedef {CanvasRenderingContext2D} Pen
- * @typedef {(name: string) => string} ColorOf
  */
 
 export class SliceView extends HTMLElement {
@@ -39,6 +37,9 @@ export class SliceView extends HTMLElement {
   /** @type {ReturnType<typeof setTimeout> | undefined} */
   #rest = undefined;
   #newest = 0; // number of the newest image
+  /** Takes drags and clicks, in place of moving the view; places on the plane [m].
+   * @type {((from: number[], to: number[]) => void) | null} */
+  painting = null;
 
   connectedCallback() {
     Object.assign(this.#hover, { className: "cursor", ariaLive: "off" });
@@ -182,7 +183,8 @@ export class SliceView extends HTMLElement {
       ink: color("--ink"),
       halo: color("--paper"),
     });
-    for (const mark of this.#marks) this.#mark(pen, mark, color);
+    const [toPx, scale] = [(/** @type {number[]} */ uv) => this.#toPx(uv), 1 / this.#metersPerPx];
+    for (const mark of this.#marks) drawMark(pen, mark, { toPx, scale, color, width });
   }
 
   /**
@@ -256,42 +258,6 @@ export class SliceView extends HTMLElement {
     pen.strokeRect(EDGE.left + 0.5, -1, width, height - EDGE.bottom + 0.5);
   }
 
-  /**
-   * @param {Pen} pen
-   * @param {Mark} given
-   * @param {ColorOf} color
-   */
-  #mark(pen, { points, dots = points, text, tone }, color) {
-    if (!points.length) return;
-    const places = points.map((point) => this.#toPx(point));
-    /** @type {Array<[string, number]>} */
-    const strokes = [
-      [color("--paper"), 5],
-      [color(tone ?? "--mark"), 2],
-    ];
-    for (const [stroke, width] of strokes) {
-      pen.strokeStyle = stroke;
-      pen.lineWidth = width;
-      pen.beginPath();
-      places.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
-      for (const [x, y] of dots.map((point) => this.#toPx(point))) {
-        pen.moveTo(x + 6, y);
-        pen.arc(x, y, 6, 0, 2 * Math.PI);
-      }
-      pen.stroke();
-    }
-    if (!text) return;
-    const [x, y] = places.at(-1) ?? [0, 0];
-    pen.font = "600 13px system-ui, sans-serif";
-    pen.textAlign = "left";
-    const wide = pen.measureText(text).width;
-    const left = Math.min(x + 12, this.#size().width - wide - 12);
-    pen.fillStyle = color("--paper");
-    pen.fillRect(left - 4, y - 30, wide + 8, 22);
-    pen.fillStyle = color("--ink");
-    pen.fillText(text, left, y - 19);
-  }
-
   // -- pointers
 
   /**
@@ -312,6 +278,7 @@ export class SliceView extends HTMLElement {
    */
   #dragged(from, to) {
     if (!this.#center) return;
+    if (this.painting) return this.painting(this.#toPlane(from), this.#toPlane(to));
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     this.#moved += Math.hypot(dx, dy);
     if (this.#moved > CLICK_PX) this.#shift(dx, dy);
@@ -337,6 +304,7 @@ export class SliceView extends HTMLElement {
     const click = count === 1 && this.#moved <= CLICK_PX && event.type === "pointerup";
     if (!click || !this.#center) return;
     const [u, v] = this.#toPlane(at);
+    if (this.painting) return this.painting([u, v], [u, v]);
     const reach = (event.pointerType === "mouse" ? 8 : 18) * this.#metersPerPx;
     this.dispatchEvent(new CustomEvent("place", { detail: { u, v, reach } }));
   }

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from recon4.model.class_corrections import Reclassified, class_named
 from recon4.model.tuning import VOLUMES
-from recon4.model.volumes import Box, Prism, Sphere, Volume
+from recon4.model.volumes import Box, Brush, Prism, Sphere, Volume
 from recon4_app.names import Note
 from recon4_app.review.model import Finite
 
@@ -93,10 +93,39 @@ class PrismSpec(_Strict):
         )
 
 
+class BrushSpec(_Strict):
+    """What a brush painted: all that lies within its radius of a path.
+
+    Neighboring places are joined if they are at most a width of the brush apart.
+    """
+
+    shape: Literal["brush"]
+    path_m: Annotated[list[Xyz], Field(min_length=1, max_length=VOLUMES.most_places)]
+    """Places in the map, in the order in which they were painted [m]."""
+    radius_m: Finite
+    across: Xyz | None = None
+    """Unit normal of the slice that was painted on; None = round in all directions."""
+    thick_m: Finite = 0.0
+    """Of the slice [m]; 0 without ``across``."""
+
+    def volume(self) -> Volume:
+        """The same as a record.
+
+        Raises:
+            ConfigError: If it is empty, or its normal is none.
+        """
+        return Brush(
+            path_m=tuple(self.path_m),
+            radius_m=self.radius_m,
+            across=self.across,
+            thick_m=self.thick_m,
+        )
+
+
 class CorrectionSpec(_Strict):
     """Points in a volume that get another class."""
 
-    volume: Annotated[BoxSpec | SphereSpec | PrismSpec, Field(discriminator="shape")]
+    volume: Annotated[BoxSpec | SphereSpec | PrismSpec | BrushSpec, Field(discriminator="shape")]
     to: Title
     """The new class."""
     only: Annotated[list[Title], Field(max_length=20)] = []

@@ -8,7 +8,7 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
-from recon4.model.volumes import Box, Prism, Sphere, Volume, bounds_of, contains, moved
+from recon4.model.volumes import Box, Brush, Prism, Sphere, Volume, bounds_of, contains, moved
 
 LEVEL = {"u": (1.0, 0.0, 0.0), "v": (0.0, 1.0, 0.0)}
 TURNED = {"u": (0.6, 0.8, 0.0), "v": (-0.8, 0.6, 0.0)}
@@ -22,6 +22,13 @@ VOLUMES = [
         polygon_m=((-1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (0.0, 0.0), (-1.0, 1.0)),
         low_m=-0.5,
         high_m=1.0,
+    ),
+    Brush(path_m=((1.0, 2.0, 3.0), (2.0, 3.0, 3.0), (4.0, 0.0, 1.0)), radius_m=1.2),
+    Brush(
+        path_m=((1.0, 2.0, 3.0), (1.6, 2.8, 4.0), (1.6, 2.8, 4.0)),
+        radius_m=1.4,
+        across=(0.8, -0.6, 0.0),
+        thick_m=2.0,
     ),
 ]
 
@@ -44,6 +51,22 @@ def test_a_prism_has_what_its_polygon_encloses_as_far_as_its_ends():
     p = np.array(prism.origin_m) + np.array(places) @ np.array([prism.u, prism.v, normal])
 
     assert contains(prism, p).tolist() == [True, True, False, False]
+
+
+def test_a_brush_paints_along_its_path_but_not_from_one_surface_to_another():
+    path = ((0.0, 0.0, 0.0), (0.0, 0.18, 0.0), (0.0, 0.18, 2.0))
+    p = np.array([[0.09, 0.09, 0.0], [0.0, 0.18, 1.0], [0.0, 0.1, 2.04], [0.06, -0.09, 0.0]])
+
+    painted = contains(Brush(path_m=path, radius_m=0.1), p)
+
+    assert painted.tolist() == [True, False, True, False]
+
+
+def test_a_brush_on_a_slice_is_as_deep_as_it():
+    brush = Brush(path_m=((1.0, 2.0, 1.5),), radius_m=0.3, across=(0.0, 0.0, 1.0), thick_m=0.1)
+    p = np.array([[1.29, 2.0, 1.549], [1.0, 2.0, 1.551], [1.31, 2.0, 1.5], [1.0, 1.71, 1.451]])
+
+    assert contains(brush, p).tolist() == [True, False, False, True]
 
 
 @pytest.mark.parametrize("volume", VOLUMES)
@@ -80,6 +103,13 @@ def test_a_volume_in_another_map_has_the_same_points(volume):
         (
             lambda: Prism(polygon_m=((0.0, 0.0), (1.0, 0.0), (2.0, 0.0)), low_m=0.0, high_m=1.0),
             "do not cross",
+        ),
+        (lambda: Brush(path_m=(), radius_m=0.1), "1 to 2000 places"),
+        (lambda: Brush(path_m=((0.0, 0.0, 0.0),), radius_m=0.0), "not empty"),
+        (lambda: Brush(path_m=((0.0,) * 3,), radius_m=0.1, thick_m=1.0), "on a slice"),
+        (
+            lambda: Brush(path_m=((0.0,) * 3,), radius_m=0.1, across=(0.0, 0.0, 0.0), thick_m=1.0),
+            "length 1",
         ),
         (
             lambda: Prism(polygon_m=((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)), low_m=1.0, high_m=1.0),

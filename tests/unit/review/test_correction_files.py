@@ -6,13 +6,14 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.model.classes import PointClass
-from recon4.model.volumes import Box, Prism, Sphere
+from recon4.model.volumes import Box, Brush, Prism, Sphere
 from recon4.review.correction_files import read_corrections
 
-TABLE = """shape,x,y,z,dx,dy,dz,yaw_deg,radius,low,high,polygon,to,only,why
-box,1,2,3,1,1,2,90,,,,,moving,unclassified|6,a visitor
-sphere,1,2,3,,,,,0.5,,,,7,,
-prism,,,,,,,,,0.5,1.5,0 0 | 2 0 | 0 2,Building,,
+TABLE = """shape,x,y,z,dx,dy,dz,yaw_deg,radius,low,high,polygon,path,to,only,why
+box,1,2,3,1,1,2,90,,,,,,moving,unclassified|6,a visitor
+sphere,1,2,3,,,,,0.5,,,,,7,,
+prism,,,,,,,,,0.5,1.5,0 0 | 2 0 | 0 2,,Building,,
+brush,,,,,,,,0.2,,,,0 0 1 | 0.1 0 1,low noise,,
 """
 
 
@@ -23,8 +24,8 @@ def listed(tmp_path, text, name="c.csv"):
 
 
 @pytest.mark.parametrize("change", [str, lambda text: "\ufeff" + text.replace(",", ";")])
-def test_a_table_has_boxes_balls_and_prisms(change, tmp_path):
-    box, ball, prism = listed(tmp_path, change(TABLE))
+def test_a_table_has_boxes_balls_prisms_and_brushes(change, tmp_path):
+    box, ball, prism, brush = listed(tmp_path, change(TABLE))
 
     assert box.what.volume.u == pytest.approx((0.0, 1.0, 0.0))
     assert (box.what.to, box.what.only, box.why) == (PointClass.MOVING, (1, 6), "a visitor")
@@ -33,6 +34,7 @@ def test_a_table_has_boxes_balls_and_prisms(change, tmp_path):
         polygon_m=((0.0, 0.0), (2.0, 0.0), (0.0, 2.0)), low_m=0.5, high_m=1.5
     )
     assert prism.what.to == PointClass.BUILDING
+    assert brush.what.volume == Brush(path_m=((0.0, 0.0, 1.0), (0.1, 0.0, 1.0)), radius_m=0.2)
     assert prism.where == "c.csv, line 4"
 
 
@@ -50,9 +52,9 @@ def test_json_has_volumes_of_any_orientation(tmp_path):
         (lambda t: t.replace("Building", "wall"), "line 4: unknown class 'wall'; known: .*moving"),
         (lambda t: t.replace("sphere,1", "sphere,nan"), "line 3: sphere: expected finite"),
         (lambda t: t.replace("sphere,1", "sphere,one"), "line 3: x: expected a number, got 'one'"),
-        (lambda t: t.replace(",0.5,,,,7", ",0,,,,7"), "line 3: sphere: .*not empty"),
-        (lambda t: t.replace("0 0 | 2 0", "0 0 | 2"), "line 4: polygon: expected corners"),
-        (lambda t: t.replace("box", "cone"), "line 2: shape: expected box, sphere or prism"),
+        (lambda t: t.replace(",0.5,,,,,7", ",0,,,,,7"), "line 3: sphere: .*not empty"),
+        (lambda t: t.replace("0 0 | 2 0", "0 0 | 2"), "line 4: polygon: expected places"),
+        (lambda t: t.replace("box", "cone"), "line 2: shape: expected box, sphere, prism or brush"),
         (lambda t: t.replace("box,1", "box,1,1"), "line 2: more cells"),
         (lambda t: t.partition("\n")[0], "expected 1 to 1000 corrections, got 0"),
         (lambda t: t.replace("shape", "form"), "expected the columns shape and to"),
