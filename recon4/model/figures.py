@@ -83,10 +83,21 @@ class RefineRound(msgspec.Struct, frozen=True, kw_only=True):
     """Largest shift of a multiframe in this round [m]."""
 
 
-class RefineFigures(Figures, frozen=True, kw_only=True):
+class CarriedFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """How far decisions moved the nodes that a refined trajectory was carried along with."""
+
+    moved_m: float
+    """Largest of all positions [m]."""
+    turned_rad: float
+    """Largest of all directions [rad]."""
+
+
+class RefineFigures(Figures, frozen=True, kw_only=True, omit_defaults=True):
     """The semi-rigid refinement."""
 
     rounds: tuple[RefineRound, ...]
+    carried: CarriedFigures | None = None
+    """Missing = it was refined by itself, not carried along with the nodes."""
 
 
 class AntennaFigures(msgspec.Struct, frozen=True, kw_only=True):

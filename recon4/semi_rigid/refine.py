@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.corrections import apply_corrections
 from recon4.model.events import RoundRefined
-from recon4.model.figures import RefineFigures, RefineRound
+from recon4.model.figures import CarriedFigures, RefineFigures, RefineRound
 from recon4.model.multiframe import Multiframe
 from recon4.model.plain import to_plain
 from recon4.model.support import SurfaceSupport
@@ -49,13 +49,15 @@ class Refinement:
     rounds: tuple[RefineRound, ...]
     support: SurfaceSupport | None = None
     """Of line scans; None = not worked out."""
+    carried: CarriedFigures | None = None
+    """How far the nodes moved that it was carried along with; None = it was refined by itself."""
 
     def save(self, out: Path) -> RefineFigures:
         """Write ``trajectory.npz``, ``refine.json`` (the figures) and ``support.npz``."""
         save_trajectory(out / "trajectory.npz", self.trajectory)
         if self.support is not None:
             save_record(out / "support.npz", self.support)
-        figures = RefineFigures(rounds=self.rounds)
+        figures = RefineFigures(rounds=self.rounds, carried=self.carried)
         (out / "refine.json").write_text(json.dumps(to_plain(figures), indent=1))
         return figures
 

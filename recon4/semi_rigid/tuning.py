@@ -30,7 +30,10 @@ class RefineTuning(RefineSettings):
     total_sd_rad: float = 0.005
     """The same for its rotation [rad]."""
     converged_step_m: float = 4e-3
-    """Stop if no multiframe moves farther than this [m]."""
+    """Stop if no multiframe moves farther than this [m]. Decisions that move no node farther carry
+    the refined trajectory along."""
+    carried_turn_rad: float = 4e-4
+    """Nor may they turn one by more [rad]: as far at ten meters."""
 
 
 class RefineRunTuning(Struct, frozen=True, kw_only=True):

@@ -31,10 +31,16 @@ def before_review(run: Run) -> None:
     run.stage(VERIFICATION, graph="graph")
 
 
+def refined(run: Run) -> None:
+    """The refined trajectory, or that without decisions carried along with the nodes."""
+    inputs = run.measurements | {"odometry": "odometry"}
+    run.stage(REFINE, **inputs, nodes=run.nodes_to_refine(refined))
+
+
 def to_trajectory(run: Run) -> None:
     """The final trajectory: refined, leveled, georeferenced."""
+    refined(run)
     inputs = run.measurements | {"odometry": "odometry"}
-    run.stage(REFINE, **inputs, nodes=run.nodes)
     leveled = {"refined": "refine", "graph": run.graph, "audit": run.rig_audit}
     run.stage(LEVEL, **inputs, **leveled, **run.control, **run.undecided(to_trajectory))
 

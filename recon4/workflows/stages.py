@@ -25,8 +25,8 @@ from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.model.site_control import SiteControl
-from recon4.model.trajectory import Trajectory
 from recon4.review.decisions import Standing, StandingCorrection
+from recon4.semi_rigid.graph_nodes import GraphNodes
 from recon4.settings.reads import (
     AuditReads,
     CalibrationReads,
@@ -164,14 +164,20 @@ def _refine(
     *,
     frames: Path,
     odometry: Path,
-    nodes: Trajectory,
+    nodes: GraphNodes,
     calibration: Path | None = None,
 ) -> RefineFigures:
+    from recon4.semi_rigid.carry import carry
     from recon4.semi_rigid.refine import refine
     from recon4.store.frames import open_frames
 
+    carried = carry(nodes, settings=context.settings)
+    if carried is not None:
+        return carried.save(context.out)
     store = open_frames(frames, calibration, odometry)
-    found = refine(store, odometry, nodes, settings=context.settings, progress=context.progress)
+    found = refine(
+        store, odometry, nodes.nodes, settings=context.settings, progress=context.progress
+    )
     return found.save(context.out)
 
 

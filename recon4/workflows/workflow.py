@@ -10,7 +10,9 @@ from recon4.model.calibration_figures import CalibrationFigures
 from recon4.pose_graph.files import load_nodes
 from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.sandbox.freed_memory import return_freed_memory
+from recon4.semi_rigid.graph_nodes import GraphNodes, Undecided
 from recon4.store.contents import arrays_of, files_of
+from recon4.store.hashing import hash_json
 from recon4.store.stage import Input, Stage, StageRunner
 from recon4.workflows.publish import Results
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
@@ -66,6 +68,21 @@ class Run:
         found = load_nodes(self.runner.runs[self.graph].artifact.folder)
         T = found.T_a_b
         return arrays_of(found, {"t_ns": found.t_ns, "R": T.R, "t": T.t})
+
+    def nodes_to_refine(self, refined: Callable[[Run], None]) -> Input:
+        """Those nodes and, where decisions move them, what was refined without decisions.
+
+        Args:
+            refined: Runs the stage ``refine``, which earlier runs have done as a rule.
+        """
+        aside = Run(self.runner.aside())
+        now, before = self.nodes, aside.nodes
+        if now.key == before.key:
+            return Input(now.key, GraphNodes(now.value))
+        refined(aside)
+        made = aside.runner.runs["refine"].artifact
+        key = hash_json([now.key, before.key, made.key])
+        return Input(key, GraphNodes(now.value, Undecided(before.value, made.folder)))
 
     def undecided(self, from_review: Callable[[Run], None]) -> dict[str, Input]:
         """Input of the stage that places the map: where it is without decisions about pairs.

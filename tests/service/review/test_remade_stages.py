@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from recon4.georeference.tuning import HOLD
-from recon4.model.figures import LevelFigures
+from recon4.model.figures import LevelFigures, RefineFigures
 from recon4.model.pose_graph import Verdict
 from recon4.pipeline import remake
 from recon4.pose_graph.files import load_graph
@@ -59,6 +59,10 @@ def ran(summary):
     return {one.stage for one in summary.stages if not one.reused}
 
 
+def carried(root):
+    return read_figures(read_artifacts(root)["refine"], RefineFigures).carried
+
+
 def held(root):
     return read_figures(read_artifacts(root)["level"], LevelFigures).held
 
@@ -90,6 +94,7 @@ def test_a_map_that_a_decision_hardly_moves_stays_where_it_was(office):
     assert [after[name] for name in OF_POINTS] == [before[name] for name in OF_POINTS]
     assert (office / "trajectory.tum").read_bytes() == line
     assert 1e-5 < held(office).moved_m < HOLD.moved_m
+    assert 1e-5 < carried(office).moved_m < HOLD.moved_m
     edge = next(e for e in load_graph(after["level"]).edges if (e.i, e.j) == CONFIRMED)
     assert (edge.verdict, edge.decided_by) == (Verdict.REJECTED, "Eva")
 
@@ -130,6 +135,7 @@ def test_stages_read_no_other_file_of_the_stage_level_than_they_are_given(office
     watching = False
 
     assert held(office) is None
+    assert carried(office) is None
     level = read_artifacts(office)["level"]
     read = {
         name: {Path(path).name for path in paths if Path(path).parent == level}
