@@ -43,9 +43,10 @@ def index_of(server):
     return server.get(BASE).json()
 
 
-def points(server, **query):
+def points(server, *parts, **query):
     index = index_of(server)
-    usual = {"stored": "xyz", "version": index["version"]}
+    wanted = ",".join(":".join(map(str, part)) for part in parts)
+    usual = {"stored": "xyz", "version": index["version"], "parts": wanted}
     return server.get(f"{BASE}/{index['key']}/points", params=usual | query)
 
 
@@ -82,7 +83,7 @@ def test_all_chunks_of_a_tile_are_all_of_its_points_once(server, tiles):
     tile = index_of(server)["tiles"][0]
     ends = [0, 100, tile["points"] // 64 + 7, tile["points"]]
 
-    chunks = [points(server, tile=0, start=a, stop=b).content for a, b in pairwise(ends)]
+    chunks = [points(server, (0, a, b)).content for a, b in pairwise(ends)]
 
     found = np.vstack([places(chunk, tile) for chunk in chunks])
     truth = tiles.tiles[0].xyz_m()
@@ -95,7 +96,7 @@ def test_values_lie_beside_their_points(server, tiles):
     column = next(one for one in index["columns"] if one["name"] == "time")
     start = index["tiles"][0]["points"] // 64  # from here on in the order in which it is stored
 
-    data = points(server, tile=0, start=start, stop=start + 500, stored="time").content
+    data = points(server, (0, start, start + 500), stored="time").content
 
     seconds = column["offset"] + column["scale"] * np.frombuffer(data, "<u2")
     truth = tiles.tiles[0].read(["t_ns"], rows=slice(start, start + 500))["t_ns"]
@@ -116,20 +117,30 @@ def test_the_sample_is_the_first_points_of_every_tile(server):
     at = 0
     for row, tile in enumerate(index["tiles"]):
         own = data[at : at + 10 * tile["sample"]]
-        assert own == points(server, tile=row, start=0, stop=tile["sample"]).content
+        assert own == points(server, (row, 0, tile["sample"])).content
         at += len(own)
     assert at == len(data)
     assert (part.status_code, part.content) == (206, data[:100])
 
 
+def test_parts_of_several_tiles_come_one_after_the_other(server):
+    parts = [(1, 10, 400), (0, 0, 3), (1, 400, 402)]
+
+    together = [points(server, *parts, stored=stored).content for stored in ("xyz", "time")]
+
+    for stored, data in zip(("xyz", "time"), together, strict=True):
+        alone = [points(server, part, stored=stored).content for part in parts]
+        assert all(alone) and data == b"".join(alone)
+
+
 def test_a_chunk_is_kept_for_ever_and_not_sent_again(server):
-    answer = points(server, tile=0, start=0, stop=10)
+    answer = points(server, (0, 0, 10))
     tag = answer.headers["ETag"]
     key = index_of(server)["key"]
 
     again = server.get(
         f"{BASE}/{key}/points",
-        params={"stored": "xyz", "version": MAP_CHUNKS.version, "tile": 0, "start": 0, "stop": 10},
+        params={"stored": "xyz", "version": MAP_CHUNKS.version, "parts": "0:0:10"},
         headers={"If-None-Match": tag},
     )
 
@@ -140,14 +151,21 @@ def test_a_chunk_is_kept_for_ever_and_not_sent_again(server):
 @pytest.mark.parametrize(
     ("query", "status"),
     [
-        ({"tile": 0, "start": 5, "stop": 5}, 400),
-        ({"tile": 0, "start": 9, "stop": 2}, 400),
-        ({"tile": 0, "start": 0, "stop": 1 << 39}, 400),
-        ({"tile": 0, "start": -1, "stop": 2}, 422),
-        ({"tile": 1 << 20, "start": 0, "stop": 2}, 422),
-        ({"tile": 0, "start": 119_999, "stop": 120_001}, 422),
-        ({"tile": 0, "start": 0, "stop": 2, "stored": "ring"}, 422),
-        ({"tile": 0, "start": 0, "stop": 2, "more": 1}, 422),
+        ({"parts": "0:5:5"}, 400),
+        ({"parts": "0:9:2"}, 400),
+        ({"parts": "0:0:2,0:9:2"}, 400),
+        ({"parts": f"0:0:{1 << 39}"}, 400),
+        ({"parts": "0:0:200000,0:0:100000"}, 400),
+        ({"parts": ",".join(["0:0:1"] * 65)}, 400),
+        ({"parts": "0:-1:2"}, 422),
+        ({"parts": "0:0"}, 422),
+        ({"parts": "0:0:2,"}, 422),
+        ({"parts": ""}, 422),
+        ({"parts": "٠:٠:٢"}, 422),
+        ({"parts": f"{1 << 20}:0:2"}, 422),
+        ({"parts": "0:119999:120001"}, 422),
+        ({"parts": "0:0:2", "stored": "ring"}, 422),
+        ({"parts": "0:0:2", "more": 1}, 422),
     ],
 )
 def test_hostile_parameters_are_refused(server, query, status):
@@ -158,7 +176,7 @@ def test_hostile_parameters_are_refused(server, query, status):
 
 @pytest.mark.parametrize("key", ["..%2f..", "0" * 64, "x", "map"])
 def test_a_map_that_is_none_of_the_project_is_not_found(server, key):
-    address = f"{BASE}/{key}/points?stored=xyz&version={MAP_CHUNKS.version}&tile=0&start=0&stop=1"
+    address = f"{BASE}/{key}/points?stored=xyz&version={MAP_CHUNKS.version}&parts=0:0:1"
 
     assert server.get(address).status_code == 404
     assert server.get("/api/projects/young/map").status_code == 404
@@ -243,8 +261,8 @@ def test_a_volume_is_that_of_what_is_shown(server):
 def test_a_page_of_another_layout_receives_no_points(server):
     key = index_of(server)["key"]
 
-    for address in (f"{BASE}/{key}/sample?stored=xyz", f"{BASE}/{key}/points?stored=xyz&tile=0"):
-        more = "&start=0&stop=2" if "points" in address else ""
+    for address in (f"{BASE}/{key}/sample?stored=xyz", f"{BASE}/{key}/points?stored=xyz"):
+        more = "&parts=0:0:2" if "points" in address else ""
         answer = server.get(f"{address}{more}&version=0")
         assert answer.status_code == 409 and "reload the page" in answer.json()["detail"]
         assert server.get(address + more).status_code == 422

@@ -13,7 +13,11 @@ const CAMERA = { target: [2, 2, 2], yaw: 0, pitch: -1, distance: 10, parallel: f
 const bytes = (stored, count) => new ArrayBuffer((stored === "xyz" ? 10 : 2) * count);
 const READER = {
   sample: async (stored) => bytes(stored, 500),
-  part: async (stored, _, { start, stop }) => bytes(stored, stop - start),
+  parts: async (stored, parts) =>
+    bytes(
+      stored,
+      parts.reduce((sum, { start, stop }) => sum + stop - start, 0),
+    ),
 };
 
 /** Tiles of a map, and a wait until they read no more. */
@@ -58,10 +62,57 @@ test("without a sample parts are read all the same", async () => {
   assert.deepEqual(tiles.have, [50_000]);
 });
 
+test("few points of many tiles are read together, and not many more than are wanted", async () => {
+  let asked = 0;
+  const parts = async (stored, wanted) => {
+    asked++;
+    return READER.parts(stored, wanted);
+  };
+  const sample = async (stored) => bytes(stored, 500 * 600);
+  const tiles = tilesOf({ ...READER, sample, parts }, 600);
+  const counts = Array.from({ length: 600 }, (_, k) => 510 + (k % 7));
+
+  await tiles.readSample("");
+  tiles.want(counts, CAMERA);
+  await settled();
+
+  assert.ok(tiles.complete);
+  assert.ok(tiles.have.every((n, k) => n >= counts[k] && n <= 2 * counts[k]));
+  assert.ok(asked <= 600 / 20, `${asked} requests`);
+});
+
+test("values of another color are read together, each of its own points", async () => {
+  const tiles = tilesOf(
+    {
+      sample: async (stored) => bytes(stored, 500 * 3),
+      parts: async (stored, wanted) => {
+        if (stored === "xyz") return READER.parts(stored, wanted);
+        const values = wanted.flatMap(({ tile, start, stop }) =>
+          Array.from({ length: stop - start }, (_, k) => 1000 * tile + start + k),
+        );
+        return Uint16Array.from(values).buffer;
+      },
+    },
+    3,
+  );
+  await tiles.readSample("");
+  tiles.want([600, 700, 800], CAMERA);
+  await settled();
+
+  await tiles.color("time");
+  await settled();
+
+  const known = tiles.show([600, 700, 800]).filter(({ object }) => object.geometry.drawRange);
+  const firsts = known
+    .map(({ object }) => object.geometry.attributes.value?.array[0])
+    .filter((value) => value > 0);
+  assert.deepEqual(firsts, [500, 1500, 2500]);
+});
+
 test("a server that refuses is asked again only when the camera moves", async () => {
   let [asked, camera] = [0, CAMERA];
-  const part = () => Promise.reject(new Error(`no ${++asked}`));
-  const tiles = tilesOf({ ...READER, part });
+  const parts = () => Promise.reject(new Error(`no ${++asked}`));
+  const tiles = tilesOf({ ...READER, parts });
   tiles.onNews = () => tiles.want([50_000], camera); // as the canvas does: it draws again
   await tiles.readSample("");
   await settled();

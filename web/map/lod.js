@@ -16,6 +16,8 @@ import { add, axesOf, cornersOf, dot, eyeOf, focalPx, minus } from "./camera.js"
 const NEAREST_M = 1; // nearer points of a tile are drawn as those at this distance
 const FINEST_PX = 0.9; // neighbors nearer to each other than this do not show
 const COARSEST_PX = 1000;
+const ENOUGH = 12_000; // points of a response, to which parts of further tiles are added before
+export const MOST_PARTS = 64; // of a response
 
 /**
  * Whether a box is outside of one of the planes (n, d): n · p + d < 0 in all of it.
@@ -101,15 +103,34 @@ export function choose(tiles, { camera, screen, planes, budget }) {
 }
 
 /**
- * The next part of a tile to read: as many points again as there are, never more than `most`.
+ * The next part of a tile to read: as many points again as there are, or twice what is wanted of
+ * a tile of which few are, but never more than `most`.
  * @param {number} have
  * @param {number} wanted
  * @param {number} points all of the tile
  */
 export function nextPart(have, wanted, points, most = 120_000, least = 12_000) {
   if (have >= Math.min(wanted, points)) return null;
-  const stop = Math.min(points, have + Math.min(most, Math.max(have, least)));
-  return { start: have, stop: points - stop < least ? points : stop };
+  const few = Math.min(least, 2 * wanted - have);
+  const stop = Math.min(points, have + Math.min(most, Math.max(have, few)));
+  return { start: have, stop: points - stop < few ? points : stop };
+}
+
+/**
+ * The parts of the next response, taken from the front of a reading order.
+ * @param {number[]} order
+ * @param {{tiles: Box[], counts: number[], have: number[]}} shown
+ */
+export function nextParts(order, { tiles, counts, have }) {
+  const parts = [];
+  let points = 0;
+  while (order.length && parts.length < MOST_PARTS && points < ENOUGH) {
+    const tile = /** @type {number} */ (order.shift());
+    const part = nextPart(have[tile], counts[tile], tiles[tile].points);
+    if (part) parts.push({ tile, ...part });
+    points += part ? part.stop - part.start : 0;
+  }
+  return parts;
 }
 
 /**

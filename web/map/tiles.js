@@ -2,7 +2,7 @@
 
 import { dot, minus } from "./camera.js";
 import { apartOf } from "./density.js";
-import { isOutside, nextPart, readingOrder } from "./lod.js";
+import { isOutside, MOST_PARTS, nextParts, readingOrder } from "./lod.js";
 import {
   BufferAttribute,
   BufferGeometry,
@@ -17,7 +17,8 @@ import {
  * @typedef {{start: number, stop: number}} Part
  * @typedef {object} Reader
  * @property {(stored: Stored) => Promise<ArrayBuffer>} sample
- * @property {(stored: Stored, tile: number, part: Part) => Promise<ArrayBuffer>} part
+ * @property {(stored: Stored, parts: Array<{tile: number} & Part>) => Promise<ArrayBuffer>} parts
+ *   one after the other
  * @typedef {object} Chunk
  * @property {number} start
  * @property {number} stop
@@ -31,6 +32,7 @@ import {
 
 const MOST_POINTS = 6_000_000; // kept; of more, those that are not shown go
 const AT_ONCE = 3;
+const MOST_VALUES = 120_000; // of a response
 
 export class MapTiles {
   #index;
@@ -41,7 +43,9 @@ export class MapTiles {
   #move;
   /** @type {Chunk[][]} */
   #chunks;
+  /** @type {Set<number>} tiles of which something is read */
   #reading = new Set();
+  #requests = 0;
   /** @type {{counts: number[], camera: Camera} | null} */
   #wanted = null;
   /** @type {Camera | null} */
@@ -204,26 +208,33 @@ export class MapTiles {
   #readOn() {
     if (!this.#wanted || !this.#begun) return;
     const { counts, camera } = this.#wanted;
-    for (const k of readingOrder(this.#index.tiles, { counts, have: this.have }, camera)) {
-      if (this.#reading.size >= AT_ONCE) return;
-      if (!this.#reading.has(k)) this.#readTile(k, counts[k]);
-    }
-    if (!this.#reading.size) this.#readValues();
+    const { tiles } = this.#index;
+    const have = this.have;
+    const order = readingOrder(tiles, { counts, have }, camera);
+    const free = order.filter((k) => !this.#reading.has(k));
+    while (free.length && this.#requests < AT_ONCE)
+      this.#readParts(nextParts(free, { tiles, counts, have }));
+    if (!order.length && !this.#reading.size) this.#readValues();
   }
 
-  async #readTile(/** @type {number} */ k, /** @type {number} */ wanted) {
-    const part = nextPart(this.have[k], wanted, this.#index.tiles[k].points);
-    if (!part) return;
+  async #readParts(/** @type {Array<{tile: number} & Part>} */ parts) {
     const values = this.#values;
-    await this.#read(k, async () => {
+    await this.#read(parts, async () => {
       const [places, steps] = await Promise.all([
-        this.#reader.part("xyz", k, part),
-        values ? this.#reader.part(values, k, part) : null,
+        this.#reader.parts("xyz", parts),
+        values ? this.#reader.parts(values, parts) : null,
       ]);
-      if (this.have[k] !== part.start) return; // what it follows was forgotten meanwhile
-      this.#add(k, part, places);
-      const chunk = this.#chunks[k].at(-1);
-      if (steps && chunk) this.#fill(chunk, values, steps);
+      let [at, from] = [0, 0];
+      for (const { tile, start, stop } of parts) {
+        const count = stop - start;
+        const [place, step] = [at, from];
+        [at, from] = [at + 10 * count, from + 2 * count];
+        const chunks = this.#chunks[tile];
+        if ((chunks.at(-1)?.stop ?? 0) !== start) continue; // forgotten meanwhile
+        this.#add(tile, { start, stop }, places.slice(place, at));
+        const chunk = chunks.at(-1);
+        if (steps && chunk) this.#fill(chunk, values, steps.slice(step, from));
+      }
       this.#dropUnseen();
     });
   }
@@ -232,17 +243,43 @@ export class MapTiles {
   #readValues() {
     const values = this.#values;
     if (!values) return;
-    this.#chunks.forEach((chunks, k) => {
+    const missing = this.#chunks.flatMap((chunks, tile) => {
       const chunk = chunks.find((one) => one.valuesOf !== values);
-      if (!chunk || this.#reading.size >= AT_ONCE) return;
-      this.#read(k, async () =>
-        this.#fill(chunk, values, await this.#reader.part(values, k, chunk)),
-      );
+      return chunk ? [{ tile, chunk, start: chunk.start, stop: chunk.stop }] : [];
+    });
+    while (missing.length && this.#requests < AT_ONCE) {
+      const parts = [missing.splice(0, 1)[0]];
+      let points = parts[0].stop - parts[0].start;
+      while (missing.length && parts.length < MOST_PARTS) {
+        const count = missing[0].stop - missing[0].start;
+        if (points + count > MOST_VALUES) break;
+        points += count;
+        parts.push(missing.splice(0, 1)[0]);
+      }
+      this.#readValuesOf(values, parts);
+    }
+  }
+
+  /**
+   * @param {Stored} values
+   * @param {Array<{tile: number, chunk: Chunk} & Part>} parts
+   */
+  async #readValuesOf(values, parts) {
+    await this.#read(parts, async () => {
+      const steps = await this.#reader.parts(values, parts);
+      let from = 0;
+      for (const { chunk, start, stop } of parts)
+        this.#fill(chunk, values, steps.slice(from, (from += 2 * (stop - start))));
     });
   }
 
-  async #read(/** @type {number} */ k, /** @type {() => Promise<void>} */ read) {
-    this.#reading.add(k);
+  /**
+   * @param {Array<{tile: number}>} parts
+   * @param {() => Promise<void>} read
+   */
+  async #read(parts, read) {
+    for (const { tile } of parts) this.#reading.add(tile);
+    this.#requests++;
     try {
       await read();
     } catch (problem) {
@@ -250,7 +287,8 @@ export class MapTiles {
       this.#wanted = null;
       this.onProblem(problem);
     } finally {
-      this.#reading.delete(k);
+      this.#requests--;
+      for (const { tile } of parts) this.#reading.delete(tile);
     }
     this.onNews();
     this.#readOn();

@@ -2015,7 +2015,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/map/{key}/points": {
     path: { project_id: string; key: string };
-    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; version: number; tile: number; start: number; stop: number };
+    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; version: number; parts: string };
     response: string;
   };
   "GET /api/projects/{project_id}/map/{key}/sample": {

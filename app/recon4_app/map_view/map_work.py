@@ -63,22 +63,24 @@ def write_sample(
 def chunk(
     artifacts: Artifacts,
     stored: Stored,
-    part: tuple[int, int, int],
+    parts: tuple[tuple[int, int, int], ...],
     *,
     evidence: Evidence | None,
 ) -> bytes:
-    """Points of a tile: its row in the index, the first of its points, the last + 1.
+    """Points of tiles, part by part: row in the index, the first of its points, the last + 1.
 
     Raises:
         ConfigError: If there are no such points, or no such values.
     """
-    row, start, stop = part
     tiles = map_of(artifacts, evidence)
     if stored != "xyz" and FIELD_OF[stored] not in tiles.fields:
         raise ConfigError(f"the map does not state the {stored} of its points")
-    if row >= len(tiles.tiles) or stop > len(tiles.tiles[row]):
-        raise ConfigError(f"the map has no points {start} to {stop} in a tile {row}")
-    return encoded(tiles, row, stored, rows=slice(start, stop))
+    for row, start, stop in parts:
+        if row >= len(tiles.tiles) or stop > len(tiles.tiles[row]):
+            raise ConfigError(f"the map has no points {start} to {stop} in a tile {row}")
+    return b"".join(
+        encoded(tiles, row, stored, rows=slice(start, stop)) for row, start, stop in parts
+    )
 
 
 def walk(artifacts: Artifacts, marks_file: str) -> MapWalk:

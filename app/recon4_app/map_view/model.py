@@ -22,6 +22,9 @@ Version = Annotated[int, Field(ge=0, le=1 << 31)]
 """Of the layout of samples and chunks, as the index of the page said."""
 
 
+_PART = "[0-9]{1,9}(:[0-9]{1,12}){2}"
+
+
 class MapTile(BaseModel):
     """A cube of the map."""
 
@@ -119,12 +122,15 @@ class SampleQuery(Strict):
 class ChunkQuery(SampleQuery):
     """Which points of the map a response has."""
 
-    tile: int = Field(ge=0, le=1 << 32)
-    """Row in the index."""
-    start: int = Field(ge=0, le=1 << 40)
-    """First point, counted in the order in which they are shown."""
-    stop: int = Field(ge=0, le=1 << 40)
-    """The one after the last."""
+    parts: str = Field(pattern=f"^{_PART}(,{_PART})*$", max_length=4000)
+    """``TILE:START:STOP`` of each part, with commas between them: the row of its tile in the index,
+    its first point, counted in the order in which they are shown, and the one after its last."""
+
+    @property
+    def rows(self) -> tuple[tuple[int, int, int], ...]:
+        """Tile, first point and last + 1 of each part."""
+        numbers = (map(int, part.split(":")) for part in self.parts.split(","))
+        return tuple((tile, start, stop) for tile, start, stop in numbers)
 
 
 class RayRequest(Strict):

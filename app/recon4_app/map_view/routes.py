@@ -137,25 +137,22 @@ async def read_sample(
     )
 
 
-@router.get("/{key}/points", response_class=Response, summary="Points of a tile")
+@router.get("/{key}/points", response_class=Response, summary="Points of some tiles")
 async def read_points(
     request: Request,
     project_id: str,
     key: str,
     *,
-    part: Annotated[ChunkQuery, Query()],
+    wanted: Annotated[ChunkQuery, Query()],
     caller: CalledBy,
 ) -> Response:
-    """Binary, as `recon4_app.map_view.points` says; the response may be kept for ever."""
-    _check_version(part.version)
-    if not 0 < part.stop - part.start <= MAP_CHUNKS.max_chunk_points:
-        raise BadRequest(
-            f"expected 1 to {MAP_CHUNKS.max_chunk_points} points, got {part.start} to {part.stop}"
-        )
+    """Binary, part by part, each as `recon4_app.map_view.points` says; may be kept for ever."""
+    _check_version(wanted.version)
+    rows = wanted.rows
+    _check_parts(rows)
     slices, source = parts(request).slices, f"map:{key}"
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    rows = (part.tile, part.start, part.stop)
-    tag = f'"{MAP_CHUNKS.version}-{key}-{part.stored}-{"-".join(map(str, rows))}"'
+    tag = f'"{MAP_CHUNKS.version}-{key}-{wanted.stored}-{wanted.parts.replace(",", "-")}"'
     headers = {"ETag": tag, "Cache-Control": FOREVER}
     if request.headers.get("if-none-match") == tag:
         return Response(status_code=304, headers=headers)
@@ -163,7 +160,7 @@ async def read_points(
     terms = slices.terms(project_id, caller.name, source)
     data = await caller.wait(
         slices.run_interactive(
-            terms, map_work.chunk, artifacts, part.stored, rows, evidence=evidence
+            terms, map_work.chunk, artifacts, wanted.stored, rows, evidence=evidence
         )
     )
     return Response(data, media_type="application/octet-stream", headers=headers)
@@ -198,6 +195,18 @@ def _check_version(version: int) -> None:
         raise Conflict(
             f"expected layout {MAP_CHUNKS.version} of points, got {version}: reload the page"
         )
+
+
+def _check_parts(rows: tuple[tuple[int, int, int], ...]) -> None:
+    """Refuse a part without points, and more than a response may have."""
+    counts = [stop - start for _, start, stop in rows]
+    if min(counts) <= 0 or sum(counts) > MAP_CHUNKS.max_chunk_points:
+        raise BadRequest(
+            f"expected 1 to {MAP_CHUNKS.max_chunk_points} points, got "
+            + ", ".join(f"{start} to {stop}" for _, start, stop in rows[:3])
+        )
+    if len(rows) > MAP_CHUNKS.max_parts:
+        raise BadRequest(f"expected at most {MAP_CHUNKS.max_parts} parts, got {len(rows)}")
 
 
 def _kept_name(artifacts: dict[str, str], evidence: Evidence | None, ending: str) -> str:

@@ -14,6 +14,8 @@ class MapChunkTuning(Struct, frozen=True, kw_only=True):
     """Points of the coarsest sample of the whole map, which is sent first."""
     max_chunk_points: int = 1 << 18
     """Most points of one response."""
+    max_parts: int = 64
+    """Most parts of one response."""
     value_steps: int = 65_534
     """Steps of a value; the one after them says that there is no value."""
     length_step_m: float = 1e-4

@@ -37,14 +37,11 @@ export const readVolume = (project_id, volume) =>
 export const pointReader = (id, { key, version }) => ({
   sample: (/** @type {string} */ stored) =>
     readBytes(`${map(id)}/${name(key)}/sample?stored=${stored}&version=${version}`),
-  part: (
-    /** @type {string} */ stored,
-    /** @type {number} */ tile,
-    /** @type {{start: number, stop: number}} */ { start, stop },
-  ) =>
+  /** @param {Array<{tile: number, start: number, stop: number}>} wanted */
+  parts: (/** @type {string} */ stored, wanted) =>
     readBytes(
-      `${map(id)}/${name(key)}/points?stored=${stored}&version=${version}` +
-        `&tile=${tile}&start=${start}&stop=${stop}`,
+      `${map(id)}/${name(key)}/points?stored=${stored}&version=${version}&parts=` +
+        wanted.map(({ tile, start, stop }) => `${tile}:${start}:${stop}`).join(","),
     ),
 });
 
