@@ -22,8 +22,8 @@ from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from tests.project_builder import _level, _odometry, _verification, loop_walk
 
-GAP_M = 5.0
-"""Between copies, at least; they begin at whole tiles."""
+BETWEEN_M = 5.0
+"""Width of what is between copies, at least; they begin at whole tiles."""
 
 
 def build(root: Path, source: Path, *, points: int) -> None:
@@ -73,7 +73,7 @@ def _repeated(blocks: np.ndarray, copies: int) -> np.ndarray:
 def _spread(facts: dict[str, Any], copies: int) -> dict[str, Any]:
     """The list of tiles of a map in several places of a square grid."""
     low, high = (np.array(one) for one in facts["bounds_m"])
-    steps = np.ceil((high - low + GAP_M) / facts["tile_m"]).astype(int)
+    steps = np.ceil((high - low + BETWEEN_M) / facts["tile_m"]).astype(int)
     rows = sum(tile["stop"] - tile["start"] + tile["strays"] for tile in facts["tiles"])
     wide = int(np.ceil(np.sqrt(copies * steps[1] / steps[0])))
     tiles = []

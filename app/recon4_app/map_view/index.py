@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, get_args
 
 import numpy as np
@@ -31,8 +32,8 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
     """
     names = [name for name in get_args(ColumnName) if FIELD_OF[name] in tiles.fields]
     sizes = sample_sizes(tiles)
-    found = _sample(tiles, sizes, names)
-    low, high = _extent(found["xyz"])
+    low, high = _extent(_sample(tiles, sizes, ["xyz"])["xyz"])
+    found = _values(tiles, names)
     sampled = np.unique(found["classification"]).tolist() if "classification" in found else []
     percent = _class_percent(tiles)
     return MapIndex(
@@ -132,9 +133,23 @@ def _storey(
     return Storey(name="", floor_m=round(level, 3), walk_m=round(walk, 3), ceiling=bool(has))
 
 
-def _sample(tiles: TileSet, sizes: NDArray[np.int64], names: list[ColumnName]) -> Columns:
+def _values(tiles: TileSet, names: list[ColumnName]) -> Columns:
+    """Positions, values, normals and classes of a sample of some tiles.
+
+    Each tile costs as much as its first points do however few are taken, so a large map is known
+    by some of its tiles.
+    """
+    chosen = tiles.tiles
+    if len(chosen) > FIRST_VIEW.most_tiles:
+        rows = np.random.default_rng(1).choice(len(chosen), FIRST_VIEW.most_tiles, replace=False)
+        chosen = tuple(chosen[row] for row in np.sort(rows).tolist())
+    some = replace(tiles, tiles=chosen, points=sum(map(len, chosen)))
     fields = ["xyz", *(FIELD_OF[name] for name in names)]
     fields += [name for name in ("normal", "classification") if name in tiles.fields]
+    return _sample(some, sample_sizes(some), fields)
+
+
+def _sample(tiles: TileSet, sizes: NDArray[np.int64], fields: list[str]) -> Columns:
     parts = []
     for tile, size in zip(tiles, sizes.tolist(), strict=True):
         part = dict(read_shown(tile, fields, slice(0, size)))

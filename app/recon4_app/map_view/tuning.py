@@ -32,6 +32,8 @@ MAP_CHUNKS = MapChunkTuning()
 class FirstViewTuning(Struct, frozen=True, kw_only=True):
     """What the first view is made for."""
 
+    most_tiles: int = 128
+    """Of a larger map, color scales and storeys are those of as many tiles, drawn at random."""
     usual_percent: tuple[float, float] = (2.0, 98.0)
     """Ends of a color scale, among the values of the sample [%]."""
     extent_percent: tuple[float, float] = (0.5, 99.5)

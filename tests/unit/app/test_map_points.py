@@ -1,13 +1,16 @@
 """The order, extent and storeys of what the page *Map* draws."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from recon4.mapping.tiles import TileSet
 from recon4.store.project import read_artifacts
-from recon4_app.map_view import points
-from recon4_app.map_view.index import _extent, storeys
+from recon4_app.map_view import index, points
+from recon4_app.map_view.index import _extent, _values, storeys
 from recon4_app.map_view.points import _shown_order, encoded, read_shown
+from recon4_app.map_view.tuning import FIRST_VIEW
 from tests.project_builder import build_project
 
 BOX = np.random.default_rng(3).uniform(0.0, (20.0, 10.0, 3.0), (50_000, 3))
@@ -95,3 +98,18 @@ def test_what_has_no_value_is_said(tiles, monkeypatch):
     steps = np.frombuffer(encoded(tiles, 0, "thickness", rows=slice(0, 2)), "<u2")
 
     assert steps.tolist() == [100, 65_535]
+
+
+def test_a_large_map_is_known_by_some_of_its_tiles(tiles, monkeypatch):
+    many = replace(tiles, tiles=tiles.tiles * 400, points=len(tiles) * 400)
+    reads = []
+    monkeypatch.setattr(
+        index, "read_shown", lambda tile, *rest: reads.append(tile) or read_shown(tile, *rest)
+    )
+
+    few, all_of_it = _values(tiles, ["intensity"]), _values(many, ["intensity"])
+
+    assert len(reads) == len(tiles.tiles) + FIRST_VIEW.most_tiles
+    for name in ("xyz", "intensity"):
+        usual = [np.percentile(found[name], (10, 50, 90), axis=0) for found in (few, all_of_it)]
+        assert usual[1] == pytest.approx(usual[0], rel=0.1, abs=0.3)
