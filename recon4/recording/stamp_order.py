@@ -41,7 +41,7 @@ class StampOrder(Generic[Item]):
     def _next(self, *, ended: bool) -> list[tuple[int, Item]]:
         """The next message; nothing if it is too late."""
         stamps = [stamp for stamp, _ in self._held]
-        newest_ns = stamps[0] if self._newest_ns is None else self._newest_ns
+        newest_ns = min(stamps) if self._newest_ns is None else self._newest_ns
         row = 0
         if stamps[0] >= newest_ns or _is_late(stamps, newest_ns, ended=ended):
             for k in range(1, len(stamps)):

@@ -39,6 +39,13 @@ def test_the_last_messages_may_be_late_too():
     assert in_order([0, 1, 2, 4, 5, 3]) == ([0, 1, 2, 3, 4, 5], 0)
 
 
+@pytest.mark.parametrize("first", [[1, 0], [2, 3, 0, 1], [3, 0, 1, 2]])
+def test_the_first_messages_may_be_late_too(first):
+    later = list(range(len(first), 12))
+
+    assert in_order([*first, *later]) == (list(range(12)), 0)
+
+
 def test_after_a_clock_was_set_back_the_order_of_recording_is_kept():
     stamps = [*range(100, 120), *range(40, 60)]
 
