@@ -71,6 +71,25 @@ CLOUDS = CloudTuning()
 
 
 class BagImuTuning(Struct, frozen=True, kw_only=True):
+class BinFileTuning(Struct, frozen=True, kw_only=True):
+    """Files of numbers without a header (`formats/bin_layout.py`)."""
+
+    widths: tuple[int, ...] = (4, 5, 6)
+    """Numbers in a row: of KITTI, nuScenes (with rings), Boreas (with rings and times)."""
+    clearer: float = 0.2
+    """Numbers below each other are more alike by this than in rows of four, of -2..2; of 54
+    simulated clouds, in and out of order, the right width leads by 0.59 and more."""
+    fewest_rows: int = 20
+    """Fewer tell nothing: four in a row are taken."""
+    looked_at: int = 1600
+    """What tells such a file [bytes]."""
+    largest: float = 1e5
+    """Of a number in it."""
+
+
+BIN_FILES = BinFileTuning()
+
+
     """Samples of bags."""
 
     batch: int = 500

@@ -18,11 +18,11 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
+from recon4.recording.formats.bin_layout import bin_layout, is_bin
 from recon4.recording.formats.cloud_headers import (
     HEADER_BYTES,
     HEADER_FORMATS,
     CloudLayout,
-    Field,
     header_format,
     is_ply,
 )
@@ -52,7 +52,7 @@ def is_cloud_file(path: Path) -> bool:
         head = file.read(HEADER_BYTES)
     if header_format(head) is not None or path.suffix.lower() == SCAN_SUFFIX:
         return True
-    return path.suffix.lower() == ".bin" and _is_bin(head, path.stat().st_size)
+    return path.suffix.lower() == ".bin" and is_bin(head, path.stat().st_size)
 
 
 def is_mesh(path: Path) -> bool:
@@ -131,7 +131,7 @@ def _layout(file: BinaryIO, path: Path) -> CloudLayout:
     if (known := header_format(head)) is not None:
         return known.layout(head, path.name)
     if path.suffix.lower() == ".bin":
-        return _bin_layout(_size(file), path.name)
+        return bin_layout(head, _size(file), path.name)
     raise UnknownFormat(f"{path.name}: expected a {CLOUD_FORMATS} file")
 
 
@@ -154,26 +154,6 @@ def _chunks(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
     if layout.encoding == "binary_compressed":
         return _compressed(file, layout, name)
     return _binary(file, layout, name)
-
-
-# -- KITTI BIN
-
-
-def _is_bin(head: bytes, size: int) -> bool:
-    if size % 16 and len(head) < 1600:
-        return False
-    values = np.frombuffer(head[: min(len(head), 1600) // 16 * 16], "<f4")
-    return bool(np.all(np.isfinite(values)) and np.all(np.abs(values) < 1e5))
-
-
-def _bin_layout(size: int, name: str) -> CloudLayout:
-    if size % 16:
-        raise CorruptFile(
-            f"{name}: a KITTI BIN file has 16 bytes a point (x y z intensity as float32), "
-            f"got {size} bytes, {size % 16} too many"
-        )
-    fields = tuple(Field(key, "<f4") for key in ("x", "y", "z", "intensity"))
-    return CloudLayout(fields, size // 16, "binary", 0)
 
 
 # -- rows

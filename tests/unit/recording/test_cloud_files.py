@@ -59,6 +59,35 @@ def test_a_kitti_bin_file_is_read(table, tmp_path):
     np.testing.assert_array_equal(read_cloud(path)["y"], table["y"])
 
 
+@pytest.mark.parametrize("unit", [1.0, 1 / 255], ids=["0-255", "0-1"])
+@pytest.mark.parametrize("order", ["firing", "shuffled"])
+@pytest.mark.parametrize("width", [4, 5, 6])
+def test_bin_files_with_rings_and_times_are_read_by_their_width(width, order, unit, tmp_path):
+    room = room_cloud()
+    rows = np.arange(len(room["x"]) // 4 * 4)  # of any width the file is whole rows of four
+    if order == "shuffled":
+        rows = np.random.default_rng(1).permutation(rows)
+    room["intensity"] = room["intensity"] * unit
+    names = ("x", "y", "z", "intensity", "ring", "time")[:width]
+    columns = {name: room[name][rows].astype("<f4") for name in names}
+    path = tmp_path / "000000.bin"
+    path.write_bytes(np.column_stack(list(columns.values())).tobytes())
+
+    read = read_cloud(path)
+
+    assert list(read) == list(names)
+    for name in names:
+        np.testing.assert_array_equal(read[name], columns[name])
+
+
+def test_a_fifth_number_that_is_no_ring_is_not_read(table, tmp_path):
+    path = tmp_path / "000000.bin"
+    columns = [table[k].astype("<f4") for k in ("x", "y", "z", "intensity")]
+    path.write_bytes(np.column_stack([*columns, columns[0] + 7.5]).tobytes())
+
+    assert list(read_cloud(path)) == ["x", "y", "z", "intensity"]
+
+
 @pytest.mark.parametrize("kind", BINARY)
 @settings(max_examples=40, deadline=None)
 @given(share=st.floats(0.0, 0.999))
