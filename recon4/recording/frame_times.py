@@ -24,6 +24,7 @@ from recon4.errors import CorruptFile
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
+from recon4.recording.formats.cloud_files import CLOUD_SUFFIXES
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
 from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport, warning
@@ -61,7 +62,7 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
         folder: Where they lie; a text file with times lies in it or beside it.
         files: In the order of their numbers.
     """
-    named = [name_time_ns(file.stem) for file in files]
+    named = [name_time_ns(_stem(file)) for file in files]
     known = np.array([t for t in named if t is not None], np.int64)
     if len(known) == len(files) and np.all(np.diff(known) > 0):
         return FrameTimes(known, "the file names")
@@ -103,6 +104,12 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
         return FrameTimes(_filled(times, sound), beside.name, tuple(found))
     assumed = np.arange(len(files), dtype=np.int64) * FRAME_TIMES.assumed_ns
     return FrameTimes(assumed, "", tuple(found))
+
+
+def _stem(file: Path) -> str:
+    """The name without its endings: nuScenes has ``.pcd.bin``."""
+    inner = Path(file.stem)
+    return inner.stem if inner.suffix.lower() in CLOUD_SUFFIXES else file.stem
 
 
 def read_times(path: Path) -> Times:

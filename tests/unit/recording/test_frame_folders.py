@@ -1,9 +1,10 @@
 """Folders with one file a frame: order, times, damaged files."""
 
+import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
-from recon4.recording.folders import natural
+from recon4.recording.folders import list_frames, natural
 from recon4.recording.frame_times import name_time_ns, read_times
 from recon4.recording.info import describe
 from tests.builders import T0_NS, room_cloud, write_bin, write_pcd, write_ply
@@ -94,6 +95,17 @@ def test_a_frame_without_points_is_counted(tmp_path):
 )
 def test_times_in_names(stem, expected):
     assert name_time_ns(stem) == expected
+
+
+def test_times_in_names_with_two_endings_are_used(tmp_path):
+    names = [f"LIDAR_TOP__{T0_NS // 1000 + k * 50_000}.pcd.bin" for k in range(3)]
+    for name in names:
+        write_bin(tmp_path / name, room_cloud())
+
+    frames = list_frames(tmp_path)
+
+    assert frames.times_from == "the file names"
+    assert np.diff(frames.t_ns).tolist() == [50_000_000] * 2
 
 
 @pytest.mark.parametrize(
