@@ -63,14 +63,14 @@ class CloudTuning(Struct, frozen=True, kw_only=True):
     outside: float = 3.0
     """An origin that is farther from the middle of the points than this multiple of their extent is
     that of a coordinate system, not of a sensor."""
-    millimeters_m: float = 1000.0
-    """No LiDAR of a backpack measures half of its points farther away [m]."""
+    millimeters_m: float = 300.0
+    """No LiDAR of a backpack measures half of its points farther away [m]; in millimeters they are
+    in all but the narrowest places."""
 
 
 CLOUDS = CloudTuning()
 
 
-class BagImuTuning(Struct, frozen=True, kw_only=True):
 class BinFileTuning(Struct, frozen=True, kw_only=True):
     """Files of numbers without a header (`formats/bin_layout.py`)."""
 
@@ -90,6 +90,7 @@ class BinFileTuning(Struct, frozen=True, kw_only=True):
 BIN_FILES = BinFileTuning()
 
 
+class BagImuTuning(Struct, frozen=True, kw_only=True):
     """Samples of bags."""
 
     batch: int = 500

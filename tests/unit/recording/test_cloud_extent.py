@@ -36,11 +36,12 @@ FAULTS = [
     (moved_cloud(1000.0), "ingest.points_unit_m=0.001"),
     (moved_cloud(1.0, (636_000.0, 849_000.0, 410.0)), "coordinates of a map or of the earth"),
     (moved_cloud(60.0), "a larger ingest.max_range_m"),
+    (moved_cloud(200.0), "ingest.points_unit_m=0.001"),
 ]
 
 
 @pytest.mark.parametrize("as_bag", [False, True], ids=["folder", "bag"])
-@pytest.mark.parametrize(("cloud", "remedy"), FAULTS, ids=["millimeters", "map", "far"])
+@pytest.mark.parametrize(("cloud", "remedy"), FAULTS, ids=["millimeters", "map", "far", "small"])
 def test_clouds_without_a_usable_point_are_said_with_extent_and_remedy(
     tmp_path, cloud, remedy, as_bag
 ):
