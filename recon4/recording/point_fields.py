@@ -17,6 +17,8 @@ TIME_FIELDS = (
     "offset_time",
     "time_offset",
     "t_us",
+    "gps_time",
+    "gpstime",
 )
 RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")
 INTENSITY_FIELDS = ("intensity", "i", "reflectivity", "signal", "scalar_intensity")

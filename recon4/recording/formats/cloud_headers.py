@@ -177,7 +177,9 @@ def _ply_field(words: list[str], encoding: str, name: str) -> Field:
             f"{name}: PLY header: expected vertices with single values, "
             f"got the list {words[-1][:40]!r}"
         )
-    return Field(words[2].lower(), _PLY_ORDER[encoding] + _PLY_TYPES[words[1]])
+    # CloudCompare writes each scalar field as scalar_NAME.
+    key = words[2].lower().removeprefix("scalar_") or words[2].lower()
+    return Field(key, _PLY_ORDER[encoding] + _PLY_TYPES[words[1]])
 
 
 def whole(text: str) -> int:

@@ -88,6 +88,13 @@ def test_a_fifth_number_that_is_no_ring_is_not_read(table, tmp_path):
     assert list(read_cloud(path)) == ["x", "y", "z", "intensity"]
 
 
+def test_fields_of_ply_files_by_cloudcompare_are_those_of_their_names(table, tmp_path):
+    renamed = {name if name in "xyz" else f"scalar_{name}": c for name, c in table.items()}
+    path = write_ply(tmp_path / "cloud.ply", renamed)
+
+    assert set(read_cloud(path)) == set(table)
+
+
 @pytest.mark.parametrize("kind", BINARY)
 @settings(max_examples=40, deadline=None)
 @given(share=st.floats(0.0, 0.999))
