@@ -41,7 +41,7 @@ _NAMES: Mapping[str, tuple[str, ...]] = {
                   "altitude", "pitch"),
     "zenith": ("zenith", "polar", "zenithangle", "polarangle"),
     "time": ("time", "t", "timestamp", "stamp", "timeoffset", "offsettime", "toffset", "offset",
-             "relativetime", "pointtime", "ts", "dt", "curvature"),
+             "relativetime", "pointtime", "gpstime", "ts", "dt", "curvature"),
     "ring": ("ring", "channel", "line", "laserid", "beam", "laser", "beamid", "ringid", "channelid",
              "lineid", "layer", "scanid", "row", "ch"),
     "intensity": ("intensity", "i", "reflectivity", "refl", "reflectance", "remission", "signal",
@@ -55,6 +55,10 @@ _PREFIXES = {"p", "pt", "pos", "position", "point", "coord", "coords", "cartesia
 _WORDS = {"sec": "s", "secs": "s", "seconds": "s", "usec": "us", "nsec": "ns", "nanosec": "ns",
           "msec": "ms", "nanoseconds": "ns", "microseconds": "us", "degrees": "deg",
           "radians": "rad", "degree": "deg"}  # fmt: skip
+_JOINED = re.compile(
+    r"(\w+?)(nanosec|nsec|usec|msec|secs?|seconds|nanoseconds|microseconds|ns|us|ms)"
+)
+"""A name with its unit, as ``timestampNsec``: the fields of clouds are in lower case."""
 _SUFFIXES = {*LENGTHS, *ANGLES, *TIMES}
 
 
@@ -155,6 +159,8 @@ def _of_list(name: str, columns: Columns, period_s: float) -> Proposal:
 def _split(column: str) -> tuple[str, str]:
     """Core of a name, and the unit it ends with; ``pos_x_mm`` is x and mm."""
     words = [word for word in re.split(r"[._\s]+", column.lower()) if word]
+    if words and (joined := _JOINED.fullmatch(words[-1])) and joined[1] in _NAMES["time"]:
+        words = [*words[:-1], joined[1], joined[2]]
     unit = ""
     if len(words) == 1 and _WORDS.get(words[0]) in TIMES:
         return "time", _WORDS[words[0]]

@@ -201,6 +201,15 @@ def test_a_column_that_looks_like_the_time_of_a_cloud_that_has_none_is_named(tmp
     assert any("time may be point_time_us:us" in text for text in found.derived)
 
 
+def test_seconds_and_nanoseconds_in_two_columns_are_named(tmp_path):
+    whole, rest = np.divmod(T0_NS + since_us(ROOM).astype(np.int64) * 1000, 10**9)
+    times = {"timestampSec": whole.astype(np.uint32), "timestampNsec": rest.astype(np.uint32)}
+
+    found = describe(pointcloud2(tmp_path, {axis: ROOM[axis] for axis in "xyz"} | times))
+
+    assert any("time may be timestampsec:s+timestampnsec:ns" in text for text in found.derived)
+
+
 @pytest.mark.parametrize(
     ("name", "wrong", "words"),
     [
