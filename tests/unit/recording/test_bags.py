@@ -74,6 +74,17 @@ def test_a_folder_without_its_description_is_read_file_by_file(rooms, tmp_path):
     report = ImportReport()
 
     assert len(messages(folder, report)) == len(messages(rooms["db3"]))
+    assert any("no metadata.yaml" in text for text in report.derived)
+    assert not report.findings
+
+
+def test_a_damaged_description_of_a_folder_is_a_warning(rooms, tmp_path):
+    folder = tmp_path / "bag"
+    shutil.copytree(rooms["db3"], folder)
+    (folder / "metadata.yaml").write_text("no description")
+    report = ImportReport()
+
+    assert len(messages(folder, report)) == len(messages(rooms["db3"]))
     assert warned(report, K.FOLDER_DESCRIPTION)
 
 
