@@ -96,6 +96,7 @@ _PACKETS = {
     "positions": _READ,
     "positions_wrong_time": _lost("positions"),
     "positions_out_of_order": _lost("positions"),
+    "positions_duplicate": _repaired("positions"),
     FREE_CLOCK: _usual(),
     "clock_jumps": _repaired(),
     "clock_jumps_back": _repaired(),

@@ -36,6 +36,7 @@ count-azimuth_jumps = Sprünge des Azimuts, der Schritt davor wird verwendet
 count-positions = Positionspakete
 count-positions_wrong_time = eine Zeit mehr als 1 s daneben, ausgelassen
 count-positions_out_of_order = früher als das vorherige, ausgelassen
+count-positions_duplicate = doppelt empfangen, die Kopien ausgelassen
 count-clock_runs_freely_ = laufen frei, auf die Uhr des Aufzeichnungsrechners verschoben
     .noun = Uhren
 count-clock_jumps = Sprünge, die Zeiten laufen ohne sie weiter

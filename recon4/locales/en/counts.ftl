@@ -37,6 +37,7 @@ count-azimuth_jumps = azimuth jumps, the step before is used
 count-positions = position packets
 count-positions_wrong_time = a time more than 1 s off, dropped
 count-positions_out_of_order = earlier than the one before, dropped
+count-positions_duplicate = received twice, the copies dropped
 count-clock_runs_freely_ = run freely, shifted to the recorder's clock
     .noun = clocks
 count-clock_jumps = jumps, the times go on without them

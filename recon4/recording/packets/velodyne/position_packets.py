@@ -161,13 +161,14 @@ class PositionDecoder:
         self._clock, self._report = clock, report
         self._name = sensor.name
         self._sentence = b""
-        self._imu_ns = self._gnss_ns = np.iinfo(np.int64).min
+        self._newest_ns = self._gnss_ns = np.iinfo(np.int64).min
 
     def push(self, t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> PacketSamples:
         """Samples of position packets, in order; a repeated sentence counts once.
 
-        Counts ``positions``, ``positions_wrong_time``, ``positions_out_of_order``, ``imu_samples``,
-        ``gnss_samples``, ``nmea_damaged`` and ``nmea_no_fix``.
+        Counts ``positions``, ``positions_wrong_time``, ``positions_out_of_order``,
+        ``positions_duplicate``, ``imu_samples``, ``gnss_samples``, ``nmea_damaged`` and
+        ``nmea_no_fix``.
 
         Args:
             t_arrival_ns: Times of arrival [ns], (N,).
@@ -189,15 +190,17 @@ class PositionDecoder:
         and the vibration of a car that the lasers see; the manual shows it in a figure only).
         """
         words = np.ascontiguousarray(payloads[:, 14:38]).view("<u2").reshape(-1, 3, 4)
-        later = t_ns > np.maximum.accumulate(np.concatenate([[self._imu_ns], t_ns[:-1]]))
+        newest = np.maximum.accumulate(np.concatenate([[self._newest_ns], t_ns[:-1]]))
+        later, again = t_ns > newest, t_ns == newest
         kept = later & words.any(axis=(1, 2))
-        self._report.count("positions_out_of_order", int((~later).sum()))
+        self._report.count("positions_duplicate", int(again.sum()))
+        self._report.count("positions_out_of_order", int((t_ns < newest).sum()))
+        self._newest_ns = int(np.max(t_ns, initial=self._newest_ns))
         if not kept.any():
             return None
         value = ((words[kept].astype(np.int64) & 0xFFF) + 2048) % 4096 - 2048
         x, y = value[:, :, 2], value[:, :, 3]
         accel = np.column_stack([-y[:, 1] - y[:, 2], y[:, 0] - x[:, 2], x[:, 0] + x[:, 1]]) / 2
-        self._imu_ns = int(t_ns[kept][-1])
         self._report.count("imu_samples", int(kept.sum()))
         self._report.derive(
             f"{self._name}: gyroscope and accelerometer from its position packets, in its own "
