@@ -52,13 +52,21 @@ class ExactClock:
                 f"{self._name}: all points of a cloud have one time: spread in their order",
             )
             values = first + (np.arange(len(values)) * period_ns) // len(values)
-        return values + self._offset(first, t_ns), sound
+        return values + self.offset_ns(first, t_ns), sound
 
-    def _offset(self, first_ns: int, t_ns: int) -> int:
-        """Clock of the stamps minus that of the points [ns]."""
+    def offset_ns(
+        self, first_ns: int, t_ns: int, *, same_ns: float = POINT_CLOCK.same_clock_ns
+    ) -> int:
+        """Clock of the stamps minus that of the points [ns]; it stays until it jumps.
+
+        Args:
+            first_ns: First point of a cloud.
+            t_ns: Stamp of the cloud.
+            same_ns: The clocks are one if the first cloud is nearer to its stamp.
+        """
         ahead = t_ns - first_ns
         if self._offset_ns is None:
-            self._offset_ns = 0 if abs(ahead) < POINT_CLOCK.same_clock_ns else ahead
+            self._offset_ns = 0 if abs(ahead) < same_ns else ahead
             if self._offset_ns:
                 self._report.derive(
                     f"{self._name}: the points' clock is not the stamps' clock, it is ahead by "

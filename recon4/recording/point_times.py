@@ -12,6 +12,7 @@ from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import described
+from recon4.recording.exact_times import ExactClock
 from recon4.recording.point_fields import NS_TIME
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import POINT_TIMES
@@ -40,6 +41,8 @@ class _Numbers:
     around: NDArray[Any]
     """Values minus the middle one, int64 or float64, (N,)."""
     finite: NDArray[np.bool_]
+    low: float
+    """Least of the bulk of them."""
     span: float
     """Of the bulk of them."""
     is_fraction: bool
@@ -74,6 +77,7 @@ class PointClock:
         """
         self._name, self._report, self._points_lead = name, report, points_lead
         self._noted = False
+        self._dates = ExactClock(name, report)
         self._known_unit = 0.0
         """Of the clouds before, for those with few points [ns]; 0 = not known yet."""
 
@@ -134,6 +138,12 @@ class PointClock:
         self, numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool
     ) -> float:
         by_span = _unit_of_turn(numbers) if full_turn else _unit_of_part(numbers, period_ns)
+        if _is_part_of_cloud(numbers, period_ns):
+            self._report.derive(
+                f"{self._name}: times of points are from 0 to 1: parts of the time from "
+                "cloud to cloud"
+            )
+            by_span = float(period_ns)
         unit = _unit_of_clock(numbers, t_ns, period_ns) or _unit_of_dates(numbers) or by_span
         self._known_unit = unit or self._known_unit
         if not unit and not full_turn:
@@ -191,6 +201,9 @@ class PointClock:
         if self._points_lead and _is_date(middle_ns):
             self._report.derive(f"{self._name}: times are those of the points")
             return middle_ns
+        if _is_date(middle_ns) and _is_date(t_ns) and not _is_hours(t_ns - first_ns, near_ns):
+            # Drivers repeat stamps; two dates have one offset for the whole walk.
+            return middle_ns + self._dates.offset_ns(first_ns, t_ns, same_ns=near_ns)
         if abs(middle_ns - t_ns) <= near_ns < t_ns:
             return middle_ns
         if abs(middle_ns) <= revolution_ns and 0 in cycles_ns:
@@ -239,6 +252,7 @@ def _numbers(values: Values) -> _Numbers:
         middle=middle,
         around=around,
         finite=finite,
+        low=middle + float(bulk.min()),
         span=float(np.ptp(bulk)),
         is_fraction=is_fraction,
         wide=values.dtype.itemsize >= 8,
@@ -315,6 +329,17 @@ def _unit_of_part(numbers: _Numbers, period_ns: int) -> float:
     return 0.0
 
 
+def _is_part_of_cloud(numbers: _Numbers, period_ns: int) -> bool:
+    """Whether the times of each cloud go from 0 to 1, whatever time it takes.
+
+    Seconds would have clouds of a second, far longer than the time from one to the next.
+    """
+    least, most = numbers.low, numbers.low + numbers.span
+    is_whole = -POINT_TIMES.part_ends <= least and 1.0 - POINT_TIMES.part_ends <= most <= 1.0
+    too_long = POINT_TIMES.part_ratio[1] * max(period_ns, POINT_TIMES.part_ns) < 1e9
+    return numbers.is_fraction and is_whole and least <= POINT_TIMES.part_ends and too_long
+
+
 def _unit_of_few(numbers: _Numbers) -> float:
     """The usual unit of times of which nothing else is known; 0 = none."""
     if not numbers.is_fraction:
@@ -329,6 +354,12 @@ def _revolution_ns(numbers: _Numbers, unit: float, period_ns: int, *, full_turn:
 
 def _is_date(t_ns: int) -> bool:
     return t_ns >= POINT_TIMES.dates[0][0]
+
+
+def _is_hours(ahead_ns: int, near_ns: float) -> bool:
+    """Whether an offset is whole hours, as between time zones; none is not."""
+    hours = round(ahead_ns / HOUR_NS)
+    return hours != 0 and abs(ahead_ns - hours * HOUR_NS) <= near_ns
 
 
 def _scaled(numbers: NDArray[Any], unit: float) -> Times:

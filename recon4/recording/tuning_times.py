@@ -82,6 +82,8 @@ class PointTimeTuning(Struct, frozen=True, kw_only=True):
     part_ratio: tuple[float, float] = (0.2, 1.5)
     """Duration of a cloud that is part of a revolution, from and to, in those from cloud to
     cloud."""
+    part_ends: float = 0.05
+    """Times from 0 to 1 begin and end this near to 0 and 1."""
     steps: float = 50.0
     """A revolution is resolved in at least this many steps, or the times are too coarse."""
 

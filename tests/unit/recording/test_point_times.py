@@ -9,7 +9,7 @@ from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud
 from tests.unit.recording.packet_builders import sensor
-from tests.unit.recording.test_cloud_points import REL_NS, decode, with_field
+from tests.unit.recording.test_cloud_points import PERIOD_NS, REL_NS, decode, with_field
 from tests.warned import K, warned
 
 HOUR_NS = 3_600_000_000_000
@@ -98,6 +98,38 @@ def test_times_since_power_on_with_stamps_in_utc_start_at_the_stamp():
 
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=2000)
     assert any("not the stamps' clock" in text for text in report.derived)
+
+
+def test_dates_of_points_go_on_while_a_driver_repeats_its_stamps():
+    report = ImportReport()
+    decoder = CloudDecoder(0, sensor(), report=report)
+    starts = T0_NS + PERIOD_NS * np.arange(9)
+
+    found = [
+        decoder.decode(
+            with_field("timestamp", (REL_NS + start) * 1e-9),
+            t_ns=int(starts[k - k % 4]),
+            period_ns=PERIOD_NS,
+        ).t_ns
+        for k, start in enumerate(starts)
+    ]
+
+    np.testing.assert_allclose([t[0] for t in found], starts, atol=500)
+    assert not report.findings and not any("clock" in text for text in report.derived)
+
+
+@pytest.mark.parametrize("period_ns", [PERIOD_NS, PERIOD_NS // 2])
+def test_times_from_0_to_1_are_parts_of_the_time_to_the_next_cloud(period_ns):
+    values = (REL_NS / PERIOD_NS).astype(np.float32)
+    report = ImportReport()
+    decoder = CloudDecoder(0, sensor(), report=report)
+
+    shots = decoder.decode(with_field("time", values), t_ns=T0_NS, period_ns=period_ns)
+
+    expected = REL_NS * period_ns // PERIOD_NS
+    np.testing.assert_allclose(shots.t_ns - T0_NS, expected, atol=100)
+    assert any("from 0 to 1" in text for text in report.derived)
+    assert not report.lost()
 
 
 @pytest.mark.parametrize("start_ns", [1_234_500_000_000, HOUR_NS - 40_000_000])
