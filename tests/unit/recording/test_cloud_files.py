@@ -85,7 +85,10 @@ def test_a_fifth_number_that_is_no_ring_is_not_read(table, tmp_path):
     columns = [table[k].astype("<f4") for k in ("x", "y", "z", "intensity")]
     path.write_bytes(np.column_stack([*columns, columns[0] + 7.5]).tobytes())
 
-    assert list(read_cloud(path)) == ["x", "y", "z", "intensity"]
+    read = read_cloud(path)
+
+    assert list(read) == ["x", "y", "z", "intensity"]
+    np.testing.assert_array_equal(read["y"], table["y"])
 
 
 def test_fields_of_ply_files_by_cloudcompare_are_those_of_their_names(table, tmp_path):
