@@ -36,7 +36,7 @@ FILES-MISSING = Dateien fehlen
 
 FOLDER-DESCRIPTION = Beschreibung eines Bags
     .text1 = { $name }: { $error }; seine Dateien werden einzeln gelesen.
-    .meaning = Die metadata.yaml des Bags fehlt oder ist beschädigt: was vom Bag fehlt, ist nicht bekannt.
+    .meaning = Die metadata.yaml des Bags ist beschädigt: was vom Bag fehlt, ist nicht bekannt.
 
 CHUNK-LEFT-OUT = Teil einer Datei ausgelassen
     .text1 = Ausgelassen: { $error }.

@@ -37,7 +37,7 @@ FILES-MISSING = Files missing
 
 FOLDER-DESCRIPTION = Description of a bag
     .text1 = { $name }: { $error }; its files are read one by one.
-    .meaning = The metadata.yaml of the bag is missing or damaged: what is missing of the bag is not known.
+    .meaning = The metadata.yaml of the bag is damaged: what is missing of the bag is not known.
 
 CHUNK-LEFT-OUT = Part of a file left out
     .text1 = Left out: { $error }.

@@ -8,6 +8,8 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from recon4.errors import CorruptFile
+from recon4.model.finding_kinds import FindingKind
+from recon4.recording.report import ImportReport
 
 METADATA = "metadata.yaml"
 MAX_METADATA_BYTES = 512 << 10
@@ -47,6 +49,18 @@ def read_metadata(folder: Path) -> BagMetadata:
             f"{METADATA}: expected at most {MAX_METADATA_BYTES} bytes, got {path.stat().st_size}"
         )
     return _metadata(folder, _load(text))
+
+
+def say_undescribed(folder: Path, error: CorruptFile, report: ImportReport) -> None:
+    """Say that the files of a folder are read one by one.
+
+    Storage files that were moved together have no description; each says by itself whether it is
+    whole. A description that is damaged is a warning.
+    """
+    if (folder / METADATA).exists():
+        report.warn(FindingKind.FOLDER_DESCRIPTION, name=folder.name, error=str(error))
+    else:
+        report.derive(f"{folder.name}: no {METADATA}: all files in it are one recording")
 
 
 def _load(text: bytes) -> Any:

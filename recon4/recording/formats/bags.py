@@ -21,7 +21,7 @@ from recon4.model.point_recipes import PointRecipe
 from recon4.recording.folders import natural
 from recon4.recording.formats import db3
 from recon4.recording.formats.bag1 import Bag1, is_bag1
-from recon4.recording.formats.bag_folder import METADATA, BagMetadata, read_metadata
+from recon4.recording.formats.bag_folder import BagMetadata, read_metadata, say_undescribed
 from recon4.recording.formats.chunks import BagIndex, RawMessage
 from recon4.recording.formats.cloud_tables import cloud_lists
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
@@ -233,10 +233,7 @@ class Bag:
         try:
             metadata = read_metadata(path)
         except CorruptFile as error:
-            if (path / METADATA).exists():
-                self.report.warn(FindingKind.FOLDER_DESCRIPTION, name=path.name, error=str(error))
-            else:  # files that were moved together: each says by itself whether it is whole
-                self.report.derive(f"{path.name}: no {METADATA}: all files in it are one recording")
+            say_undescribed(path, error, self.report)
             metadata, described = BagMetadata(_storage_files(path, error), "", 0), False
         missing = [file.name for file in metadata.files if not file.is_file()]
         if missing:
