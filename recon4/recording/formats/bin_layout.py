@@ -33,7 +33,7 @@ def bin_layout(head: bytes, size: int, name: str) -> CloudLayout:
     column holds all quantities. A fifth number that is no ring has no name, and is not read.
 
     Args:
-        head: The first bytes of the file, whole rows of any width if it has so many.
+        head: The first bytes of the file, `HEADER_BYTES` of them, or all.
         size: Of the file [bytes].
         name: Of the file, for messages.
 
