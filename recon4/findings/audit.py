@@ -14,7 +14,7 @@ from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
 from recon4.findings.witnesses.class_corrections import ClassCorrections
 from recon4.findings.witnesses.imports import Earlier, Import
-from recon4.findings.witnesses.imu import Gravity, ImuUse, Rides, Saturation
+from recon4.findings.witnesses.imu import Gravity, ImuUse, Rides, Saturation, UpsideDown
 from recon4.findings.witnesses.lines import FirstTrajectory
 from recon4.findings.witnesses.loops import Correction, Decisions, Loops
 from recon4.findings.witnesses.motion import Bridges, Moving, WeakTurns
@@ -61,6 +61,7 @@ def witnesses(settings: AuditReads) -> tuple[Witness, ...]:
         Rides(),
         Saturation(),
         Gravity(),
+        UpsideDown(),
         ImuUse(),
         Moving(),
         WeakTurns(),

@@ -17,6 +17,7 @@ from recon4.model.import_notes import CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.imu_saturation import SaturatedAxis, saturated_axes
+from recon4.registration.motion import imu_in_body
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 _OUTCOMES = {
@@ -85,6 +86,26 @@ class Gravity:
             "percent": percent,
         }
         yield finding(FindingKind.IMU_GRAVITY, Level.NOTE if of_a_bias else Level.CHECK, values)
+
+
+class UpsideDown:
+    """A body that stands on its head by the accelerometer."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """A note, as LiDARs are mounted so, too; to check if tracking was lost besides."""
+        figures = walk.odometry_figures
+        if figures is None or walk.imu is None or walk.rig is None or figures.lines is not None:
+            return
+        force = imu_in_body(walk.imu, walk.rig)[1].mean(axis=0)
+        angle_rad = float(np.arctan2(np.hypot(force[0], force[1]), force[2]))
+        if angle_rad > IMU_WITNESS.upside_down_rad:  # NaN: no accelerometer
+            lost = bool(np.any(walk.steps.get("lost", False)))
+            found = finding(
+                FindingKind.IMU_UPSIDE_DOWN,
+                Level.CHECK if lost else Level.NOTE,
+                {"angle_rad": angle_rad},
+            )
+            yield replace(found, sensor="IMU")
 
 
 class Rides:

@@ -10,6 +10,9 @@ class ImuWitnessTuning(Struct, frozen=True, kw_only=True):
 
     storey_m: float = 1.0
     """Heights that are wrong by more than this put one storey onto another [m]."""
+    upside_down_rad: float = 2.0
+    """A body whose z axis is farther from up, by the accelerometer, stands on its head [rad]; on
+    its side it is 1.6 away."""
     of_a_bias_m_s2: float = 0.4
     """The bias of a unit in order changes gravity by a quarter of this (standard deviation); more
     is a wrong scale, of which a gyroscope in the same unit shows the half, too [m/s²]."""

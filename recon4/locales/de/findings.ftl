@@ -224,6 +224,12 @@ IMU-GRAVITY = Falsche Schwerebeschleunigung
     .meaning = Beschleunigungen, und oft auch die Drehraten desselben Geräts, haben einen falschen Maßstab.
     .detection = Die mittlere spezifische Kraft über mindestens 10 s weicht um mehr als 0,2 m/s² von der Schwerebeschleunigung ab. Bis 0,4 m/s² kann es der Nullpunktfehler eines Geräts in Ordnung sein: ein Hinweis.
 
+IMU-UPSIDE-DOWN = Träger kopfüber
+    .text1 = Nach dem Beschleunigungsmesser steht der Träger auf dem Kopf: seine z-Achse zeigt { DEGREES($angle_rad, digits: 0) } von oben weg.
+    .remedy = Wenn das nicht so war: ein ruhender Beschleunigungsmesser muss +9,8 m/s² in der Achse messen, die nach oben zeigt. Das Vorzeichen aller Beschleunigungen umkehren und sie mit --imu angeben, oder den Einbau der IMU in [imu] rpy_deg der Rig-Datei angeben.
+    .meaning = Mit umgekehrtem Vorzeichen der Beschleunigungen oder falschem Einbau der IMU wird die Bewegung falsch vorhergesagt, und die Verfolgung geht verloren, sobald sich der Träger bewegt. Ein LiDAR, das kopfüber hängt, ist kein Fehler.
+    .detection = Die mittlere Beschleunigung der Begehung ist mehr als 115° von der z-Achse des Trägers entfernt. Ein Hinweis; *prüfen*, wenn die Verfolgung verloren ging.
+
 IMU-GYRO-SCALE = Maßstab des Kreisels
     .text1 = Der Kreisel misst Drehungen um { $direction } um { PERCENT($size, digits: 1) } ± { PERCENT($sd, digits: 1) } zu { WORD($way, of: "IMU-GYRO-SCALE") }: seinen Maßstab prüfen. Die Odometrie hat es korrigiert.
     .word-large = groß

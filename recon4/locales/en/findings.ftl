@@ -225,6 +225,12 @@ IMU-GRAVITY = Wrong gravity
     .meaning = Accelerations, and often the turn rates of the same unit, have a wrong scale.
     .detection = The mean specific force over at least 10 s differs from gravity by more than 0.2 m/s². Up to 0.4 m/s² it may be the bias of a unit in order: a note.
 
+IMU-UPSIDE-DOWN = Body upside down
+    .text1 = By the accelerometer the body stands on its head: its z axis points { DEGREES($angle_rad, digits: 0) } away from up.
+    .remedy = If it did not: an accelerometer at rest must measure +9.8 m/s² along the axis that points up. Reverse the sign of all accelerations and give them with --imu, or give the mount of the IMU in [imu] rpy_deg of the rig file.
+    .meaning = With the sign of the accelerations reversed, or a wrong mount of the IMU, the motion is predicted the wrong way and tracking is lost when the body moves. A LiDAR that hangs upside down is no fault.
+    .detection = The mean acceleration of the walk is more than 115° away from the z axis of the body. A note; *check* if tracking was lost.
+
 IMU-GYRO-SCALE = Scale of the gyroscope
     .text1 = The gyroscope measures turns about { $direction } { PERCENT($size, digits: 1) } ± { PERCENT($sd, digits: 1) } too { WORD($way, of: "IMU-GYRO-SCALE") }: check its scale. The odometry corrected it.
     .word-large = large

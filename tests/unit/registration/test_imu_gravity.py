@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.imu import Gravity
+from recon4.findings.witnesses.imu import Gravity, UpsideDown
 from recon4.model.finding import Level
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.samples import ImuSamples
@@ -73,3 +73,27 @@ def _attitude(trajectory: Trajectory, imu: ImuSamples) -> np.ndarray:
     inside = np.clip(imu.t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
     R = trajectory.at(inside).R @ RIG.T_body_imu.R
     return np.asarray(R)
+
+
+@pytest.mark.parametrize(
+    ("sign", "lost", "levels"),
+    [
+        (1.0, True, []),
+        (-1.0, False, [Level.NOTE]),
+        (-1.0, True, [Level.CHECK]),
+        (np.nan, True, []),
+    ],
+    ids=["upright", "upside down", "reversed", "no accelerometer"],
+)
+def test_reversed_accelerations_are_named_where_tracking_was_lost(
+    sign: float, lost: bool, levels: list[Level]
+) -> None:
+    trajectory, imu = walked("office", seconds=3.0)
+    record = WalkRecord(
+        imu=ImuSamples(imu.t_ns, imu.gyro_rad_s, sign * imu.accel_m_s2),
+        rig=RIG,
+        odometry_figures=OdometryFigures(multiframes=len(trajectory), lost=0, imu=True),
+        steps={"lost": np.array([False, lost])},
+    )
+
+    assert [one.level for one in UpsideDown().check(record)] == levels
