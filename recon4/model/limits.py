@@ -18,6 +18,10 @@ class RigLimits:
     number: float = 4e9
     """Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
     sensors: int = 64
+    place_m: float = 20.0
+    """From the origin of the body, as for the transforms of a bag; more is another unit."""
+    right_angle_rad: float = 1e-4
+    """Degrees this near to a quarter or half turn in radians are radians; 1.5708 is."""
     head_deg_s: float = 3600.0
     """Rate of the head of a profiler."""
     clock_ppm: float = 10_000.0

@@ -224,7 +224,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
         sensors=sensors,
         T_body_imu=_mounting(imu) if built_in is None else imu_mount(built_in, _mounting(imu)),
         imu_time_offset_s=imu.number("time_offset_s"),
-        p_body_antenna=gnss.vector("lever_arm_m", 3),
+        p_body_antenna=gnss.place_m("lever_arm_m"),
         gnss_time_offset_s=gnss.number("time_offset_s"),
         imu_port=imu.port(PORTS.imu),
         gnss_port=gnss.port(PORTS.gnss),
@@ -383,11 +383,11 @@ def _limited(row: TomlTable, key: str, most: float) -> float:
 
 
 def _mounting(row: TomlTable) -> SE3:
-    xyz_m = row.vector("xyz_m", 3)
+    xyz_m = row.place_m("xyz_m")
     if "quat_xyzw" in row:
         quat = row.vector("quat_xyzw", 4)
         if not 0.99 < np.linalg.norm(quat) < 1.01:
             raise ConfigError(f"{row.where}: quat_xyzw must have length 1, got {quat.tolist()}")
         return SE3.from_quat(quat, xyz_m)
-    roll, pitch, yaw = np.deg2rad(row.vector("rpy_deg", 3))
+    roll, pitch, yaw = row.angles_rad("rpy_deg")
     return SE3.from_rpy(roll, pitch, yaw, t=xyz_m)

@@ -68,6 +68,28 @@ class TomlTable:
             )
         return np.asarray(value, dtype=np.float64)
 
+    def place_m(self, key: str) -> Array:
+        """A position in the body [m], (3,); zeros if it is not there."""
+        place = self.vector(key, 3)
+        if np.linalg.norm(place) > RIG_LIMITS.place_m:
+            raise ConfigError(
+                f"{self.where}: {key} must be within {RIG_LIMITS.place_m:g} m of the origin of the "
+                f"body, got {place.tolist()}: give meters, not millimeters"
+            )
+        return place
+
+    def angles_rad(self, key: str) -> Array:
+        """Angles that the file has in degrees [rad], (3,); zeros if they are not there."""
+        degrees = self.vector(key, 3)
+        turns = np.array([np.pi / 2.0, np.pi])
+        off = np.abs(np.abs(degrees)[:, None] - turns)
+        if np.any(off < RIG_LIMITS.right_angle_rad):
+            raise ConfigError(
+                f"{self.where}: {key} must be in degrees, got {degrees.tolist()}: in radians these "
+                f"were {np.round(np.rad2deg(degrees), 2).tolist()}"
+            )
+        return np.asarray(np.deg2rad(degrees))
+
     def text(self, key: str, default: str = "", *, most: int = RIG_LIMITS.text) -> str:
         """A text of at most ``most`` characters."""
         value = self.get(key, default)
