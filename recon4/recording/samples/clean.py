@@ -16,7 +16,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
 from recon4.recording.samples.tuning import REPEATED
-from recon4.recording.samples.units import GyroUnit, in_m_s2, in_rad_s
+from recon4.recording.samples.units import GyroUnit, in_degrees, in_m_s2, in_rad_s
 from recon4.recording.stamps import strays
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
@@ -97,6 +97,7 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     report.count("gnss_nan", int(np.count_nonzero(damaged)))
     report.count("gnss_no_fix", int(np.count_nonzero(invalid)))
     usable = without_unmeasured(_take(gnss, place & ~invalid), report)
+    usable = in_degrees(usable, report)
     found = _sorted(usable, offset_s, "gnss", report=report)
     report.count("gnss_kept", len(found))
     if len(found) and not np.isfinite(found.height_m).any():

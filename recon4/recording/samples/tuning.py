@@ -66,6 +66,16 @@ class MeasuredSampleTuning(Struct, frozen=True, kw_only=True):
 MEASURED = MeasuredSampleTuning()
 
 
+class GnssUnitTuning(Struct, frozen=True, kw_only=True):
+    """The unit of latitudes and longitudes (`units.py`)."""
+
+    near_zero_deg: float = 0.05
+    """Simulators begin at latitude 0, longitude 0; 5 km further out these are radians [°]."""
+
+
+GNSS_UNITS = GnssUnitTuning()
+
+
 class NmeaTuning(Struct, frozen=True, kw_only=True):
     """Sentences of GNSS receivers (`datagrams.py`)."""
 

@@ -1,4 +1,4 @@
-"""Units of an IMU: radians a second and meters per second squared, recognized by content."""
+"""Units of an IMU, and of positions, recognized by content."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ import numpy as np
 from recon4.geometry.se3 import Array, so3_exp
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED
-from recon4.model.samples import ImuSamples
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.report import ImportReport
-from recon4.recording.samples.tuning import IMU_UNITS
+from recon4.recording.samples.tuning import GNSS_UNITS, IMU_UNITS
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 GyroUnit = Literal["auto", "rad_s", "deg_s"]
@@ -82,6 +82,22 @@ def in_m_s2(imu: ImuSamples, report: ImportReport) -> ImuSamples:
             return replace(imu, accel_m_s2=imu.accel_m_s2 * scale)
     report.warn(FindingKind.ACCELEROMETER_UNIT, usual=usual)
     return replace(imu, accel_m_s2=np.full_like(imu.accel_m_s2, np.nan))
+
+
+def in_degrees(gnss: GnssSamples, report: ImportReport) -> GnssSamples:
+    """Positions whose latitudes and longitudes were radians where degrees are expected, converted.
+
+    As degrees all of them would lie in the sea south of Ghana.
+    """
+    lat, lon = np.rad2deg(gnss.lat_rad), np.rad2deg(gnss.lon_rad)
+    inside = (np.abs(lat) <= np.pi / 2.0) & (np.abs(lon) <= np.pi)
+    if not len(lat) or not inside.all() or np.median(np.hypot(lat, lon)) < GNSS_UNITS.near_zero_deg:
+        return gnss
+    report.derive(
+        f"positions were in radians (latitude {np.median(lat):.6f}, longitude "
+        f"{np.median(lon):.6f}), now in degrees"
+    )
+    return replace(gnss, lat_rad=lat, lon_rad=lon)
 
 
 def _by_vertical(imu: ImuSamples) -> Literal["", "rad_s", "deg_s"]:

@@ -1,5 +1,7 @@
 """Channels that a sensor does not measure: zeros, constants, NaN and declared absence."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -205,6 +207,28 @@ def test_positions_that_work_are_left_as_they_are():
     assert len(kept) == 30
     assert np.isfinite(np.column_stack([kept.height_m, kept.sd_enu_m, kept.rpy_ned_rad])).all()
     assert report.findings == []
+
+
+def test_positions_in_radians_are_converted_and_said():
+    right = fixes()
+    gnss = replace(right, lat_rad=np.deg2rad(right.lat_rad), lon_rad=np.deg2rad(right.lon_rad))
+
+    kept, report = cleaned_fixes(gnss)
+
+    np.testing.assert_allclose(kept.lat_rad, right.lat_rad)
+    np.testing.assert_allclose(kept.lon_rad, right.lon_rad)
+    assert any("positions were in radians" in text for text in report.derived)
+
+
+def test_positions_of_a_simulator_near_zero_stay_where_they_are():
+    right = fixes()
+    shift = [np.deg2rad(v) - 1e-5 for v in (49.2, 16.6)]
+    gnss = replace(right, lat_rad=right.lat_rad - shift[0], lon_rad=right.lon_rad - shift[1])
+
+    kept, report = cleaned_fixes(gnss)
+
+    np.testing.assert_array_equal(kept.lat_rad, gnss.lat_rad)
+    assert not any("radians" in text for text in report.derived)
 
 
 def test_positions_at_zero_are_dropped_and_counted():
