@@ -12,6 +12,7 @@ from pathlib import Path
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, RedirectResponse, Response
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.middleware.origin import PAGE_POLICY
 from recon4_app.access.people import Permission, needs
 from recon4_app.errors import NotFound
@@ -43,7 +44,7 @@ def files() -> Mapping[str, Path]:
     """
     found = [path for path in folder().rglob("*") if path.is_file()]
     if not found:
-        raise NotFound("the documentation was not built: run `make site`, then start again")
+        raise NotFound(CodedText("documentation-missing"))
     return {path.relative_to(folder()).as_posix(): path for path in found}
 
 
@@ -60,7 +61,7 @@ def docs_file(address: str, request: Request) -> Response:
     if path is None:
         page = _addresses().get(address.removesuffix(".md").rpartition("/")[2])
         if page is None:
-            raise NotFound(f"the documentation has no page {address[:64]!r}")
+            raise NotFound(CodedText("documentation-page-unknown", page=address[:64]))
         return RedirectResponse(public_path(request.scope, f"/docs/{page}"))
     if path.suffix != ".html":
         return FileResponse(path)

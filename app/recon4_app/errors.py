@@ -22,18 +22,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import ClassVar
 from urllib.parse import quote
 
+from recon4.locales.coded import CodedText
+
 
 @dataclass(frozen=True, slots=True)
-class Remedy:
-    """The page where the reader of an error does what its message names.
-
-    Not needed where the page that shows the error has the field or button itself.
-    """
+class RemedyLink:
+    """A `Remedy` in the language of a person."""
 
     text: str
     """Text of the link."""
@@ -43,26 +42,49 @@ class Remedy:
     """Permission for that page; empty = none."""
 
 
-STORAGE = Remedy("See what takes space", "/storage", needs="process")
-LOGIN = Remedy("Sign in", "/login")
-CAPTURE = Remedy("Open the capture", "/live", needs="look")
-PROJECTS = Remedy("See all jobs", "/", needs="look")
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """The page where the reader of an error does what its message names.
+
+    Not needed where the page that shows the error has the field or button itself.
+    """
+
+    code: str
+    """Code of the text of the link (`recon4.locales.coded`)."""
+    page: str
+    """Path of the page, below the address of this server."""
+    needs: str = ""
+    """Permission for that page; empty = none."""
+    about: Mapping[str, str] = field(default_factory=dict)
+    """What the text quotes."""
+
+    def link(self, language: str) -> RemedyLink:
+        """The link in a language."""
+        text = CodedText(self.code, **self.about).said(language)
+        return RemedyLink(text, self.page, self.needs)
+
+
+STORAGE = Remedy("see-storage", "/storage", needs="process")
+LOGIN = Remedy("see-login", "/login")
+CAPTURE = Remedy("see-capture", "/live", needs="look")
+PROJECTS = Remedy("see-jobs", "/", needs="look")
 
 
 def project_page(project_id: str) -> Remedy:
     """The page of a project: its job, its name, its deletion."""
-    return Remedy(f"Open {project_id}", f"/projects/{quote(project_id)}/", needs="look")
+    page = f"/projects/{quote(project_id)}/"
+    return Remedy("see-project", page, needs="look", about={"project": project_id})
 
 
 class AppError(Exception):
-    """Base of the tree above; the message may be shown to users."""
+    """Base of the tree above; the message is shown to users, in their language."""
 
     status: ClassVar[int] = 500
     headers: Mapping[str, str] = MappingProxyType({})
     """Headers of the response."""
     remedy: Remedy | None = None
 
-    def __init__(self, message: str, *, remedy: Remedy | None = None) -> None:
+    def __init__(self, message: CodedText, *, remedy: Remedy | None = None) -> None:
         super().__init__(message)
         self.remedy = remedy or self.remedy
 
@@ -115,7 +137,7 @@ class TooMany(AppError):
     status = 429
 
     def __init__(
-        self, message: str, *, retry_after_s: float = 0.0, remedy: Remedy | None = None
+        self, message: CodedText, *, retry_after_s: float = 0.0, remedy: Remedy | None = None
     ) -> None:
         super().__init__(message, remedy=remedy)
         if retry_after_s:

@@ -13,6 +13,7 @@ from prometheus_client import CONTENT_TYPE_LATEST
 from starlette.requests import Request
 from starlette.responses import Response
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.people import NOBODY, Permission, Person, allow_anonymous, person
 from recon4_app.errors import Refused, Unknown
 from recon4_app.metrics import Metrics
@@ -56,8 +57,8 @@ def may_read_metrics(request: Request) -> None:
     if who.may(Permission.ADMINISTER) or _has_token(request):
         return
     if who == NOBODY:
-        raise Unknown("sign in as an admin, or send the token of: recon4 users metrics-token")
-    raise Refused(f"{who.name} is a {who.role} here and may not read metrics; ask an admin")
+        raise Unknown(CodedText("metrics-sign-in"))
+    raise Refused(CodedText("metrics-not-allowed", name=who.name, role=str(who.role)))
 
 
 @router.get(

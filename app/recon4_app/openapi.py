@@ -14,9 +14,10 @@ from recon4_app.access.middleware.session import FORM_HEADER, cookie_names
 from recon4_app.access.routes_check import declared
 from recon4_app.error_responses import PROBLEM, ProblemDetail
 
-INTRODUCTION = """The HTTP interface of the pages. The body of an error is `{"error", "detail"}`;
-`detail` is a text for users. `x-needs` of an operation names the permission it requires (empty =
-none). `docs/how-to/access.md` lists the permissions of each role, `/api/me` those of the caller."""
+INTRODUCTION = """The HTTP interface of the pages. The body of an error is a `ProblemDetail`; its
+`detail` is a text for users, its `code` is for programs. `x-needs` of an operation names the
+permission it requires (empty = none). `docs/how-to/access.md` lists the permissions of each role,
+`/api/me` those of the caller."""
 TOKEN_SCHEME = {
     "type": "apiKey",
     "in": "header",

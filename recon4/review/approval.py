@@ -17,6 +17,7 @@ from typing import Any, TypedDict
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.acknowledgments import signed_acknowledgments, write_into_report
 from recon4.review.approved import VERSIONS, Approval, approval_of, versions_without_row
@@ -147,7 +148,7 @@ def approve(
     with Project.open(root):
         asked = _asked(root, signer)
         if seen[0] not in (None, len(asked.rows)) or seen[1] not in (None, graph_key(root)):
-            raise NotApprovable("the map was changed since it was looked at: look at it again")
+            raise NotApprovable(CodedText("approve-map-changed"))
         _refuse_again(root, asked)
         _refuse(root, asked, confirmed=confirmed)
         make_folders(root / VERSIONS)
@@ -168,16 +169,15 @@ def approve(
     return approval
 
 
-def reason_needed(verdict: MapVerdict | None) -> str:
-    """Why a map with this verdict is approved only with a typed reason; empty = without one."""
+def reason_needed(verdict: MapVerdict | None) -> CodedText | None:
+    """Why a map with this verdict is approved only with a typed reason; None = without one."""
     if verdict is None:
-        return "this map has no verdict: an earlier version of recon4 made it"
+        return CodedText("reason-no-verdict")
     if verdict.usability is Usability.DO_NOT_USE:
-        return f'the verdict on this map is "{verdict.usability}": {" ".join(verdict.reasons)}'
+        return CodedText("reason-do-not-use", reasons=" ".join(verdict.reasons))
     if verdict.unobserved:
-        count = len(verdict.unobserved)
-        return f"a direction of this map is not observable along {count} of its stretches"
-    return ""
+        return CodedText("reason-not-observable", count=len(verdict.unobserved))
+    return None
 
 
 def signed_figures(summary: Mapping[str, object]) -> dict[str, object]:
@@ -226,22 +226,20 @@ def _refuse_again(root: Path, asked: _ApprovalRequest) -> None:
             _hand_out(root, before)
     except Altered:
         return
-    raise NotApprovable(
-        f"version {before.version} by {before.stamp.who} approves these results already"
-    )
+    raise NotApprovable(CodedText("approve-again", version=before.version, who=before.stamp.who))
 
 
 def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
     summary = read_summary(root)
     if summary is None:
-        raise NotApprovable("there is no finished map yet: nothing to approve")
+        raise NotApprovable(CodedText("approve-no-map"))
     try:
         check_sealed(root, SUMMARY)
     except Altered as error:
-        raise NotApprovable(f"{error}: rebuild the map first") from error
+        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
     rows = read_rows(root)
     if record := broken(rows):
-        raise NotApprovable(f"the journal was altered: {record[0]}")
+        raise NotApprovable(CodedText("approve-journal-altered", detail=record[0]))
     decided = fold(row.decision() for row in rows)
     return _ApprovalRequest(
         summary,
@@ -257,7 +255,7 @@ def _verdict(summary: Mapping[str, object]) -> MapVerdict | None:
     try:
         return verdict_in(summary)
     except StoreError as error:
-        raise NotApprovable(f"{error}: rebuild the map first") from error
+        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
 
 
 def _conflicts(root: Path, summary: dict[str, Any]) -> int:
@@ -276,34 +274,30 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
     if missing := second_opinion_missing(row.decision() for row in asked.rows):
         raise NotApprovable(missing)
     if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
+        raise NotApprovable(CodedText("approve-conflicts", count=asked.conflicts))
+    why_not, characters = reason_needed(asked.verdict), APPROVALS.min_reason_characters
+    if why_not is not None and len(asked.signer["why"].strip()) < characters:
         raise NotApprovable(
-            f"{asked.conflicts} accepted loop closures do not fit the graph: reject them, or "
-            "confirm them with a reason"
-        )
-    why_not = reason_needed(asked.verdict)
-    if why_not and len(asked.signer["why"].strip()) < APPROVALS.min_reason_characters:
-        raise NotApprovable(
-            f"{why_not}; to approve it in spite of that, give a reason of at least "
-            f"{APPROVALS.min_reason_characters} characters"
+            CodedText(f"approve-{why_not.code}", characters=characters, **why_not.values)
         )
     for name, sha256 in asked.summary["hashes"]["results"].items():
         path = root / name
         if not path.is_file() or hash_file(path) != sha256:
-            raise NotApprovable(f"{name} is not what the run wrote: rebuild the map first")
+            raise NotApprovable(CodedText("approve-other-result", file=name))
     try:
         for key in asked.keys.values():
             CheckedArtifact.open(root / "artifacts" / key).check_all()
     except Altered as error:
-        raise NotApprovable(f"{error}: rebuild the map first") from error
+        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
 
 
 def _refuse_without_decisions(root: Path, decided: Decided) -> None:
     try:
         is_current = decisions_in_map(root) == decided.key
     except StoreError as error:
-        raise NotApprovable(f"{error}: rebuild the map first") from error
+        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
     if not is_current:
-        raise NotApprovable("the last decisions are not in the map: rebuild the map first")
+        raise NotApprovable(CodedText("approve-decisions-missing"))
 
 
 def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path) -> Approval:

@@ -15,6 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.decisions import (
     ABOUT_CLASSES,
     ABOUT_WORK,
@@ -196,14 +197,12 @@ def _check(rows: Sequence[JournalRow], decision: Decision, after_seq: int | None
     if after_seq is not None and after_seq != len(rows):
         unseen = [row for row in rows[after_seq:] if not steps or row.kind not in ABOUT_WORK]
         if unseen or after_seq > len(rows):
-            raise JournalChanged(
-                f"another reviewer made {len(unseen)} decisions meanwhile; look again"
-            )
+            raise JournalChanged(CodedText("decided-meanwhile", count=len(unseen)))
     if steps:
         decided = fold(row.decision() for row in rows)
         left = decided.undoable if decision.kind is DecisionKind.UNDO else decided.redoable
         if not left:
-            raise NothingToUndo(f"there is nothing to {decision.kind}")
+            raise NothingToUndo(CodedText("nothing-to-undo", step=str(decision.kind)))
     if decision.kind in ABOUT_CLASSES:
         _check_correction(fold(row.decision() for row in rows), decision)
 
@@ -213,11 +212,11 @@ def _check_correction(decided: Decided, decision: Decision) -> None:
     there = {one.id: one for one in decided.corrections}
     if decision.correction is None:
         if decision.withdraws not in there:
-            raise NothingToUndo(f"no correction of classes {decision.withdraws} is in force")
+            raise NothingToUndo(CodedText("correction-not-in-force", id=str(decision.withdraws)))
         return
     same = there.get(correction_id(decision.correction))
     if same is not None:
-        raise JournalChanged(f"{same.who} made the same correction of classes already")
+        raise JournalChanged(CodedText("correction-made-already", who=same.who))
 
 
 def _check_unseen(unseen: Sequence[JournalRow], decision: Decision, *, seen: bool) -> None:
@@ -231,16 +230,13 @@ def _check_unseen(unseen: Sequence[JournalRow], decision: Decision, *, seen: boo
     for row in reversed(unseen):
         mine = row.who == decision.who
         if decision.kind in VERDICTS and _is_verdict_on(row, decision.pair) and (seen or not mine):
-            by = "you, in another window," if mine else row.who
             raise JournalChanged(
-                f"{by} decided about this pair meanwhile ({row.kind}): look at it again, then "
-                "decide"
+                CodedText("pair-decided-by-you", kind=row.kind)
+                if mine
+                else CodedText("pair-decided", who=row.who, kind=row.kind)
             )
         if seen and decision.correction is not None and row.kind in _CHANGE_CLASSES and not mine:
-            raise JournalChanged(
-                f"{row.who} changed corrections of classes meanwhile ({row.kind}): count again, "
-                "then apply"
-            )
+            raise JournalChanged(CodedText("corrections-changed", who=row.who, kind=row.kind))
 
 
 def _is_verdict_on(row: JournalRow, pair: Pair | None) -> bool:

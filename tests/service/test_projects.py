@@ -86,7 +86,23 @@ def test_errors_have_a_message(server):
     answer = server.get("/api/projects/nowhere")
 
     assert answer.status_code == 404
-    assert answer.json() == {"error": "NotFound", "detail": "no project 'nowhere'"}
+    assert answer.json() == {
+        "error": "NotFound",
+        "detail": "no project 'nowhere'",
+        "code": "project-unknown",
+        "values": {"name": "nowhere"},
+    }
+
+
+def test_an_error_is_said_in_the_language_of_who_reads_it(server):
+    german = server.get("/api/projects/nowhere", headers={"Accept-Language": "de-AT,en;q=0.5"})
+    chosen = server.get(
+        "/api/projects/nowhere", headers={"Accept-Language": "de", "Cookie": "recon4_language=en"}
+    )
+
+    assert german.json()["detail"] == "kein Projekt 'nowhere'"
+    assert german.json()["code"] == chosen.json()["code"] == "project-unknown"
+    assert chosen.json()["detail"] == "no project 'nowhere'"
 
 
 @pytest.mark.parametrize(
@@ -104,7 +120,7 @@ def test_a_browser_gets_an_error_page(server, path, words):
     assert page.status_code == program.status_code == 404
     assert page.headers["content-type"].startswith("text/html")
     assert words in page.text and "All projects" in page.text
-    assert set(program.json()) == {"error", "detail"}
+    assert set(program.json()) <= {"error", "detail", "code", "values"}
 
 
 def test_folders_come_before_files_and_hidden_ones_not_at_all(server):

@@ -17,7 +17,8 @@ FILES = sorted(path.stem for path in (ROOT / ENGLISH).glob("*.ftl"))
 TRANSLATED = [(language, file) for language in languages()[1:] for file in FILES]
 CODE = [REPOSITORY / room for room in ("recon4", "app", "web")]
 MADE = re.compile(
-    r"(count|headline|word|unobserved|remark|why|state|dance|clock)-|(scans|lines)-damaged$"
+    r"(count|headline|word|unobserved|remark|why|state|dance|clock|field|approve-reason)-"
+    r"|(scans|lines)-damaged$"
     r"|[A-Z][A-Z0-9-]+$"
 )
 """Names that code puts together, of findings and counts; their own tests compare them."""

@@ -689,7 +689,7 @@ export interface JobView {
   run_progress: number;
   run_eta_s: number | null;
   resumable: boolean;
-  remedy: Remedy | null;
+  remedy: RemedyLink | null;
 }
 
 export type Judge = "odometry" | "search" | "free space" | "neighboring places" | "verification" | "robust solve" | "GNSS" | "person";
@@ -1183,9 +1183,11 @@ export interface PrismSpec {
 export interface ProblemDetail {
   error: string;
   detail: string;
+  code: string;
+  values: Record<string, boolean | number | string>;
   problems: Record<string, string>;
   candidates: Array<string>;
-  remedy: Remedy | null;
+  remedy: RemedyLink | null;
 }
 
 export interface ProjectCard {
@@ -1298,7 +1300,7 @@ export interface ReferencePreview {
   table: TablePreview | null;
 }
 
-export interface Remedy {
+export interface RemedyLink {
   text: string;
   page: string;
   needs: string;

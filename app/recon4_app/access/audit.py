@@ -20,6 +20,7 @@ from datetime import UTC, datetime
 import sqlalchemy as sa
 from starlette.requests import HTTPConnection
 
+from recon4.locales.coded import CodedText
 from recon4.store.hashing import CHAIN_START
 from recon4_app.access.database import AUDIT, reserve_of, writing
 from recon4_app.access.tuning import AUDIT_LOG
@@ -85,10 +86,7 @@ class AuditLog:
         except NoRoom as error:
             log.error("not in the audit log, the disk is full: %s %s", action, outcome)
             if outcome == "done":
-                raise NoRoom(
-                    f"{action}: done, but the disk is full and the audit log does not have it; "
-                    "tell an admin, and make room before anything else"
-                ) from error
+                raise NoRoom(CodedText("done-not-logged", action=action)) from error
             with self._lock:
                 self._unwritten += 1
 

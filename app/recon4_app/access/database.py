@@ -15,6 +15,7 @@ import sqlalchemy as sa
 from alembic.util import CommandError
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import is_full
 from recon4.store.sqlite_files import connect_to_read
 from recon4_app.access.disk_reserve import Reserve
@@ -170,5 +171,5 @@ def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
             yield connection
     except sa.exc.OperationalError as error:  # a quota, or others were faster
         if is_full(error):
-            raise NoRoom("the disk is full: make room and try again") from error
+            raise NoRoom(CodedText("disk-full")) from error
         raise

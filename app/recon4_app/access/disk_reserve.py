@@ -12,6 +12,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.tuning import RESERVE
 from recon4_app.errors import NoRoom
 
@@ -79,7 +80,4 @@ class Reserve:
         return blocks * disk.f_frsize
 
     def _full(self) -> NoRoom:
-        return NoRoom(
-            "the disk is full, also the space kept for the audit log: nothing can be changed until "
-            f"there is room; remove other files from the disk of {self._state.parent}"
-        )
+        return NoRoom(CodedText("disk-full-entirely", folder=str(self._state.parent)))

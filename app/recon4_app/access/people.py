@@ -11,6 +11,7 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import AuditLog, audit
 from recon4_app.access.tuning import PEOPLE_TIMES
 from recon4_app.errors import LOGIN, Refused, SignInAgain
@@ -95,7 +96,6 @@ def signed_in_s(connection: HTTPConnection) -> float:
     return found
 
 
-ONE_PROJECT = "a guest link shows the map, the slices and the report of one project, nothing else"
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 """Of requests that change nothing."""
 
@@ -117,14 +117,16 @@ def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
             path = connection.scope["path"]
             await asyncio.to_thread(audit, connection, what, path, outcome="refused")
             if who is READER:
-                raise Refused("the folder of the projects cannot be written: nothing can change")
+                raise Refused(CodedText("root-read-only"))
             if who.project:
-                raise Refused(ONE_PROJECT)
-            raise Refused(f"{who.name} is a {who.role} here and may not {what}; ask an admin")
+                raise Refused(CodedText("guest-one-project"))
+            raise Refused(
+                CodedText("not-allowed", name=who.name, role=str(who.role), what=str(what))
+            )
         if who.project and connection.path_params.get("project_id", who.project) != who.project:
             path = connection.scope["path"]
             await asyncio.to_thread(audit, connection, what, path, outcome="refused")
-            raise Refused(ONE_PROJECT)
+            raise Refused(CodedText("guest-one-project"))
         if connection.scope.get("method", "GET") not in SAFE_METHODS:
             await asyncio.to_thread(log.require_room)
         return who
@@ -145,7 +147,7 @@ def interactive_login(connection: HTTPConnection) -> Person:
     """
     session = connection.scope["state"].get("session")
     if session is not None and session.phone:
-        raise Refused("a paired phone may not do that; sign in with your password", remedy=LOGIN)
+        raise Refused(CodedText("phone-may-not"), remedy=LOGIN)
     return person(connection)
 
 
@@ -157,5 +159,5 @@ def recent_login(connection: HTTPConnection) -> Person:
             ``POST /api/login/again``.
     """
     if signed_in_s(connection) > PEOPLE_TIMES.recent_login_s:
-        raise SignInAgain("give your password again: this is signed with your name")
+        raise SignInAgain(CodedText("password-needed-again"))
     return person(connection)

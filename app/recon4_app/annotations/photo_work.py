@@ -6,6 +6,7 @@ import io
 from typing import TYPE_CHECKING
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4_app.annotations.tuning import ANNOTATIONS
 
 if TYPE_CHECKING:
@@ -29,8 +30,12 @@ def kept_photo(data: bytes) -> bytes:
             width, height = image.size
             if width * height > ANNOTATIONS.max_pixels:
                 raise ConfigError(
-                    f"the photo has {width} x {height} pixels; expected at most "
-                    f"{ANNOTATIONS.max_pixels // 1_000_000} million"
+                    CodedText(
+                        "photo-too-large",
+                        width=width,
+                        height=height,
+                        limit=ANNOTATIONS.max_pixels // 1_000_000,
+                    )
                 )
             image.draft("RGB", (ANNOTATIONS.photo_px, ANNOTATIONS.photo_px))
             upright = ImageOps.exif_transpose(image)
@@ -38,7 +43,7 @@ def kept_photo(data: bytes) -> bytes:
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError) as error:
         if isinstance(error, ConfigError):
             raise
-        raise ConfigError(f"expected a JPEG or PNG photo: {error}") from error
+        raise ConfigError(CodedText("photo-unreadable", detail=str(error))) from error
     plain.thumbnail((ANNOTATIONS.photo_px, ANNOTATIONS.photo_px))
     out = io.BytesIO()
     plain.save(out, "JPEG", quality=ANNOTATIONS.photo_quality, optimize=True)

@@ -14,6 +14,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.export.bcf import BcfNote, NoteCamera, notes_bcf
 from recon4.export.notes import PlacedNote, notes_geojson
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.annotations import store
@@ -107,7 +108,7 @@ async def set_photo(
     try:
         data = base64.b64decode(given.base64, validate=True)
     except (binascii.Error, ValueError) as error:
-        raise BadRequest("the photo must be sent as base64") from error
+        raise BadRequest(CodedText("photo-not-base64")) from error
     work = server.compute_pool.run_background
     terms = Terms(person=caller.name)
     jpeg = await caller.wait(work(Lane.INSPECT, terms, kept_photo, data))

@@ -22,6 +22,7 @@ from typing import Generic, TypeVar
 from pydantic import TypeAdapter
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import atomic_file, make_folders, write_json
 from recon4.store.json_files import read_object
 from recon4.store.seal import changing, check_sealed
@@ -82,7 +83,7 @@ class ListFile(Generic[Item]):
             items = self.read(root)
             yield items
             if len(items) > self.most:
-                raise Conflict(f"a project has at most {self.most} {self.what}s; remove one first")
+                raise Conflict(CodedText("entries-too-many", what=self.what, limit=self.most))
             for name, data in adds.items():
                 make_folders((root / name).parent)
                 with atomic_file(root / name) as out:
@@ -101,7 +102,7 @@ class ListFile(Generic[Item]):
         """
         places = [k for k, one in enumerate(items) if one.id == item_id]
         if not places:
-            raise NotFound(f"there is no {self.what} {item_id[:20]!r} any more")
+            raise NotFound(CodedText("entry-gone", what=self.what, id=item_id[:20]))
         return places[0]
 
     def remove(self, root: Path, item_id: str, who: Person, *, drops: Sequence[str] = ()) -> None:
@@ -114,9 +115,7 @@ class ListFile(Generic[Item]):
         with self.changed(root, drops=drops) as items:
             at = self.at(items, item_id)
             if items[at].who != who.name and not who.may(Permission.REVIEW):
-                raise Refused(
-                    f"{items[at].who} made this {self.what}: only they or a reviewer remove it"
-                )
+                raise Refused(CodedText("entry-of-other", name=items[at].who, what=self.what))
             del items[at]
 
 
@@ -186,7 +185,7 @@ def set_photo(root: Path, note_id: str, jpeg: bytes, *, revision: int, who: str)
         _refuse_unseen(notes[at], revision)
         others = sum(bool(one.photo) for one in notes if one.id != note_id)
         if new and others >= ANNOTATIONS.max_photos:
-            raise Conflict(f"a project has at most {ANNOTATIONS.max_photos} photos of notes")
+            raise Conflict(CodedText("photos-too-many", limit=ANNOTATIONS.max_photos))
         stamp = {"changed_by": who, "changed": _now(), "revision": revision + 1}
         notes[at] = after = notes[at].model_copy(update={"photo": sha256} | stamp)
     return after
@@ -217,13 +216,13 @@ def read_photo(root: Path, note: MapNote) -> bytes:
     """
     name = _photo_name(note.id, note.photo)
     if not name:
-        raise NotFound("this note has no photo")
+        raise NotFound(CodedText("photo-missing"))
     try:
         data = (root / name).read_bytes()
     except OSError as error:
         raise StoreError(f"{name} cannot be read: {error}") from error
     if hashlib.sha256(data).hexdigest() != note.photo:
-        raise StoreError(f"{name} was changed by another program")
+        raise StoreError(CodedText("note-file-changed", file=name))
     return data
 
 
@@ -233,7 +232,7 @@ def _photo_name(note_id: str, sha256: str) -> str:
 
 def _refuse_unseen(note: MapNote, revision: int) -> None:
     if revision != note.revision:
-        raise Conflict(f"{note.changed_by} changed this note meanwhile: look at it again")
+        raise Conflict(CodedText("note-changed", name=note.changed_by))
 
 
 def add_view(root: Path, new: NewMapView, who: str) -> SavedMapView:

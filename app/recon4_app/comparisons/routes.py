@@ -12,6 +12,7 @@ from recon4.comparison.files import FIGURES_FILE, POINTS_FILE
 from recon4.comparison.records import MapDifferences
 from recon4.comparison.tuning import PAGE_POINTS
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
@@ -61,7 +62,7 @@ def order(
     refuse_too_many(server)
     server.slices.artifacts(project_id)  # raises if there is no map
     if not new.against:
-        raise NotFound("name the map to compare with")
+        raise NotFound(CodedText("comparison-no-map"))
     server.slices.artifacts(project_id, new.against)
     server.slices.evidence(project_id)  # an approval that does not count
     server.slices.evidence(project_id, new.against)
@@ -111,7 +112,7 @@ def download(project_id: str, comparison_id: str, server: Server) -> FileRespons
     job = _comparison(server, project_id, comparison_id)
     path = server.exports.path(job)
     if path is None:
-        raise NotFound("this comparison was removed, or is not made yet: order it again")
+        raise NotFound(CodedText("comparison-gone"))
     return FileResponse(path, filename=path.name, media_type="application/octet-stream")
 
 
@@ -128,7 +129,7 @@ def _made(server: ServerParts, job: Job, name: str) -> Path:
     laz = server.exports.path(job)
     path = laz.with_name(name) if laz else None
     if path is None or not path.is_file() or path.is_symlink():
-        raise NotFound("this comparison was removed, or is not made yet: order it again")
+        raise NotFound(CodedText("comparison-gone"))
     return path
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from recon4.errors import Recon4Error
+from recon4.locales.coded import CodedText
 from recon4.sandbox.private_cache import use_private_cache
 from recon4.system.processes import die_with_parent
 from recon4.system.stopping import leave_terminal_to_parent
@@ -83,7 +84,7 @@ def _answer(answers: BinaryIO, message: bytes) -> None:
     except Recon4Error as error:
         kind, data = REFUSED, encode_error(error)
     except MemoryError:
-        kind, data = REFUSED, encode_error(Recon4Error("out of memory: request less at a time"))
+        kind, data = REFUSED, encode_error(Recon4Error(CodedText("out-of-memory")))
     except Exception:
         kind, data = FAILED, traceback.format_exc().encode()[-20_000:]
     view = memoryview(HEAD.pack(kind, len(data)) + data)

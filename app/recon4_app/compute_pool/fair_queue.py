@@ -6,6 +6,7 @@ import asyncio
 from collections import Counter
 from dataclasses import dataclass, field
 
+from recon4.locales.coded import CodedText
 from recon4_app.compute_pool.model import Quota
 from recon4_app.compute_pool.tuning import FAIRNESS
 from recon4_app.errors import TooMany
@@ -82,14 +83,14 @@ class FairQueue:
         if own <= quota.waiting_per_person and len(self._waiting) <= quota.waiting:
             return
         self._waiting.remove(slot)
-        limit, whose = (
-            (quota.waiting_per_person, f"of {slot.person} ")
+        lane = str(self._name)
+        reason = (
+            CodedText("own-waiting", limit=quota.waiting_per_person, name=slot.person, lane=lane)
             if own > quota.waiting_per_person
-            else (quota.waiting, "")
+            else CodedText("all-waiting", limit=quota.waiting, lane=lane)
         )
         raise TooMany(
-            f"{limit} requests {whose}of kind {self._name} wait already; try again when some "
-            "are done",
+            reason,
             retry_after_s=quota.retry_after_s,
         )
 

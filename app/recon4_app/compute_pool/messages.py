@@ -17,6 +17,7 @@ from typing import Any, get_type_hints
 from pydantic import BaseModel, TypeAdapter
 
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
+from recon4.locales.coded import CodedText, stored_text
 from recon4.untrusted.names import is_unnameable
 from recon4_app.compute_pool.model import FileAccess
 from recon4_app.compute_pool.tuning import POOL_MESSAGES
@@ -53,6 +54,9 @@ class CallError(BaseModel):
 
     name: str
     message: str
+    code: str = ""
+    """Of the message; empty = it has none."""
+    values: dict[str, bool | int | float | str] = {}
     problems: dict[str, str] = {}
     candidates: list[str] = []
 
@@ -88,9 +92,7 @@ def decode_result(function: Callable[..., Any], data: bytes) -> Any:
     try:
         return _adapter(function).validate_json(data)
     except ValueError as error:
-        raise ComputeFailed(
-            f"the result of the helper process is not of the declared type: {str(error)[:200]}"
-        ) from error
+        raise ComputeFailed(CodedText("helper-bad-result", detail=str(error)[:200])) from error
 
 
 def declared(function: Callable[..., Any]) -> Any:
@@ -113,6 +115,8 @@ def encode_error(error: Exception) -> bytes:
     found = error.candidates if isinstance(error, UnknownFormat) else ()
     candidates = [str(one) for one in found if not is_unnameable(one)]
     reply = CallError(name=name, message=message, problems=problems, candidates=candidates)
+    if error.args and isinstance(text := error.args[0], CodedText):
+        reply.code, reply.values = text.code, dict(text.values)
     return reply.model_dump_json().encode()
 
 
@@ -121,15 +125,16 @@ def decode_error(data: bytes) -> Exception:
     try:
         error = CallError.model_validate_json(data)
     except ValueError:
-        return ComputeFailed("the error of the helper process is malformed")
+        return ComputeFailed(CodedText("helper-bad-error"))
     if error.problems:
         return WrongSettings(error.problems)
     if error.candidates:
         return UnknownFormat(error.message, candidates=tuple(map(Path, error.candidates)))
+    message = stored_text(error.code, error.values, error.message)
     for known in _subclasses(Recon4Error):
         if f"{known.__module__}.{known.__qualname__}" == error.name:
-            return known(error.message)
-    return ConfigError(error.message)
+            return known(message)
+    return ConfigError(message)
 
 
 def _adapter(function: Callable[..., Any]) -> TypeAdapter[Any]:

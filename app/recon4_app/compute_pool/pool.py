@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
+from recon4.locales.coded import CodedText
 from recon4.system.processes import ChildRegister
 from recon4_app.compute_pool.fair_queue import FairQueue
 from recon4_app.compute_pool.messages import Call, declared
@@ -110,7 +111,7 @@ class ComputePool:
         slot = await self.queues[lane].acquire(terms.person, large=terms.large)
         if self._closed:
             self.queues[lane].release(slot)
-            raise ComputeFailed("the server is stopping")
+            raise ComputeFailed(CodedText("server-stopping"))
         serving = self._start(self._serve(lane, terms, call, background=background))
         # Not in `_serve`: a task that is cancelled before its first step runs none of its code.
         serving.add_done_callback(lambda _: self.queues[lane].release(slot))
@@ -139,7 +140,7 @@ class ComputePool:
             whole = True
             return answer
         except TimeoutError as error:
-            raise ComputeFailed(f"stopped after {limit_s:.0f} s; request less at a time") from error
+            raise ComputeFailed(CodedText("too-slow", seconds=f"{limit_s:.0f}")) from error
         except ComputeFailed:
             raise
         except Exception:

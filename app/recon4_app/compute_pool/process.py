@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from recon4.locales.coded import CodedText
 from recon4.system.processes import ChildRegister
 from recon4_app.compute_pool.messages import (
     FAILED,
@@ -111,8 +112,7 @@ class ChildProcess:
             kind, size = HEAD.unpack(await self._process.stdout.readexactly(HEAD.size))
             if size > POOL_MESSAGES.max_result_bytes:
                 raise ComputeFailed(
-                    f"expected a result of at most {POOL_MESSAGES.max_result_bytes} bytes, "
-                    f"got {size}: request less at a time"
+                    CodedText("result-too-large", limit=POOL_MESSAGES.max_result_bytes, size=size)
                 )
             answer = await self._process.stdout.readexactly(size)
         except (OSError, asyncio.IncompleteReadError) as error:
@@ -148,16 +148,17 @@ class ChildProcess:
             place.parent.mkdir(parents=True, exist_ok=True)
             _move(made, place)
 
-    async def _death_message(self) -> str:
+    async def _death_message(self) -> CodedText:
         """Why the child did not respond."""
         try:
             async with asyncio.timeout(5.0):
                 await self._process.wait()
         except TimeoutError:
-            return "the helper process does not respond; try again"
+            return CodedText("helper-silent")
         code = self._process.returncode or 0
-        how = f"killed by {signal.Signals(-code).name}" if code < 0 else f"exit code {code}"
-        return f"the helper process died ({how}: out of memory, or a damaged file); try again"
+        if code < 0:
+            return CodedText("helper-killed", signal=signal.Signals(-code).name)
+        return CodedText("helper-exited", status=code)
 
 
 def refuse_links(path: Path) -> None:
@@ -172,11 +173,11 @@ def refuse_links(path: Path) -> None:
         try:
             mode = one.lstat().st_mode
         except OSError as error:
-            raise ComputeFailed(f"the helper process did not write {one.name}") from error
+            raise ComputeFailed(CodedText("helper-no-file", file=one.name)) from error
         if stat.S_ISDIR(mode):
             found += one.iterdir()
         elif not stat.S_ISREG(mode):
-            raise ComputeFailed(f"{one.name}: expected a file, got a link or a device")
+            raise ComputeFailed(CodedText("helper-no-regular-file", file=one.name))
 
 
 def _move(made: Path, place: Path) -> None:

@@ -15,6 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from recon4.delivery.kinds import KINDS, ExportEstimate
 from recon4.errors import StoreError
 from recon4.export.options import ExportOptions
+from recon4.locales.coded import CodedText
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
@@ -110,7 +111,7 @@ def download(project_id: str, export_id: str, server: Server) -> FileResponse:
     job = _export(server, project_id, export_id)
     path = server.exports.path(job)
     if path is None or job.made is None:
-        raise NotFound("this file was removed, or is not made yet: order it again")
+        raise NotFound(CodedText("export-gone"))
     return FileResponse(
         path,
         filename=path.name,
@@ -125,7 +126,7 @@ def remove(project_id: str, export_id: str, *, server: Server, request: Request)
     job = _export(server, project_id, export_id)
     refuse_others(request, job)
     if not job.over:
-        raise Conflict("this export is not over: cancel it first")
+        raise Conflict(CodedText("export-not-over"))
     server.exports.remove(job)
     audit(request, "remove export", f"{project_id}: {_file_of(job)}")
     return _view(server, job, latest_map_key(server, project_id))
@@ -151,8 +152,7 @@ def _add(
     free = shutil.disk_usage(server.settings.state).free
     if free < needed:
         raise NoRoom(
-            f"this export needs about {needed / 1e9:.1f} GB while it is made, "
-            f"{free / 1e9:.1f} GB are free",
+            CodedText("export-no-room", needed_gb=needed / 1e9, free_gb=free / 1e9),
             remedy=STORAGE,
         )
     asked = Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options))

@@ -8,6 +8,7 @@ from typing import Any
 
 from recon4.delivery.kinds import ExportedFile
 from recon4.export.options import ExportOptions
+from recon4.locales.coded import CodedText
 from recon4_app.errors import IllegalTransition
 
 
@@ -133,5 +134,7 @@ class Job:
             IllegalTransition: If that state cannot follow the present one.
         """
         if state not in TRANSITIONS[self.state]:
-            raise IllegalTransition(f"job {self.id} is {self.state} and cannot become {state}")
+            raise IllegalTransition(
+                CodedText("job-transition", job=self.id, state=str(self.state), next=str(state))
+            )
         return replace(self, state=state, **changes)

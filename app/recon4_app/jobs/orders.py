@@ -6,6 +6,7 @@ import secrets
 
 from fastapi import Request
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.people import Permission, person
 from recon4_app.deps import ServerParts
 from recon4_app.errors import NotFound, Refused
@@ -36,7 +37,7 @@ def find_order(server: ServerParts, project_id: str, job_id: str, *, kind: JobKi
     server.projects.folder(project_id)
     job = server.jobs.get(job_id)
     if job.project != project_id or job.kind is not kind:
-        raise NotFound(f"project {project_id} has no job {job_id[:64]!r} of this kind")
+        raise NotFound(CodedText("order-unknown", project=project_id, job=job_id[:64]))
     return job
 
 
@@ -44,7 +45,11 @@ def refuse_others(request: Request, job: Job) -> None:
     """Refuse to change what another person ordered, without the permission to process."""
     who = person(request)
     if who.name != job.person and not who.may(Permission.PROCESS):
-        raise Refused(f"{job.person or 'another person'} ordered it: ask them, or an admin")
+        raise Refused(
+            CodedText("order-of-other", name=job.person)
+            if job.person
+            else CodedText("order-of-another")
+        )
 
 
 def latest_map_key(server: ServerParts, project_id: str) -> str:

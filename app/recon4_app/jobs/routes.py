@@ -6,7 +6,7 @@ import os
 import secrets
 import threading
 from collections.abc import AsyncIterator, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Self
 
@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import NoSpace
+from recon4.locales.coded import CodedText, coded
 from recon4.model.rig import rig_presets
 from recon4.settings import override, preset
 from recon4_app.access.audit import audit
@@ -25,23 +26,21 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import (
     PROJECTS,
-    STORAGE,
     Conflict,
     NoRoom,
     NotFound,
-    Remedy,
     TooMany,
     project_page,
 )
-from recon4_app.jobs.folder import Outcome
 from recon4_app.jobs.model import Inputs, Job, JobKind, JobState
 from recon4_app.jobs.space import refuse_if_full
-from recon4_app.jobs.status import JobStatus
 from recon4_app.jobs.supervisor import now
 from recon4_app.jobs.tuning import JOB_STREAM
+from recon4_app.jobs.view import JobView, job_view
 from recon4_app.names import Name
 from recon4_app.network.rate_limit import at_most
 from recon4_app.network.request_caller import CalledBy
+from recon4_app.pages import Language, language_of
 from recon4_app.rig_files import check_rig_file
 
 router = APIRouter(
@@ -90,26 +89,8 @@ class NewJob(BaseModel):
     @model_validator(mode="after")
     def _is_named(self) -> Self:
         if not self.project and not self.title.strip():
-            raise ValueError("a project needs a name: give project or title")
+            raise ValueError(CodedText("project-or-title"))
         return self
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class JobView:
-    """A job and its progress."""
-
-    job: Job
-    status: JobStatus
-    fraction: float | None
-    """Fraction of the current piece of work, None = not known."""
-    run_progress: float
-    """Fraction of the whole run."""
-    run_eta_s: float | None
-    """Remaining time of the whole run [s], None = not known yet."""
-    resumable: bool
-    """Whether it ended early and can be run again."""
-    remedy: Remedy | None
-    """The page where what the note of a failed job advises is done, if it is another one."""
 
 
 class LogPiece(BaseModel):
@@ -121,9 +102,9 @@ class LogPiece(BaseModel):
 
 
 @router.get("/jobs", summary="Newest jobs")
-def list_jobs(server: Server) -> list[JobView]:
+def list_jobs(server: Server, language: Language) -> list[JobView]:
     """List the newest job of each project."""
-    return [job_view(server, job) for job in server.jobs.latest().values()]
+    return [job_view(server, job, language) for job in server.jobs.latest().values()]
 
 
 @router.post(
@@ -158,27 +139,27 @@ def add_job(new: NewJob, server: ServerParts, request: Request) -> JobView:
                 server.projects.rename(project, inputs.title)
         added = _add(server, project, inputs)
     audit(request, "start job", f"{project}: {', '.join(new.recordings)}")
-    return added
+    return job_view(server, added, language_of(request))
 
 
 @router.get("/jobs/{job_id}", summary="One job")
-def read_job(job_id: str, server: Server) -> JobView:
+def read_job(job_id: str, server: Server, language: Language) -> JobView:
     """Read a job and its progress."""
-    return job_view(server, server.jobs.get(job_id))
+    return job_view(server, server.jobs.get(job_id), language)
 
 
 @router.get("/projects/{project_id}/jobs", summary="Jobs of a project")
-def jobs_of(project_id: str, server: Server) -> list[JobView]:
+def jobs_of(project_id: str, server: Server, language: Language) -> list[JobView]:
     """List all jobs of a project with their inputs, the newest first."""
-    return [job_view(server, job) for job in server.jobs.of_project(project_id)]
+    return [job_view(server, job, language) for job in server.jobs.of_project(project_id)]
 
 
 @router.post("/jobs/{job_id}/cancel", dependencies=PROCESS, summary="Cancel a job")
-def cancel_job(job_id: str, server: Server, request: Request) -> JobView:
+def cancel_job(job_id: str, server: Server, request: Request, *, language: Language) -> JobView:
     """Stop a job; its finished stages are kept."""
     job = server.supervisor.cancel(server.jobs.get(job_id))
     audit(request, "cancel job", job.project)
-    return job_view(server, job)
+    return job_view(server, job, language)
 
 
 @router.post(
@@ -193,7 +174,7 @@ def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     job = server.jobs.get(job_id)
     if job.kind is not JobKind.PROCESS:
         raise Conflict(
-            "an export or a comparison is not resumed: order it again",
+            CodedText("order-not-resumed"),
             remedy=project_page(job.project),
         )
     _refuse_hidden(server, job.inputs)
@@ -201,7 +182,7 @@ def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     _refuse_if_full(server, job.project, job.inputs)
     added = _add(server, job.project, job.inputs)
     audit(request, "resume job", job.project)
-    return added
+    return job_view(server, added, language_of(request))
 
 
 @router.post(
@@ -223,7 +204,7 @@ def remake(project_id: str, server: Server, request: Request) -> JobView:
     _refuse_if_full(server, project_id, inputs)
     added = _add(server, project_id, inputs)
     audit(request, "rebuild map", project_id)
-    return added
+    return job_view(server, added, language_of(request))
 
 
 @router.get("/jobs/{job_id}/log", response_class=PlainTextResponse, summary="Log")
@@ -247,7 +228,7 @@ def download_log(job_id: str, server: Server) -> FileResponse:
     job = server.jobs.get(job_id)
     path = server.supervisor.folder(job.id).path / "log.txt"
     if not path.exists():
-        raise NotFound("this job has no log yet")
+        raise NotFound(CodedText("job-no-log"))
     return FileResponse(path, filename=f"{job.project}-log.txt", media_type="text/plain")
 
 
@@ -264,7 +245,7 @@ def _event_place(request: Request, server: Server) -> Iterator[None]:
     dependencies=[Depends(_event_place)],
     summary="Stream of job changes",
 )
-async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
+async def stream_jobs(server: Server, language: Language) -> AsyncIterator[ServerSentEvent]:
     """Server-sent events: a ``job`` with a `JobView` for each change of a job.
 
     The stream begins with one for each project's newest job, unless that succeeded. Those of files
@@ -275,7 +256,7 @@ async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
     while True:
         for job in jobs:
             event = "job" if job.kind is JobKind.PROCESS else str(job.kind)
-            yield ServerSentEvent(event=event, data=job_view(server, job))
+            yield ServerSentEvent(event=event, data=job_view(server, job, language))
         await server.supervisor.news(version, timeout_s=JOB_STREAM.longest_quiet_s)
         touched = server.supervisor.touched_since(version)
         version = server.supervisor.version
@@ -322,7 +303,7 @@ def refuse_too_many(server: ServerParts) -> None:
     waiting = len(server.jobs.in_state(JobState.QUEUED))
     if waiting >= server.settings.max_waiting_jobs:
         raise TooMany(
-            f"{waiting} jobs wait already; try again when some are done, or cancel some",
+            CodedText("jobs-too-many", waiting=waiting),
             remedy=PROJECTS,
         )
 
@@ -337,35 +318,11 @@ def _refuse_if_full(server: ServerParts, project: str, inputs: Inputs) -> None:
             reserve_bytes=server.settings.free_disk_reserve_bytes,
         )
     except NoSpace as error:
-        raise NoRoom(str(error)) from error
+        raise NoRoom(coded(error)) from error
 
 
-def _add(server: ServerParts, project: str, inputs: Inputs) -> JobView:
+def _add(server: ServerParts, project: str, inputs: Inputs) -> Job:
     job = Job(id=secrets.token_hex(8), project=project, inputs=inputs, created=now())
     server.jobs.add(job)
     server.supervisor.wake(job)
-    return job_view(server, job)
-
-
-def _is_resumable(job: Job, outcome: Outcome | None) -> bool:
-    if job.kind is not JobKind.PROCESS:
-        return False
-    if job.state is not JobState.FAILED:
-        return job.state is JobState.CANCELLED
-    return outcome is None or outcome.startable
-
-
-def job_view(server: ServerParts, job: Job) -> JobView:
-    """A job and its progress."""
-    status, run = server.supervisor.status(job), server.supervisor.run_progress(job)
-    failed = job.state is JobState.FAILED
-    outcome = server.supervisor.folder(job.id).outcome() if failed else None
-    return JobView(
-        job=job,
-        status=status,
-        fraction=status.fraction,
-        run_progress=run.fraction,
-        run_eta_s=run.eta_s,
-        resumable=_is_resumable(job, outcome),
-        remedy=STORAGE if outcome is not None and outcome.no_space else None,
-    )
+    return job

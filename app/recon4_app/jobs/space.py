@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from recon4.errors import NoSpace
+from recon4.locales.coded import CodedText
 from recon4_app.jobs.tuning import SPACE
 
 
@@ -23,9 +24,13 @@ def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int)
     free = shutil.disk_usage(there).free
     if free < needed:
         raise NoSpace(
-            f"no space: this job needs about {needed / 1e9:.1f} GB "
-            f"({SPACE.times_the_input} x {given / 1e9:.2f} GB of recording, and some to spare), "
-            f"{free / 1e9:.1f} GB are free; make room, then start again"
+            CodedText(
+                "job-no-space",
+                needed_gb=needed / 1e9,
+                times=SPACE.times_the_input,
+                given_gb=given / 1e9,
+                free_gb=free / 1e9,
+            )
         )
 
 

@@ -15,6 +15,7 @@ from sqlalchemy.exc import IntegrityError
 
 from recon4.delivery.kinds import ExportedFile
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.json_files import parse_object
 from recon4.untrusted.names import visible
 from recon4_app.databases import migrate, open_engine
@@ -84,7 +85,7 @@ class JobStore:
                 connection.execute(JOBS.insert().values(**_row(job)))
         except IntegrityError as error:
             raise Conflict(
-                f"project {job.project} already has a job that waits or runs; cancel it first",
+                CodedText("project-has-job-already", project=job.project),
                 remedy=project_page(job.project),
             ) from error
         return job
@@ -98,7 +99,7 @@ class JobStore:
         mine = (JOBS.c.id == before.id) & (JOBS.c.state == before.state)
         with self._engine.begin() as connection:
             if connection.execute(JOBS.update().where(mine).values(**_row(after))).rowcount != 1:
-                raise Conflict(f"job {before.id} is no longer {before.state}")
+                raise Conflict(CodedText("job-changed", job=before.id, state=str(before.state)))
             if after.over and after.kind is JobKind.PROCESS:
                 connection.execute(ENDED.insert().values(job=after.id))
         if after.over:
@@ -123,7 +124,7 @@ class JobStore:
         """
         found = self._select(JOBS.select().where(JOBS.c.id == job_id))
         if not found:
-            raise NotFound(f"no job {job_id}")
+            raise NotFound(CodedText("job-unknown", job=job_id))
         return found[0]
 
     def in_state(self, *states: JobState) -> list[Job]:

@@ -17,6 +17,7 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4_app.errors import Conflict
 from recon4_app.jobs.events import read_events
 from recon4_app.jobs.exit_reasons import exit_reason
@@ -135,7 +136,7 @@ class Supervisor:
             Conflict: If it has ended already.
         """
         if job.over:
-            raise Conflict(f"job {job.id} is {job.state} already")
+            raise Conflict(CodedText("job-over", job=job.id, state=str(job.state)))
         if job.state is JobState.QUEUED:
             try:
                 job = self._store.change(job, job.to(JobState.CANCELLED, finished=now()))

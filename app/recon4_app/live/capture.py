@@ -13,6 +13,7 @@ from recon4.live.project_files import discard
 from recon4.live.protocol import Done, Pause, Request, Resume, Status, Stopped
 from recon4.live.session import CaptureSession
 from recon4.live.tuning import LINE_CLIENT
+from recon4.locales.coded import CodedText, coded
 from recon4_app.errors import Conflict
 from recon4_app.live.stream_state import StreamState
 from recon4_app.live.tuning import CAPTURES
@@ -67,7 +68,7 @@ class Capture:
             await started(self.session, "recorder", env=worker_environment())
         except ConfigError as error:
             await asyncio.to_thread(discard, self.session)
-            raise Conflict(str(error)) from None
+            raise Conflict(coded(error)) from None
         await self.follow()
 
     async def follow(self) -> None:
@@ -87,7 +88,7 @@ class Capture:
             Conflict: If the recorder has ended.
         """
         if self._recorder is None:
-            raise Conflict("the recording has ended")
+            raise Conflict(CodedText("capture-ended"))
         if isinstance(request, Pause | Resume):
             self.state = State.PAUSED if isinstance(request, Pause) else State.RECORDING
         await self._recorder.send(request)

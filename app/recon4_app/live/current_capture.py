@@ -14,6 +14,7 @@ from recon4.live.ipc.line_client import is_listening
 from recon4.live.project_files import begin
 from recon4.live.protocol import Mark, Stop
 from recon4.live.session import CaptureSession, load_session
+from recon4.locales.coded import CodedText
 from recon4.model.rig import Rig, load_rig
 from recon4.store.json_files import parse_object
 from recon4.untrusted.bounded import read_text_limited
@@ -55,7 +56,7 @@ class CurrentCapture:
             NotFound: If there was none since the server started.
         """
         if self._capture is None:
-            raise NotFound("nothing is being captured")
+            raise NotFound(CodedText("capture-none"))
         return self._capture
 
     @property
@@ -80,7 +81,7 @@ class CurrentCapture:
         async with self._starting:
             if self._capture is not None and not self._capture.over:
                 raise Conflict(
-                    f"{self._capture.project} is being captured: stop it first", remedy=CAPTURE
+                    CodedText("capture-running", project=self._capture.project), remedy=CAPTURE
                 )
             loaded = load_rig(rig)
             session = await asyncio.to_thread(begin, self._root / project, loaded, **how)

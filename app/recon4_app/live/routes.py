@@ -13,6 +13,7 @@ from starlette.requests import Request
 
 from recon4.live.findings import CaptureFinding
 from recon4.live.protocol import AddMark, Pause, Resume
+from recon4.locales.coded import CodedText
 from recon4.settings import PRESET_TEXTS, PRESETS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
@@ -20,7 +21,8 @@ from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict, TooMany
-from recon4_app.jobs.routes import JobView, NewJob, add_job
+from recon4_app.jobs.routes import NewJob, add_job
+from recon4_app.jobs.view import JobView
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.phone import Phone, state_of
 from recon4_app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
@@ -57,7 +59,7 @@ class NewCapture(BaseModel):
     @model_validator(mode="after")
     def _is_named(self) -> Self:
         if not self.project and not self.place.strip():
-            raise ValueError("a capture needs a name: give project or place")
+            raise ValueError(CodedText("capture-needs-name"))
         return self
 
 
@@ -182,7 +184,7 @@ def process_capture(request: Request, server: Server) -> JobView:
     """Start a processing job on the project; its frames are done already."""
     session = server.current_capture.capture().session
     if not server.current_capture.capture().over:
-        raise Conflict("the capture is still running: stop it first")
+        raise Conflict(CodedText("capture-still-running"))
     new = NewJob(
         project=session.project.name,
         recordings=[str(session.capture)],

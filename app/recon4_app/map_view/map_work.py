@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.findings.walk import final_trajectory
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import Tile
 from recon4.pose_graph.files import load_graph
@@ -74,10 +75,10 @@ def chunk(
     """
     tiles = map_of(artifacts, evidence)
     if stored != "xyz" and FIELD_OF[stored] not in tiles.fields:
-        raise ConfigError(f"the map does not state the {stored} of its points")
+        raise ConfigError(CodedText("map-lacks-value", stored=stored))
     for row, start, stop in parts:
         if row >= len(tiles.tiles) or stop > len(tiles.tiles[row]):
-            raise ConfigError(f"the map has no points {start} to {stop} in a tile {row}")
+            raise ConfigError(CodedText("map-lacks-points", start=start, stop=stop, tile=row))
     return b"".join(
         encoded(tiles, row, stored, rows=slice(start, stop)) for row, start, stop in parts
     )
@@ -109,7 +110,7 @@ def hit(artifacts: Artifacts, ask: RayRequest) -> RayHit:
     direction = np.array(ask.direction)
     length = float(np.linalg.norm(direction))
     if length < 1e-6:
-        raise ConfigError(f"expected the direction of a ray, got {list(ask.direction)}")
+        raise ConfigError(CodedText("ray-invalid", direction=str(list(ask.direction))))
     ray = Ray(
         np.array(ask.origin_m),
         direction / length,

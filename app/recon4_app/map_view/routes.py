@@ -13,6 +13,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import StoreError
 from recon4.live.session import CaptureSession
+from recon4.locales.coded import CodedText
 from recon4.review.evidence import Evidence
 from recon4.untrusted.bounded import read_json_object
 from recon4_app.access.people import Permission, Who, needs
@@ -186,27 +187,23 @@ async def read_volume(
 def _check_key(artifacts: dict[str, str], key: str) -> None:
     """Refuse what was asked of an earlier map: its place in the CRS may be another."""
     if Path(artifacts["map"]).name != key:
-        raise Conflict("the map was made again meanwhile: reload the page to measure in it")
+        raise Conflict(CodedText("map-remade-measure"))
 
 
 def _check_version(version: int) -> None:
     """Refuse a page that an earlier recon4 sent: it would take the bytes for something else."""
     if version != MAP_CHUNKS.version:
-        raise Conflict(
-            f"expected layout {MAP_CHUNKS.version} of points, got {version}: reload the page"
-        )
+        raise Conflict(CodedText("map-layout", version=MAP_CHUNKS.version, got=version))
 
 
 def _check_parts(rows: tuple[tuple[int, int, int], ...]) -> None:
     """Refuse a part without points, and more than a response may have."""
     counts = [stop - start for _, start, stop in rows]
     if min(counts) <= 0 or sum(counts) > MAP_CHUNKS.max_chunk_points:
-        raise BadRequest(
-            f"expected 1 to {MAP_CHUNKS.max_chunk_points} points, got "
-            + ", ".join(f"{start} to {stop}" for _, start, stop in rows[:3])
-        )
+        got = ", ".join(f"{start} to {stop}" for _, start, stop in rows[:3])
+        raise BadRequest(CodedText("chunk-invalid", limit=MAP_CHUNKS.max_chunk_points, got=got))
     if len(rows) > MAP_CHUNKS.max_parts:
-        raise BadRequest(f"expected at most {MAP_CHUNKS.max_parts} parts, got {len(rows)}")
+        raise BadRequest(CodedText("chunks-too-many", limit=MAP_CHUNKS.max_parts, got=len(rows)))
 
 
 def _kept_name(artifacts: dict[str, str], evidence: Evidence | None, ending: str) -> str:

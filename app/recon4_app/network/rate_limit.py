@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from starlette.requests import HTTPConnection
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.login.login_backoff import TokenBuckets
 from recon4_app.access.login.login_service import Access
 from recon4_app.access.people import person
@@ -32,7 +33,13 @@ def at_most(
         bucket = access.rates.setdefault(what, TokenBuckets(burst=count, per_s=count / within_s))
         if wait_s := bucket.take(name):
             raise TooMany(
-                f"{name} may start {count} {what} within {within_s / 60:.0f} minutes; wait a while",
+                CodedText(
+                    "too-many-started",
+                    name=name,
+                    count=count,
+                    what=what,
+                    minutes=f"{within_s / 60:.0f}",
+                ),
                 retry_after_s=wait_s,
             )
         try:

@@ -10,6 +10,7 @@ from typing import Annotated, Any, TypeVar
 from fastapi import Depends
 from starlette.requests import Request
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.people import person
 from recon4_app.errors import ClientLeft
 
@@ -37,7 +38,7 @@ class Caller:
             await asyncio.wait({working, leaving}, return_when=asyncio.FIRST_COMPLETED)
             if working.done():
                 return await working
-            raise ClientLeft("the client disconnected before the answer was ready")
+            raise ClientLeft(CodedText("client-left"))
         finally:
             working.cancel()
             leaving.cancel()

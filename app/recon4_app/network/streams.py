@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from starlette.requests import HTTPConnection
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.login.login_backoff import network
 from recon4_app.access.people import LOCAL, READER, Permission, person
 from recon4_app.errors import TooMany
@@ -67,20 +68,19 @@ class Streams:
             _leave(self._people, name)
             _leave(self._addresses, address)
 
-    def _rejection(self, connection: HTTPConnection, name: str, address: str) -> str | None:
+    def _rejection(self, connection: HTTPConnection, name: str, address: str) -> CodedText | None:
         who, limits = person(connection), self._limits
         runs_captures = who.may(Permission.CAPTURE)
         available = limits.max_streams - (0 if runs_captures else limits.reserved_for_capture)
         if self.open >= available:
-            opened = f"{self.open} {self._what} are open"
-            return f"{opened}, the limit is {available}: close one, try again"
+            return CodedText("streams-full", open=self.open, what=self._what, limit=available)
         if who in (LOCAL, READER):
             return None
         if self._people[name] >= limits.max_per_person:
-            return f"you have {limits.max_per_person} {self._what} open: close one and try again"
+            return CodedText("own-streams-full", limit=limits.max_per_person, what=self._what)
         if not runs_captures and self._addresses[address] >= limits.max_per_address:
-            opened = f"{limits.max_per_address} {self._what} open"
-            return f"your address has {opened}: close one, try again"
+            limit = limits.max_per_address
+            return CodedText("address-streams-full", limit=limit, what=self._what)
         return None
 
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from recon4.errors import NoSpace, Recon4Error
+from recon4.locales.coded import CodedText, coded
 from recon4.store.atomic import raise_if_full
 from recon4.store.project import Project
 from recon4_app.errors import Conflict, NoRoom
@@ -30,7 +31,7 @@ def clone_artifacts(artifacts: Mapping[str, Path], target: Path, work: Path) -> 
         NoRoom: If the disk is full.
     """
     if target.exists():
-        raise Conflict(f"there is a project or folder {target.name} already; choose another name")
+        raise Conflict(CodedText("name-taken", name=target.name))
     work.mkdir(parents=True, exist_ok=True)
     building = work / f"clone-{secrets.token_hex(6)}" / target.name
     try:
@@ -62,4 +63,4 @@ def _raise_no_room(error: BaseException, target: Path) -> None:
     try:
         raise_if_full(error, target)
     except NoSpace as full:
-        raise NoRoom(str(full)) from error
+        raise NoRoom(coded(full)) from error

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterable
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4.untrusted.names import is_unnameable, visible
 from recon4_app.errors import NotFound, Refused
 from recon4_app.projects.model import FolderEntry
@@ -45,25 +46,19 @@ class ImportFolders:
         try:
             real = Path(path).resolve()
         except (OSError, ValueError, RuntimeError) as error:
-            raise NotFound(f"no such file or folder: {path[:200]!r}") from error
+            raise NotFound(CodedText("path-unknown", path=path[:200])) from error
         if is_unnameable(real):
-            raise Refused(f"{visible(str(real))!r} cannot be used: {RENAME}")
+            raise Refused(CodedText("path-no-utf8", path=visible(str(real))))
         if not self._within(real):
             folders = ", ".join(str(folder) for folder in self._folders)
-            raise Refused(
-                f"recordings may only lie in {folders}: move it there or upload it; who starts the "
-                "server may name more folders in the environment variable RECON4_RECORDINGS"
-            )
+            raise Refused(CodedText("path-not-allowed", folders=folders))
         if not self._visible(real):
-            raise Refused(
-                f"{path[:200]!r} is hidden, or belongs to the server or the system: move what you "
-                "need into a folder of recordings"
-            )
+            raise Refused(CodedText("path-hidden", path=path[:200]))
         mode = _mode(real)
         if mode is None:  # also for a name that no file can have
-            raise NotFound(f"no such file or folder: {path[:200]!r}")
+            raise NotFound(CodedText("path-unknown", path=path[:200]))
         if not (stat.S_ISREG(mode) or stat.S_ISDIR(mode)):
-            raise Refused(f"{path[:200]!r} is neither a file nor a folder")
+            raise Refused(CodedText("path-special", path=path[:200]))
         return real
 
     def shows(self, path: Path) -> bool:
@@ -87,7 +82,9 @@ class ImportFolders:
         try:
             inside = [path for path in real.iterdir() if not path.name.startswith(".")]
         except OSError as error:
-            raise NotFound(f"{folder[:200]!r} cannot be listed: {error.strerror}") from error
+            raise NotFound(
+                CodedText("folder-unreadable", folder=folder[:200], reason=error.strerror or "")
+            ) from error
         shown = [path for path in inside if self.shows(path)]
         shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
         unnameable = sorted(path for path in inside if is_unnameable(path))

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from recon4.findings.in_language import summary_in
+from recon4.locales.coded import CodedText
 from recon4.review.acknowledgments import report_with_notes
 from recon4.review.state import artifact_keys
 from recon4_app.access.audit import audit
@@ -269,4 +270,4 @@ def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
 
 def _refuse_while_busy(server: ServerParts, project_id: str) -> None:
     if server.jobs.is_used(project_id):
-        raise Conflict(f"a job of {project_id} waits or runs; cancel it first")
+        raise Conflict(CodedText("project-has-job", project=project_id))

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon4 import __version__
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
 from recon4.store.ledger import FinishedStage as StageRow
@@ -87,7 +88,7 @@ class ProjectStore:
         """
         folder = self.root / project_id
         if not PROJECT_ID.fullmatch(project_id) or not _is_project(folder):
-            raise NotFound(f"no project {project_id[:64]!r}")
+            raise NotFound(CodedText("project-unknown", name=project_id[:64]))
         return folder
 
     def refuse_taken(self, name: str) -> None:
@@ -99,8 +100,7 @@ class ProjectStore:
         self.refuse_reserved(name)
         if (self.root / name).exists():
             raise Conflict(
-                f"there is a project or folder {name} already: choose another name, or run the "
-                "project again from its own page",
+                CodedText("project-exists", name=name),
                 remedy=project_page(name) if is_project(self.root / name) else None,
             )
 
@@ -111,7 +111,7 @@ class ProjectStore:
             Conflict: If the server itself uses the folder of that name.
         """
         if name in RESERVED and not is_project(self.root / name):
-            raise Conflict(f"{name} is a folder of the server: choose another name")
+            raise Conflict(CodedText("name-of-server", name=name))
 
     def free_folder_name(self, title: str, is_promised: Callable[[str], bool]) -> str:
         """A folder name for a new project of this title.
@@ -134,7 +134,7 @@ class ProjectStore:
         """
         folder = self.folder(project_id)
         if name not in RESULTS or not _is_result(folder, name):
-            raise NotFound(f"project {project_id} has no file {name[:64]!r}")
+            raise NotFound(CodedText("project-file-unknown", project=project_id, file=name[:64]))
         if name == "summary.json":
             return folder / name
         summary, _ = summary_of(folder)
@@ -156,8 +156,8 @@ class ProjectStore:
         found = self.artifact(project_id, "map")
         if found is None:
             if self.artifact(project_id, "map_2d") is not None:
-                raise NotFound(f"project {project_id} has a 2-D map: it has no points in space")
-            raise NotFound(f"project {project_id} has no map yet")
+                raise NotFound(CodedText("project-planar-map", project=project_id))
+            raise NotFound(CodedText("project-no-map", project=project_id))
         return found
 
     def map_of_any_kind(self, project_id: str) -> Path:
@@ -196,7 +196,7 @@ class ProjectStore:
             with Folder.open(self.folder(project_id)) as project:
                 project.describe(**fields)
         except StoreError as error:
-            raise Conflict(f"not now: {error}") from error
+            raise Conflict(CodedText("project-busy", detail=str(error))) from error
 
     def clone(self, project_id: str, target: str) -> None:
         """Create a project that reuses the finished stages of another.
@@ -208,7 +208,7 @@ class ProjectStore:
         """
         folder = self.folder(project_id)
         if not PROJECT_ID.fullmatch(target):
-            raise NotFound(f"not a valid project name: {target[:64]!r}")
+            raise NotFound(CodedText("project-name-invalid", name=target[:64]))
         work = self.root / ".recon4" / "clones"
         clone_artifacts(_artifacts(folder), self.root / target, work)
 

@@ -15,6 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
+from recon4.locales.coded import CodedText
 from recon4.review.newest_approval import APPROVALS, move_record, record_path
 from recon4.store.atomic import make_folders
 from recon4_app.errors import STORAGE, Conflict, NotFound, project_page
@@ -97,7 +98,7 @@ class Trash:
         found, home = self._deleted(path), self._homes[path.parent]
         if (home / found.project).exists():
             raise Conflict(
-                f"another {found.kind} {found.project} exists now; delete or rename it first",
+                CodedText("restore-taken", kind=found.kind, name=found.project),
                 remedy=project_page(found.project) if found.kind == "project" else STORAGE,
             )
         make_folders(home)
@@ -161,7 +162,7 @@ class Trash:
         for folder in self._homes:
             if _is_deleted(folder / deleted_id) and (folder / deleted_id).is_dir():
                 return folder / deleted_id
-        raise NotFound("it was removed permanently")
+        raise NotFound(CodedText("removed-for-good"))
 
     def _entries(self) -> list[Path]:
         return [path for folder in self._homes if folder.exists() for path in folder.iterdir()]

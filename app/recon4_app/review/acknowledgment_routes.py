@@ -10,6 +10,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
 from recon4.findings.summary_notes import findings_in
+from recon4.locales.coded import CodedText
 from recon4.review.acknowledgments import Acknowledgment, acknowledgments, seen_finding
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
@@ -68,7 +69,7 @@ def acknowledge(
     findings = findings_in(read_summary(root) or {}) or []
     seen = findings[new.finding] if new.finding < len(findings) else None
     if seen is None or (seen.kind, seen.span_s) != (new.kind, new.span_s):
-        raise Conflict("the map was made again, and its findings differ: look at them again")
+        raise Conflict(CodedText("findings-differ"))
     decision = Decision(
         kind=DecisionKind.ACKNOWLEDGE, who=who.name, why=new.why, finding=seen_finding(seen)
     )

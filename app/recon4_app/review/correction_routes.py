@@ -9,6 +9,7 @@ from fastapi import APIRouter, Request
 from fastapi import Path as InPath
 from starlette.concurrency import run_in_threadpool
 
+from recon4.locales.coded import CodedText, coded
 from recon4.model.class_corrections import GIVEN_CLASSES, titles_of
 from recon4.model.classes import CLASSES
 from recon4.review.class_corrections import CorrectionTrial, corrections_in_map, not_in_map
@@ -73,7 +74,7 @@ async def correct(
     rows = await run_in_threadpool(read_rows, root)
     trial = await _tried(server, caller, project_id, asked=new, rows=rows)
     if trial.correction is None:
-        raise Conflict(f"no class is corrected: {trial.refused}")
+        raise Conflict(CodedText("correction-refused", detail=trial.refused))
     decision = Decision(
         kind=DecisionKind.CLASSIFY, who=who.name, why=new.why, correction=trial.correction
     )
@@ -111,7 +112,7 @@ async def _tried(
     what = asked.reclassified()  # what is no volume is refused before the request waits
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     if Path(artifacts["map"]).name != asked.map:
-        raise Conflict("the map was made again meanwhile: reload the page to correct its classes")
+        raise Conflict(CodedText("map-remade-classes"))
     summary = await run_in_threadpool(read_summary, server.projects.folder(project_id))
     decided = fold(row.decision() for row in rows)
     before = not_in_map(decided, corrections_in_map(summary)).corrections
@@ -126,7 +127,7 @@ def _decide(root: Path, decision: Decision, *, seen_seq: int | None = None) -> N
     try:
         append(root, decision, seen_seq=seen_seq)
     except (JournalChanged, NothingToUndo) as error:
-        raise Conflict(str(error)) from error
+        raise Conflict(coded(error)) from error
 
 
 def _view(root: Path, who: Person) -> CorrectionsView:

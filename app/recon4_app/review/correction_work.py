@@ -6,6 +6,7 @@ from pathlib import Path
 
 import msgspec
 
+from recon4.locales.coded import CodedText
 from recon4.model.class_corrections import ClassCorrection, Reclassified
 from recon4.model.plain import to_plain
 from recon4.review.class_corrections import CorrectionTrial, try_correction
@@ -33,4 +34,4 @@ def trial_of(data: bytes) -> CorrectionTrial:
     try:
         return msgspec.json.decode(data, type=CorrectionTrial)
     except (msgspec.DecodeError, ValueError) as error:
-        raise ComputeFailed(f"the count of points is malformed: {str(error)[:200]}") from error
+        raise ComputeFailed(CodedText("count-malformed", detail=str(error)[:200])) from error

@@ -14,6 +14,7 @@ from starlette.requests import Request
 
 from recon4.findings.in_language import summary_in
 from recon4.findings.summary_notes import findings_in, notes_in
+from recon4.locales.coded import CodedText, coded, said
 from recon4.model.plain import finite_or_none
 from recon4.model.usability import verdict_in
 from recon4.review.approval import NotApprovable, make_read_only, reason_needed, signed_figures
@@ -192,7 +193,7 @@ def decide(project_id: str, new: NewDecision, server: Server, *, reader: ReadBy)
     try:
         append(root, decision, seen_seq=new.seen_seq)
     except JournalChanged as error:
-        raise Conflict(str(error)) from error
+        raise Conflict(coded(error)) from error
     return view_of(project_id, server, reader)
 
 
@@ -247,7 +248,7 @@ async def approve(
     root = server.projects.folder(project_id)
     if await run_in_threadpool(server.jobs.is_busy, project_id):
         raise Conflict(
-            "a job of this project is queued or running; approve when it is done",
+            CodedText("approve-while-running"),
             remedy=project_page(project_id),
         )
     signer = {"who": reader.who.name, "role": str(reader.who.role), "why": asked.why}
@@ -255,7 +256,7 @@ async def approve(
     try:
         approval = await _sign(root, key, signer, asked=asked, server=server)
     except NotApprovable as error:
-        raise Conflict(str(error)) from error
+        raise Conflict(coded(error)) from error
     await run_in_threadpool(make_read_only, approval)
     await run_in_threadpool(record_signed, root, key.parent)
     server.webhooks.wake()
@@ -309,7 +310,7 @@ def _step(
             root, Decision(kind=kind, who=reader.who.name, why=step.why), after_seq=step.after_seq
         )
     except (NothingToUndo, JournalChanged) as error:
-        raise Conflict(str(error)) from error
+        raise Conflict(coded(error)) from error
     return view_of(project_id, server, reader)
 
 
@@ -358,7 +359,7 @@ def _map_facts(root: Path, language: str) -> MapFacts | None:
     verdict = verdict_in(summary)
     return MapFacts(
         verdict=verdict,
-        reason_needed=reason_needed(verdict),
+        reason_needed=said(reason_needed(verdict) or "", language),
         min_reason_characters=APPROVALS.min_reason_characters,
         notes=notes_in(summary),
         findings=findings_in(summary),

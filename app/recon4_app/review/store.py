@@ -7,6 +7,7 @@ import secrets
 from collections import OrderedDict
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4.review.decisions import Decided, Pair
 from recon4.review.pairs import Alignment
 from recon4.review.preview import Effect, preview
@@ -53,7 +54,7 @@ class Reviews:
         """
         found = self._measured.get(name)
         if found is None or found[:2] != (root, pair):
-            raise Conflict("this alignment is not known any more; align the pair again")
+            raise Conflict(CodedText("alignment-forgotten"))
         return found[2]
 
     # -- the queue: one per graph

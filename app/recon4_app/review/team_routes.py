@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter
 
+from recon4.locales.coded import CodedText
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
 from recon4_app.access.people import LOCAL, MAY, Permission, Who
@@ -30,7 +31,7 @@ def work_on_pair(project_id: str, new: NewWork, server: Server, *, reader: ReadB
     """
     root = server.projects.folder(project_id)
     if new.assignee and new.assignee not in _reviewers(server):
-        raise BadRequest(f"{new.assignee} is nobody who may review here")
+        raise BadRequest(CodedText("assignee-may-not-review", name=new.assignee))
     decision = Decision(
         kind=DecisionKind(new.kind),
         who=reader.who.name,

@@ -12,6 +12,7 @@ from pydantic import BaseModel, Field, ValidationError
 from recon4.errors import StoreError
 from recon4.findings.witnesses.rig import agreement
 from recon4.findings.wording import text_of
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.model.calibration_figures import CalibrationOutcome, GnssOutcome, RigOutcome
 from recon4.store.frames import CALIBRATED_RIG, CALIBRATION_SLICES
@@ -118,7 +119,7 @@ class Calibrations:
         folder = self._projects.artifact(project_id, "calibration")
         path = folder / CALIBRATED_RIG if folder else None
         if path is None or not path.is_file():
-            raise NotFound(f"project {project_id} has no calibrated rig")
+            raise NotFound(CodedText("rig-not-calibrated", project=project_id))
         return path
 
 

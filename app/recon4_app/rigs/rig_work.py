@@ -8,6 +8,7 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.limits import RIG_LIMITS
 from recon4.model.rig import format_rig, parse_rig
 from recon4.model.serial_device import parse_serial_device
@@ -37,9 +38,7 @@ def check_rig(text: str) -> CheckedRig:
     """
     size = len(text.encode("utf-8", "replace"))
     if size > RIG_LIMITS.file_bytes:
-        raise ConfigError(
-            f"the rig file: expected at most {RIG_LIMITS.file_bytes} bytes, got {size}"
-        )
+        raise ConfigError(CodedText("rig-file-too-large", limit=RIG_LIMITS.file_bytes, size=size))
     rig = parse_rig(text, where="the rig file")
     if rig.gnss_serial:
         parse_serial_device(rig.gnss_serial)

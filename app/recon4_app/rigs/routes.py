@@ -9,6 +9,7 @@ from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, Response
 from starlette.concurrency import run_in_threadpool
 
+from recon4.locales.coded import CodedText
 from recon4.model.lidars import LIDARS
 from recon4.model.rig import SENSOR_MODELS, format_rig, load_rig, rig_presets
 from recon4_app.access.audit import audit
@@ -109,7 +110,7 @@ async def read_rig(
 async def create_rig(new: NewRig, server: Server, *, caller: CalledBy, who: Who) -> SavedRig:
     """Create a rig from its content, a rig file, or another rig."""
     if sum((new.content is not None, new.toml is not None, bool(new.copy_of))) != 1:
-        raise BadRequest("give exactly one of content, toml and copy_of")
+        raise BadRequest(CodedText("rig-one-of-three"))
     if new.copy_of in rig_presets():
         text = format_rig(load_rig(new.copy_of))
         rig = await _checked_text(text, server, caller)
@@ -131,7 +132,7 @@ async def add_version(
 ) -> SavedRig:
     """Store a new version of a rig; earlier versions stay as they are."""
     if (new.content is None) == (new.toml is None):
-        raise BadRequest("give exactly one of content and toml")
+        raise BadRequest(CodedText("rig-one-of-two"))
     await run_in_threadpool(server.rigs.versions, rig_id)
     rig = await _checked_text(_text_of(new), server, caller)
     about = {"who": who.name, "note": new.note, "evidence": ""}

@@ -15,6 +15,7 @@ from pathlib import Path
 from stat import S_ISREG
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.limits import RIG_LIMITS
 from recon4.model.rig import rig_presets
 from recon4.store.atomic import atomic_folder, make_folders, sweep, write_json, write_text
@@ -51,7 +52,7 @@ class RigStore:
         """
         numbers = _numbers(self._folder / rig_id) if re.fullmatch(RIG_ID, rig_id) else []
         if not numbers:
-            raise NotFound(f"no rig {rig_id[:64]!r}")
+            raise NotFound(CodedText("rig-unknown", name=rig_id[:64]))
         return [self._version(rig_id, number) for number in numbers]
 
     def file(self, rig_id: str, number: int | None = None) -> Path:
@@ -63,7 +64,7 @@ class RigStore:
         numbers = [version.number for version in self.versions(rig_id)]
         chosen = numbers[0] if number is None else number
         if chosen not in numbers:
-            raise NotFound(f"rig {rig_id} has no version {chosen}")
+            raise NotFound(CodedText("rig-version-unknown", rig=rig_id, version=chosen))
         return _file(self._folder, rig_id, chosen)
 
     def create(self, rig_id: str, rig: CheckedRig, **about: str) -> RigVersion:
@@ -98,25 +99,26 @@ class RigStore:
             newest = self.versions(rig_id)[0].number
             if after is not None and after != newest:
                 raise Conflict(
-                    f"rig {rig_id} has version {newest} by now, you changed version {after}: "
-                    "load it again",
-                    remedy=Remedy(f"Load {rig_id} again", f"/rigs/{rig_id}/", needs="look"),
+                    CodedText("rig-changed", rig=rig_id, newest=newest, seen=after),
+                    remedy=Remedy(
+                        "see-rig", f"/rigs/{rig_id}/", needs="look", about={"rig": rig_id}
+                    ),
                 )
             if newest >= RIG_STORE.max_versions:
                 raise Conflict(
-                    f"rig {rig_id} has {RIG_STORE.max_versions} versions: start a new rig"
+                    CodedText("rig-versions-too-many", rig=rig_id, limit=RIG_STORE.max_versions)
                 )
             return self._add(rig_id, newest + 1, rig, about=about)
 
     def _refuse_name(self, rig_id: str) -> None:
         if rig_id in rig_presets():
-            raise Conflict(f"{rig_id} is a rig of recon4: choose another name")
+            raise Conflict(CodedText("rig-shipped", rig=rig_id))
         if is_project(self._folder):
-            raise Conflict(f"{RIGS} is a project: rename its folder to store rigs")
+            raise Conflict(CodedText("rigs-folder-taken", folder=RIGS))
         if (self._folder / rig_id).exists():
-            raise Conflict(f"there is a rig {rig_id} already: choose another name")
+            raise Conflict(CodedText("rig-exists", rig=rig_id))
         if len(self.ids()) >= RIG_STORE.max_rigs:
-            raise Conflict(f"there are {RIG_STORE.max_rigs} rigs already")
+            raise Conflict(CodedText("rigs-too-many", limit=RIG_STORE.max_rigs))
 
     def _add(
         self, rig_id: str, number: int, rig: CheckedRig, *, about: dict[str, str]

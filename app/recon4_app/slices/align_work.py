@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.evaluation.reference_mesh import SurfacePoints
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.slices.align import align_by_icp, align_by_pairs, align_level_pairs, floor_offset
 from recon4.slices.reference import Reference, ReferenceFacts
@@ -48,7 +49,7 @@ def align_points(map_folder: str, reference: str) -> AlignPoints:
     ours = _shown(sample_tiles(tiles_of(map_folder), 4 * ALIGN_VIEW.shown))
     theirs = _shown(sample_reference(against, np.random.default_rng(1)))
     if not len(ours) or not len(theirs):
-        raise ConfigError("alignment: map or reference has no flat surface to align")
+        raise ConfigError(CodedText("align-no-surface"))
     middle, other = _middle(ours), _middle(theirs)
     T = against.T_map_reference
     T_i_j = SE3(T.R, T @ other - middle)
@@ -100,7 +101,7 @@ def _motion(pose: tuple[float, ...]) -> SE3:
     quat = np.array(pose[3:])
     length = float(np.linalg.norm(quat))
     if not 0.5 < length < 2.0:
-        raise ConfigError("alignment: expected a pose with a unit quaternion")
+        raise ConfigError(CodedText("align-bad-pose"))
     return SE3.from_quat(quat / length, np.array(pose[:3]))
 
 

@@ -16,6 +16,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
+from recon4.locales.coded import CodedText
 from recon4_app.compute_pool.model import Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import NoRoom
@@ -160,6 +161,4 @@ class Exports:
         self._folder.mkdir(parents=True, exist_ok=True)
         free = shutil.disk_usage(self._folder).free
         if free < self._reserve_bytes:
-            raise NoRoom(
-                f"an export needs {self._reserve_bytes} bytes free on the disk, there are {free}"
-            )
+            raise NoRoom(CodedText("slice-export-no-room", needed=self._reserve_bytes, free=free))

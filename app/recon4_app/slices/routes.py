@@ -13,12 +13,13 @@ from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.review.state import read_summary
 from recon4.slices.compare import Comparison
 from recon4.slices.control_points import ControlPreview
 from recon4.slices.double_places import DoubleReport
 from recon4.slices.residuals import ControlReport
-from recon4_app.access.people import ONE_PROJECT, Permission, Who, needs
+from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import Terms
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
@@ -58,7 +59,7 @@ def of_shared_map(who: Who, source: str = "", reference: str = "") -> None:
         Refused: If a guest asks for another source, or for a reference.
     """
     if who.project and (source or reference):
-        raise Refused(ONE_PROJECT)
+        raise Refused(CodedText("guest-one-project"))
 
 
 SHARED = [Depends(needs(Permission.SHARED))]
@@ -264,7 +265,7 @@ async def preview_control(
     try:
         data = base64.b64decode(file.base64, validate=True)
     except (binascii.Error, ValueError) as error:
-        raise BadRequest("the file must be sent as base64") from error
+        raise BadRequest(CodedText("file-not-base64")) from error
     crs = str(((await run_in_threadpool(read_summary, folder)) or {}).get("crs") or "")
     terms = Terms(person=caller.name)
     return await caller.wait(
@@ -339,7 +340,7 @@ async def surface(project_id: str, point: str, server: Server, *, caller: Called
     state = await run_in_threadpool(server.slices.control, project_id)
     found: list[Xyz] = [one.xyz_m for one in state.points if one.id == point]
     if not found:
-        raise ConfigError(f"no point {point[:64]!r}")
+        raise ConfigError(CodedText("control-point-unknown", name=point[:64]))
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
         server.slices.run_interactive(
@@ -386,11 +387,11 @@ def _parsed(text: str) -> SliceExportRequest:
     try:
         return SliceExportRequest.model_validate_json(text)
     except ValueError as error:
-        raise ConfigError(f"what to export is not understood: {error}") from error
+        raise ConfigError(CodedText("export-malformed", detail=str(error))) from error
 
 
 def _parsed_compare(text: str) -> CompareRequest:
     try:
         return CompareRequest.model_validate_json(text)
     except ValueError as error:
-        raise ConfigError(f"what to compare is not understood: {error}") from error
+        raise ConfigError(CodedText("compare-malformed", detail=str(error))) from error

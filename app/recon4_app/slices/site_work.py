@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import GeoreferenceError
+from recon4.locales.coded import CodedText
 from recon4.model.site_control import SiteControl
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.site_control import (
@@ -59,13 +60,10 @@ def site_control_of(artifacts: Artifacts, state: ControlState, crs: str) -> Site
 def _try(artifacts: Artifacts, state: ControlState, crs: str) -> ControlTrial:
     missing = [name for name in ("frames", "odometry", "level") if name not in artifacts]
     if missing:
-        raise GeoreferenceError(
-            f"control points need the results of {', '.join(missing)}, which this project lacks: "
-            "process its recording again"
-        )
+        raise GeoreferenceError(CodedText("control-needs-stages", stages=", ".join(missing)))
     measured = state.measured_in(Path(artifacts["map"]).name)
     if not measured:
-        raise GeoreferenceError("no control point was measured in this map")
+        raise GeoreferenceError(CodedText("control-none-measured"))
     points = [ControlPoint(**point.model_dump()) for point in state.points]
     folders = {name: Path(folder) for name, folder in artifacts.items()}
     return try_control(points, measured, folders, crs=crs)

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.findings.walk import final_trajectory, positions_along
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import TILES
 from recon4.model.plain import to_plain
@@ -172,7 +173,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
     tiles = tiles_of(map_folder)
     low, high = tiles.bounds_m
     if not np.isfinite(low).all():
-        raise ConfigError("the map has no points")
+        raise ConfigError(CodedText("map-empty"))
     middle, height = float(low[2] + high[2]) / 2.0, float(high[2] - low[2]) + 0.1
     plane = SlicePlane.horizontal(middle, thickness_m=height)
     margin = 0.02 * float((high - low)[:2].max()) + 0.1
@@ -268,7 +269,7 @@ def span_of(ask: SliceView, made: SliceImage) -> Span:
     low = made.span.low if ask.low is None else ask.low
     high = made.span.high if ask.high is None else ask.high
     if not high > low:
-        raise ConfigError(f"color scale: expected low < high, got {low} and {high}")
+        raise ConfigError(CodedText("color-scale", low=low, high=high))
     return Span(low, high)
 
 

@@ -17,6 +17,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.comparison.frames import earlier_map_rows
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.approval_state import ApprovalState, approval_state
 from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
 from recon4.review.evidence import Evidence
@@ -108,10 +109,10 @@ class Slices:
             found = self._latest(project_id)
             earlier = self._projects.folder(project_id) / "artifacts" / name
             if not (earlier / "tiles.json").is_file():
-                raise NotFound(f"project {project_id} has no map {name[:16]} any more")
+                raise NotFound(CodedText("map-gone", project=project_id, map=name[:16]))
             return found | {"map": str(earlier)}
         if source:
-            raise NotFound(f"no map {source[:80]!r}")
+            raise NotFound(CodedText("map-unknown", map=source[:80]))
         return self._latest(project_id)
 
     def sources(self, project_id: str) -> list[OtherMap]:
@@ -203,7 +204,9 @@ class Slices:
             return ""
         folder = self._folder(project_id) / "references" / reference_id
         if not _REFERENCE.fullmatch(reference_id) or not (folder / "reference.json").is_file():
-            raise NotFound(f"no reference {reference_id[:20]!r} in project {project_id}")
+            raise NotFound(
+                CodedText("reference-unknown", reference=reference_id[:20], project=project_id)
+            )
         root = self._projects.folder(project_id)
         check_sealed(root, _name_of(folder))
         return str(folder)
@@ -215,9 +218,7 @@ class Slices:
             Conflict: If there are too many.
         """
         if len(self.references(project_id)) >= SLICE_STORE.max_references:
-            raise Conflict(
-                f"a project has at most {SLICE_STORE.max_references} references; remove one first"
-            )
+            raise Conflict(CodedText("references-too-many", limit=SLICE_STORE.max_references))
         folder = self._folder(project_id) / "references"
         folder.mkdir(parents=True, exist_ok=True)
         return folder / secrets.token_hex(6)
@@ -278,7 +279,7 @@ class Slices:
         before, key = self.control(project_id), Path(self._latest(project_id)["map"]).name
         assert before.version is not None
         if state.version not in (None, before.version):
-            raise Conflict("the control points were changed by another user; read them again")
+            raise Conflict(CodedText("control-points-changed"))
         kept = state.model_copy(
             update={
                 "found_in": {
@@ -328,7 +329,7 @@ class Slices:
         page = (terms.person, asking.page)
         before = self._newest.get(page)
         if before is not None and before.sequence > asking.sequence:
-            raise Superseded("a newer image was requested")
+            raise Superseded(CodedText("slice-superseded"))
         if before is not None:
             before.work.cancel()
         work = asyncio.ensure_future(self.run_interactive(terms, function, *args, **kwargs))
@@ -340,7 +341,7 @@ class Slices:
             return await work
         except asyncio.CancelledError:
             if self._newest.get(page) != _Latest(asking.sequence, work):
-                raise Superseded("a newer image was requested") from None
+                raise Superseded(CodedText("slice-superseded")) from None
             raise
 
     async def run_background(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from recon4.archive.space import ARTIFACTS, Freeable, free_space, stored_parts
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.approved import VERSIONS
 from recon4_app.errors import Conflict, project_page
 from recon4_app.jobs.model import JobState
@@ -49,7 +50,7 @@ class ProjectSpaces:
         folder = self._projects.folder(project_id)
         if self._jobs.is_used(project_id):
             raise Conflict(
-                f"a job of {project_id} waits or runs; cancel it first",
+                CodedText("project-has-job", project=project_id),
                 remedy=project_page(project_id),
             )
         free_space(folder, chosen)

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon4.archive.space import Freeable, free_space, stored_parts
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.project import SUMMARY
 from recon4.untrusted.names import visible
 from recon4_app.deps import ServerParts
@@ -45,11 +46,11 @@ def delete_recording(server: ServerParts, name: str) -> Deleted:
     """
     folder = server.uploads.recordings / name
     if not UPLOADED.fullmatch(name) or not folder.is_dir() or folder.is_symlink():
-        raise NotFound(f"no uploaded recording {name[:64]!r}")
+        raise NotFound(CodedText("recording-unknown", name=name[:64]))
     for job in server.jobs.in_state(JobState.QUEUED, JobState.RUNNING):
         if any(Path(path).is_relative_to(folder) for path in job.inputs.recordings):
             raise Conflict(
-                f"a job of {job.project} reads this recording; cancel it first",
+                CodedText("recording-in-use", project=job.project),
                 remedy=project_page(job.project),
             )
     deleted = server.trash.put(folder)

@@ -6,6 +6,7 @@ import re
 import unicodedata
 from pathlib import PurePosixPath
 
+from recon4.locales.coded import CodedText
 from recon4_app.errors import BadRequest
 from recon4_app.uploads.tuning import UPLOAD_NAMES
 
@@ -24,8 +25,9 @@ def safe_path(relative: str) -> PurePosixPath:
     parts = [part for part in re.split(r"[/\\]+", relative) if part not in ("", ".")]
     if not parts or ".." in parts or len(parts) > UPLOAD_NAMES.max_folders:
         raise BadRequest(
-            f"expected the name of a file in at most {UPLOAD_NAMES.max_folders - 1} folders, "
-            f"got {relative[:100]!r}"
+            CodedText(
+                "upload-name-invalid", limit=UPLOAD_NAMES.max_folders - 1, name=relative[:100]
+            )
         )
     return PurePosixPath(*map(safe_name, parts))
 

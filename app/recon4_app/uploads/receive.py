@@ -12,6 +12,7 @@ from pathlib import Path
 from starlette.requests import ClientDisconnect
 
 from recon4.errors import NoSpace
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import raise_if_full
 from recon4_app.errors import BadRequest, NoRoom
 from recon4_app.uploads.tuning import RECEIVING
@@ -98,7 +99,9 @@ class _Sink:
         self._gathered.append(piece)
         self._bytes += len(piece)
         if self.end + self._bytes > self._length:
-            raise BadRequest(f"expected {self._length} bytes, got {self.end + self._bytes}")
+            raise BadRequest(
+                CodedText("upload-length", expected=self._length, got=self.end + self._bytes)
+            )
         if self._bytes >= RECEIVING.gather_bytes:
             await asyncio.to_thread(self._write)
 
@@ -110,7 +113,7 @@ class _Sink:
             return
         await asyncio.to_thread(self._write)
         if self._hash and self._checksum and self._hash.digest() != self._checksum.digest:
-            raise WrongChecksum("the checksum differs: the bytes were damaged; send them again")
+            raise WrongChecksum(CodedText("upload-checksum"))
         await asyncio.to_thread(os.fsync, self._descriptor)
 
     def _write(self) -> None:
@@ -143,4 +146,4 @@ def _raise_no_room(error: OSError, path: Path) -> None:
     try:
         raise_if_full(error, path)
     except NoSpace as full:
-        raise NoRoom("the disk is full; make room, then resume the upload") from full
+        raise NoRoom(CodedText("upload-disk-full")) from full

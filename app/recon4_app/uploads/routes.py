@@ -17,6 +17,7 @@ from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.requests import ClientDisconnect
 from starlette.types import Message, Receive, Scope, Send
 
+from recon4.locales.coded import CodedText
 from recon4.untrusted.names import check_name
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
@@ -278,7 +279,7 @@ def _announce(
         name = name or "recording"
         upload = server.uploads.begin(name[:200], files=1, total=length, fingerprint="", by=by)
     if not name:
-        raise BadRequest("Upload-Metadata must name the file: relativePath or filename")
+        raise BadRequest(CodedText("upload-no-name"))
     return upload, server.uploads.add(upload, name[:1000], length=length)
 
 
@@ -287,11 +288,11 @@ async def _take(
 ) -> None:
     """Write the body of a request to its file; one request per file at a time."""
     if file.lock.locked():
-        raise Locked("another request writes to this file; send HEAD and try again")
+        raise Locked(CodedText("upload-locked"))
     async with file.lock:
         offset = tus.number(request.headers, "Upload-Offset") if request.method == "PATCH" else 0
         if upload.finished or offset != file.offset:
-            raise Conflict(f"expected Upload-Offset {file.offset}, got {offset}")
+            raise Conflict(CodedText("upload-offset", expected=file.offset, got=offset))
         path = server.uploads.data(upload, file)
         try:
             file.offset = await receive(
@@ -302,7 +303,7 @@ async def _take(
                 checksum=tus.checksum(request.headers),
             )
         except (ClientDisconnect, TimeoutError) as error:
-            raise BadRequest("the sender disconnected; HEAD returns the offset") from error
+            raise BadRequest(CodedText("upload-sender-left")) from error
         finally:
             if path.exists():  # not if the upload was removed meanwhile
                 file.offset = path.stat().st_size

@@ -25,6 +25,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import make_folders, sweep, write_json
 from recon4.store.json_files import read_object
 from recon4.untrusted.names import visible
@@ -81,9 +82,7 @@ class UploadStore:
         """
         with self._lock:
             if upload_id not in self._uploads:
-                raise NotFound(
-                    f"no upload {upload_id[:32]!r}; it may have been removed: send it again"
-                )
+                raise NotFound(CodedText("upload-unknown", upload=upload_id[:32]))
             return self._uploads[upload_id]
 
     def file(self, file_id: str) -> tuple[Upload, UploadedFile]:
@@ -97,7 +96,7 @@ class UploadStore:
         for file in upload.listed:
             if str(file.number) == number:
                 return upload, file
-        raise NotFound(f"no file {number[:16]!r} in upload {upload_id}")
+        raise NotFound(CodedText("upload-file-unknown", number=number[:16], upload=upload_id))
 
     def begin(self, name: str, *, files: int, total: int, fingerprint: str, by: str) -> Upload:
         """Announce a recording.
@@ -150,7 +149,7 @@ class UploadStore:
                 note = {"name": name, "path": str(path), "bytes": length}
                 write_json(self._folder / upload.id / "parts" / f"{file.number}.json", note)
             except (FileExistsError, NotADirectoryError) as error:
-                raise BadRequest(f"a file and a folder are both called {name[:100]!r}") from error
+                raise BadRequest(CodedText("upload-file-and-folder", name=name[:100])) from error
             upload.announced[name] = file
             upload.changed_s = time.time()
             return file
@@ -224,13 +223,16 @@ class UploadStore:
         settings = self._settings
         if total > settings.max_upload_bytes:
             raise TooLarge(
-                f"{total / 1e9:.1f} GB are more than this server accepts in one upload "
-                f"({settings.max_upload_bytes / 1e9:.0f} GB)"
+                CodedText(
+                    "upload-too-large",
+                    size_gb=total / 1e9,
+                    limit_gb=settings.max_upload_bytes / 1e9,
+                )
             )
         still_open = [upload for upload in self._uploads.values() if not upload.finished]
         if len(still_open) >= settings.max_open_uploads:
             raise TooMany(
-                f"{len(still_open)} uploads are unfinished already; finish or remove one first",
+                CodedText("uploads-too-many", count=len(still_open)),
                 remedy=STORAGE,
             )
         promised = sum(upload.bytes - upload.received for upload in still_open)
@@ -238,8 +240,7 @@ class UploadStore:
         room = free - settings.free_disk_reserve_bytes
         if room < total:
             raise NoRoom(
-                f"the disk has room for {max(0, room) / 1e9:.1f} GB, "
-                f"this recording has {total / 1e9:.1f} GB; make room first"
+                CodedText("upload-no-room", room_gb=max(0, room) / 1e9, size_gb=total / 1e9)
             )
 
     def _refuse_surplus(self, upload: Upload, name: str, length: int) -> None:
@@ -251,8 +252,13 @@ class UploadStore:
             or announced_bytes + length > upload.bytes
         ):
             raise BadRequest(
-                f"{name[:100]!r} with {length} bytes was not announced: this upload has "
-                f"{upload.files} files of {upload.bytes} bytes in all"
+                CodedText(
+                    "upload-not-announced",
+                    name=name[:100],
+                    length=length,
+                    files=upload.files,
+                    bytes=upload.bytes,
+                )
             )
 
     # -- files

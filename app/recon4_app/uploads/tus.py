@@ -9,6 +9,7 @@ import base64
 import binascii
 from collections.abc import Mapping
 
+from recon4.locales.coded import CodedText
 from recon4_app.errors import AppError, BadRequest
 from recon4_app.uploads.receive import Checksum
 from recon4_app.uploads.tuning import TUS
@@ -38,7 +39,7 @@ def check_version(headers: Mapping[str, str]) -> None:
         WrongVersion: If the request is not tus 1.0.0.
     """
     if headers.get("tus-resumable") != VERSION:
-        raise WrongVersion(f"expected the header Tus-Resumable: {VERSION}")
+        raise WrongVersion(CodedText("tus-version", version=VERSION))
 
 
 def check_type(headers: Mapping[str, str]) -> None:
@@ -48,7 +49,7 @@ def check_type(headers: Mapping[str, str]) -> None:
         WrongType: If the content type is another.
     """
     if headers.get("content-type") != CHUNK_TYPE:
-        raise WrongType(f"expected the header Content-Type: {CHUNK_TYPE}")
+        raise WrongType(CodedText("tus-type", type=CHUNK_TYPE))
 
 
 def number(headers: Mapping[str, str], name: str) -> int:
@@ -59,7 +60,7 @@ def number(headers: Mapping[str, str], name: str) -> int:
     """
     text = headers.get(name.lower(), "")
     if not (text.isascii() and text.isdigit() and len(text) <= 18):
-        raise BadRequest(f"expected the header {name} with a number of bytes, got {text[:40]!r}")
+        raise BadRequest(CodedText("tus-number", header=name, got=text[:40]))
     return int(text)
 
 
@@ -71,14 +72,14 @@ def metadata(headers: Mapping[str, str]) -> dict[str, str]:
     """
     text = headers.get("upload-metadata", "")
     if len(text) > TUS.max_metadata:
-        raise BadRequest(f"Upload-Metadata has more than {TUS.max_metadata} letters")
+        raise BadRequest(CodedText("tus-metadata-long", limit=TUS.max_metadata))
     found = {}
     for pair in filter(None, (one.strip() for one in text.split(","))):
         name, _, value = pair.partition(" ")
         try:
             found[name] = base64.b64decode(value, validate=True).decode()
         except ValueError as error:
-            raise BadRequest(f"Upload-Metadata: {name[:40]!r} is not base64 of UTF-8") from error
+            raise BadRequest(CodedText("tus-metadata-malformed", name=name[:40])) from error
     return found
 
 
@@ -93,8 +94,10 @@ def checksum(headers: Mapping[str, str]) -> Checksum | None:
         return None
     algorithm, _, value = text.partition(" ")
     if algorithm not in ALGORITHMS:
-        raise BadRequest(f"Upload-Checksum may be {', '.join(ALGORITHMS)}, got {algorithm[:20]!r}")
+        raise BadRequest(
+            CodedText("tus-algorithm", known=", ".join(ALGORITHMS), got=algorithm[:20])
+        )
     try:
         return Checksum(algorithm, base64.b64decode(value, validate=True))
     except binascii.Error as error:
-        raise BadRequest("Upload-Checksum is not base64") from error
+        raise BadRequest(CodedText("tus-checksum-malformed")) from error

@@ -13,6 +13,7 @@ import secrets
 import sys
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4.system.processes import ChildRegister, first_line
 from recon4.system.runtime_folder import private_folder, runtime_folder
 from recon4_app.errors import ViewerFailed
@@ -63,7 +64,7 @@ class ViewerPool:
         """
         async with self._starting.setdefault(project, asyncio.Lock()):
             if self._closed:
-                raise ViewerFailed("the server is ending")
+                raise ViewerFailed(CodedText("server-stopping"))
             running = self._running.get(project)
             if running is not None and running[0].returncode is not None:
                 await self._end(*running)  # it died or was idle: remove its socket and record
@@ -113,10 +114,8 @@ class ViewerPool:
         if ready:
             self._problems.pop(project, None)
             return process, socket
-        problem = (
-            f"the viewer of {project.name} does not start; its log is in "
-            f"{self._logs / project.name}.txt"
-        )
+        log_file = f"{self._logs / project.name}.txt"
+        problem = CodedText("viewer-does-not-start", project=project.name, log=log_file)
         self._problems[project] = problem
         raise ViewerFailed(problem)
 

@@ -19,6 +19,7 @@ from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
+from recon4.locales.coded import CodedText
 from recon4_app.deps import parts
 from recon4_app.errors import AppError, TooMany, ViewerFailed
 from recon4_app.network.close_codes import CloseCode
@@ -71,7 +72,7 @@ async def _viewer(
         except (OSError, InvalidHandshake) as error:
             log.warning("viewer of %s: %s", project.name, error)
             await viewers.give_up(project, socket)
-    raise ViewerFailed(f"the viewer of {project.name} ends as soon as it starts")
+    raise ViewerFailed(CodedText("viewer-ends", project=project.name))
 
 
 async def _pump(browser: WebSocket, viewer: ClientConnection) -> None:

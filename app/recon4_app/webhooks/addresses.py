@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from urllib.parse import urlsplit
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4_app.settings import Network
 from recon4_app.webhooks.tuning import WEBHOOKS
 
@@ -50,14 +51,14 @@ def target_of(url: str) -> Target:
         parts = urlsplit(url)
         port = parts.port
     except ValueError as error:
-        raise ConfigError(f"url: {error}") from error
+        raise ConfigError(CodedText("webhook-url", detail=str(error))) from error
     plain = url.isascii() and url.isprintable() and " " not in url
     if parts.scheme not in ("http", "https") or not parts.hostname or not plain:
-        raise ConfigError("url: expected https://HOST/PATH in ASCII")
+        raise ConfigError(CodedText("webhook-url-malformed"))
     if parts.username is not None or parts.fragment:
-        raise ConfigError("url: a name, a password or a fragment cannot be part of it")
+        raise ConfigError(CodedText("webhook-url-parts"))
     if len(url) > WEBHOOKS.max_url:
-        raise ConfigError(f"url: expected at most {WEBHOOKS.max_url} characters")
+        raise ConfigError(CodedText("webhook-url-long", limit=WEBHOOKS.max_url))
     secure = parts.scheme == "https"
     path = (parts.path or "/") + (f"?{parts.query}" if parts.query else "")
     usual = socket.getservbyname("https" if secure else "http")

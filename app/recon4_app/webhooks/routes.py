@@ -12,6 +12,7 @@ from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import audit
 from recon4_app.access.login.routes import Text, Wire
 from recon4_app.access.people import Permission, Who, needs, recent_login
@@ -110,6 +111,6 @@ async def _require_reachable(url: str, networks: Sequence[Network]) -> None:
         async with asyncio.timeout(WEBHOOKS.answer_s):
             await address_of(target, networks)
     except TimeoutError:
-        raise ConfigError(f"url: {target.host} is not known: no answer to its name") from None
+        raise ConfigError(CodedText("webhook-host-unknown", host=target.host)) from None
     except NotReachable as error:
-        raise ConfigError(f"url: {error}") from error
+        raise ConfigError(CodedText("webhook-url", detail=str(error))) from error

@@ -12,6 +12,7 @@ import hmac
 import secrets
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4_app.webhooks.tuning import WEBHOOKS
 
 PREFIX = "whsec_"
@@ -34,8 +35,12 @@ def key_of(secret: str) -> bytes:
         key = b""
     if not WEBHOOKS.min_secret_bytes <= len(key) <= WEBHOOKS.max_secret_bytes:
         raise ConfigError(
-            f"secret: expected {PREFIX} and {WEBHOOKS.min_secret_bytes} to "
-            f"{WEBHOOKS.max_secret_bytes} bytes in base64; leave it out, and the server makes one"
+            CodedText(
+                "webhook-secret",
+                prefix=PREFIX,
+                least=WEBHOOKS.min_secret_bytes,
+                most=WEBHOOKS.max_secret_bytes,
+            )
         )
     return key
 

@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 import sqlalchemy as sa
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4_app.access.database import DELIVERIES, WEBHOOKS_TABLE, writing
 from recon4_app.errors import Conflict, NotFound
 from recon4_app.webhooks.addresses import target_of
@@ -41,7 +42,7 @@ class WebhookStore:
         target_of(url)
         key_of(secret)
         if not events:
-            raise ConfigError("events: expected at least one")
+            raise ConfigError(CodedText("webhook-no-event"))
         row = {
             "id": secrets.token_hex(8),
             "url": url,
@@ -53,7 +54,7 @@ class WebhookStore:
         with writing(self._engine) as connection:
             count = sa.select(sa.func.count()).select_from(WEBHOOKS_TABLE)
             if connection.execute(count).scalar_one() >= WEBHOOKS.max_webhooks:
-                raise Conflict(f"there are {WEBHOOKS.max_webhooks} webhooks already: remove one")
+                raise Conflict(CodedText("webhooks-too-many", limit=WEBHOOKS.max_webhooks))
             connection.execute(WEBHOOKS_TABLE.insert().values(**row))
         return self.get(str(row["id"]))
 
@@ -65,7 +66,7 @@ class WebhookStore:
         """
         found = [one for one in self.all() if one.id == webhook_id]
         if not found:
-            raise NotFound(f"no webhook {webhook_id[:32]!r}")
+            raise NotFound(CodedText("webhook-unknown", webhook=webhook_id[:32]))
         return found[0]
 
     def remove(self, webhook_id: str) -> Webhook:

@@ -8,6 +8,7 @@ from html.parser import HTMLParser
 import pytest
 from starlette.requests import HTTPConnection, Request
 
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH, ROOT, languages
 from recon4.locales.texts import messages_of, texts
 from recon4.settings.presets import PRESET_TEXTS
@@ -77,10 +78,11 @@ def test_english_content_is_marked_within_the_bar_of_the_language():
 
 def test_a_lost_page_has_its_title_in_the_language():
     request = Request(asking("de").scope | {"method": "GET", "path": "/x"})
-    page = _page(request, 404, "nothing {{ title }}", headers=None).body.decode()
+    detail = CodedText("project-unknown", name="{{ title }} <b>")
+    page = _page(request, 404, detail, headers=None).body.decode()
 
     assert "<title>Seite nicht gefunden · recon4</title>" in page and "Alle Projekte" in page
-    assert '<p lang="en">nothing {{ title }}</p>' in page, "what is said is no text of ours"
+    assert "<p>kein Projekt &#x27;{{ title }} &lt;b&gt;&#x27;</p>" in page
 
 
 def test_scripts_find_their_texts_in_the_page_and_english_ones_only_if_some_lack():

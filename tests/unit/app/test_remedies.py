@@ -7,9 +7,10 @@ import pytest
 from fastapi import FastAPI
 
 from recon4.errors import ConfigError, NoSpace
+from recon4.locales.coded import CodedText
 from recon4_app.access.people import Person, Role
 from recon4_app.error_responses import install
-from recon4_app.errors import STORAGE, Conflict, NoRoom, project_page
+from recon4_app.errors import Conflict, NoRoom, project_page
 
 
 def answer(error: Exception, role: Role) -> dict[str, object]:
@@ -34,22 +35,24 @@ def answer(error: Exception, role: Role) -> dict[str, object]:
     return body
 
 
-@pytest.mark.parametrize("error", [NoRoom("the disk is full"), NoSpace("no space left")])
+@pytest.mark.parametrize("error", [NoRoom(CodedText("disk-full")), NoSpace("no space left")])
 def test_a_full_disk_leads_those_who_may_delete_to_what_takes_space(error):
-    remedy = {"text": STORAGE.text, "page": "/storage", "needs": "process"}
+    remedy = {"text": "See what takes space", "page": "/storage", "needs": "process"}
 
     assert answer(error, Role.OPERATOR)["remedy"] == remedy
     assert "remedy" not in answer(error, Role.VIEWER)
 
 
 def test_the_page_of_a_project_is_named_as_it_is_addressed():
-    error = Conflict("cancel it first", remedy=project_page("2. patro"))
+    error = Conflict(CodedText("job-no-log"), remedy=project_page("2. patro"))
 
     remedy = answer(error, Role.VIEWER)["remedy"]
 
     assert remedy == {"text": "Open 2. patro", "page": "/projects/2.%20patro/", "needs": "look"}
 
 
-@pytest.mark.parametrize("error", [Conflict("not now"), ConfigError("voxel_m must be positive")])
+@pytest.mark.parametrize(
+    "error", [Conflict(CodedText("capture-none")), ConfigError("voxel_m must be positive")]
+)
 def test_an_error_without_another_page_names_none(error):
     assert "remedy" not in answer(error, Role.ADMIN)

@@ -15,6 +15,7 @@ from typing import Any
 
 import sqlalchemy as sa
 
+from recon4.locales.coded import CodedText
 from recon4.units import HOUR_S
 from recon4_app.access.database import GUEST_LINKS, PEOPLE, SESSIONS, writing
 from recon4_app.access.login.accounts import lookup_key
@@ -29,9 +30,6 @@ from recon4_app.access.login.sessions import (
 from recon4_app.access.people import Person
 from recon4_app.access.tuning import GUEST_LINK
 from recon4_app.errors import Conflict, NotFound, Refused, TooMany
-
-NO_LINK = "this link has expired, was revoked, or never existed; ask who gave it to you"
-"""The same words for all: a stranger learns nothing of a link."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,9 +100,7 @@ class GuestLinks:
             live = GUEST_LINKS.c.revoked_s.is_(None) & (GUEST_LINKS.c.until_s > now_s)
             count = sa.select(sa.func.count()).where(live, GUEST_LINKS.c.project == project)
             if connection.execute(count).scalar_one() >= GUEST_LINK.max_open:
-                raise Conflict(
-                    f"a project has at most {GUEST_LINK.max_open} guest links; revoke one first"
-                )
+                raise Conflict(CodedText("guest-links-too-many", limit=GUEST_LINK.max_open))
             connection.execute(GUEST_LINKS.insert().values(**row))
         return self.one(project, str(row["id"])), token
 
@@ -121,7 +117,7 @@ class GuestLinks:
         same = (GUEST_LINKS.c.project == project) & (GUEST_LINKS.c.id == link_id)
         found = self._select(same)
         if not found:
-            raise NotFound(f"no guest link {link_id[:20]!r} of {project}")
+            raise NotFound(CodedText("guest-link-unknown", link=link_id[:20], project=project))
         return found[0]
 
     def revoke(self, link: GuestLink, by: Person) -> None:
@@ -140,13 +136,14 @@ class GuestLinks:
             TooMany: If there were too many attempts from that network.
         """
         if wait_s := self._tries.take(network(address)):
-            raise TooMany("too many attempts; wait a moment", retry_after_s=wait_s)
+            raise TooMany(CodedText("attempts-too-many"), retry_after_s=wait_s)
         session, now_s = new_token(), self._clock()
         row = session_row(session, now_s, address=address, agent=agent)
         with writing(self._engine) as connection:  # a revocation comes before or after
             found = _links(connection, GUEST_LINKS.c.token_hash == hash_of(token), now_s)
             if not found or not found[0].works:
-                raise Refused(NO_LINK)
+                # The same words for all: a stranger learns nothing of a link.
+                raise Refused(CodedText("guest-link-invalid"))
             (link,) = found
             mine = SESSIONS.c.guest_link == link.id
             newest = sa.select(SESSIONS.c.id).where(mine).order_by(SESSIONS.c.began_s.desc())

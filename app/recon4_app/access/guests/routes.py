@@ -8,6 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import Field
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import address, audit
 from recon4_app.access.guests.guest_links import GuestLink
 from recon4_app.access.login.routes import Text, Wire, enter_guest
@@ -116,7 +117,7 @@ def open_guest_link(
     _with_login(server)
     session = request.scope["state"].get("session")
     if session is not None and session.role is not Role.GUEST:
-        raise Refused("this browser is signed in already: sign out to see what a guest sees")
+        raise Refused(CodedText("guest-signed-in-already"))
     log, place = server.access.log, address(request)
     try:
         agent = request.headers.get("user-agent", "")
@@ -132,7 +133,4 @@ def open_guest_link(
 
 def _with_login(server: ServerParts) -> None:
     if not server.access.login:
-        raise Conflict(
-            "this server has no login, so it has no guests: start it with the "
-            "command recon4 serve ROOT --lan"
-        )
+        raise Conflict(CodedText("guests-need-login"))

@@ -11,6 +11,7 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
 from recon4_app.access.login import passwords
 from recon4_app.access.people import ASSIGNABLE, Role
@@ -54,7 +55,7 @@ class Accounts:
         with self._engine.connect() as connection:
             row = connection.execute(_of(name)).mappings().one_or_none()
         if row is None:
-            raise NotFound(f"no account is named {name[:64]!r}")
+            raise NotFound(CodedText("account-unknown", name=name[:64]))
         return _account(row)
 
     def active_password_hash(self, name: str) -> str | None:
@@ -79,12 +80,9 @@ class Accounts:
         """
         name = unicodedata.normalize("NFKC", name)
         if not NAME.fullmatch(name):
-            raise Refused(
-                "a name has 1 to 64 letters, digits, spaces and . ' @ + - _; it begins with a "
-                "letter or digit, and ends with one of them or . _"
-            )
+            raise Refused(CodedText("account-name-invalid"))
         if lookup_key(name) in RESERVED:
-            raise Refused(f"the name {name!r} is reserved: choose another one")
+            raise Refused(CodedText("account-name-reserved", name=name))
         _assignable(role)
         passwords.require_strong(password, name)
         created = datetime.now(UTC).isoformat(timespec="seconds")
@@ -95,7 +93,7 @@ class Accounts:
                 values = {**row, "key": lookup_key(name), "password": hashed}
                 connection.execute(PEOPLE.insert().values(**values))
         except IntegrityError as error:
-            raise Conflict(f"an account named {name} exists already") from error
+            raise Conflict(CodedText("account-exists", name=name)) from error
         return self.get(name)
 
     def set_role(self, name: str, role: Role) -> Account:
@@ -131,7 +129,7 @@ class Accounts:
         with writing(self._engine) as connection:
             connection.execute(PEOPLE.update().where(PEOPLE.c.key == key).values(**values))
             if before.role is Role.ADMIN and connection.execute(_admins()).scalar_one() == 0:
-                raise Conflict(f"{before.name} is the last admin; make another person admin first")
+                raise Conflict(CodedText("last-admin", name=before.name))
             for table in (SESSIONS, KNOWN_BROWSERS):
                 connection.execute(table.delete().where(table.c.person == key))
         return self.get(name)
@@ -153,7 +151,7 @@ def _admins() -> sa.Select[int]:
 
 def _assignable(role: Role) -> Role:
     if role not in ASSIGNABLE:
-        raise Refused(f"the role {role} cannot be assigned; disable the person instead")
+        raise Refused(CodedText("role-not-assignable", role=str(role)))
     return role
 
 

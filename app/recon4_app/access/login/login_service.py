@@ -12,6 +12,7 @@ from pathlib import Path
 
 import sqlalchemy as sa
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import AuditLog
 from recon4_app.access.database import open_database
 from recon4_app.access.guests.guest_links import GuestLinks
@@ -25,7 +26,6 @@ from recon4_app.access.restoring import ACCESS_FILE
 from recon4_app.access.tuning import LOGINS, PASSWORDS
 from recon4_app.errors import NoRoom, Refused, TooMany, WrongPassword
 
-WRONG = "wrong name or password"
 """The same message for a wrong name, a wrong password and a disabled account."""
 
 
@@ -93,7 +93,7 @@ class LoginService:
             self._prove(name, password, caller, known=True)
             return
         if not self._waiting.acquire(blocking=False):
-            raise TooMany("too many people sign in at once; try again", retry_after_s=2.0)
+            raise TooMany(CodedText("logins-at-once"), retry_after_s=2.0)
         try:
             self._prove(name, password, caller, known=False)
         finally:
@@ -106,9 +106,9 @@ class LoginService:
         if not wait_s and not known:
             wait_s = self._addresses.take(place)
         if wait_s:
-            raise TooMany("too many failed logins; wait a while", retry_after_s=wait_s)
+            raise TooMany(CodedText("logins-failed"), retry_after_s=wait_s)
         if not self._fits(name, password):
-            raise WrongPassword(WRONG)
+            raise WrongPassword(CodedText("login-wrong"))
         self._backoff.succeed((lookup_key(name)[:64], source))
         if not known:
             self._addresses.give_back(place)
@@ -127,11 +127,11 @@ class LoginService:
             WeakPassword: If the password is too easy to find; the token stays valid.
         """
         if wait_s := self._addresses.take(network(caller.address)):
-            raise TooMany("too many attempts; wait a while", retry_after_s=wait_s)
+            raise TooMany(CodedText("setup-attempts"), retry_after_s=wait_s)
         with self._setup_lock:
             right = hmac.compare_digest(hash_of(token), self._setup_hash or hash_of(new_token()))
             if not right or self._accounts.has_admin():
-                raise Refused("this link was used, or is of another start of the server")
+                raise Refused(CodedText("setup-link-used"))
             account = self._accounts.add(name, Role.ADMIN, password)
             self._setup_hash = ""
         return self._begin_session(account, caller)

@@ -11,6 +11,7 @@ from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
 from zxcvbn import zxcvbn
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.tuning import PASSWORDS
 from recon4_app.errors import WeakPassword
 from recon4_app.settings import allowed_hosts_from_environment
@@ -43,18 +44,6 @@ COMMON = (
 )
 """Common words, sentences and keyboard rows that the lists of zxcvbn (English, QWERTY) lack."""
 
-WEAKNESS = {
-    "repeat": "a repetition",
-    "spatial": "neighboring keys",
-    "sequence": "a sequence such as abc or 123",
-    "regex": "a year",
-    "date": "a date or year",
-    "user_inputs": "your name, a role, or a name of this product or computer",
-    "dictionary": "a common word, name or password",
-    "bruteforce": "too few different characters",
-}
-"""Pattern of zxcvbn -> its description."""
-
 _estimating = threading.Lock()
 """zxcvbn keeps the words it is given in a global dictionary."""
 
@@ -77,8 +66,7 @@ def require_strong(password: str, name: str) -> None:
     shortest, longest = PASSWORDS.shortest, PASSWORDS.longest
     if not shortest <= len(password) <= longest:
         raise WeakPassword(
-            f"the password needs {shortest} to {longest} characters, got {len(password)}; "
-            "use three or four unrelated words, or let a password manager make one"
+            CodedText("password-length", shortest=shortest, longest=longest, length=len(password))
         )
     text = _normal(password)[: PASSWORDS.longest_estimated]
     known = _known_words(name)
@@ -114,18 +102,19 @@ def _check_reading(text: str, known: list[str], *, separators: int) -> None:
     attempts = min(int(found["guesses"]), strings) * 10**separators
     if attempts < PASSWORDS.min_attempts:
         kinds = dict.fromkeys(_kind(match) for match in found["sequence"])
-        weak = [WEAKNESS[kind] for kind in kinds if kind != "bruteforce"]
+        weak = [kind for kind in kinds if kind != "bruteforce"]
         raise WeakPassword(
-            f"the password is found in about {float(f'{attempts:.0e}'):,.0f} attempts, it needs "
-            f"{PASSWORDS.min_attempts:,}: it is mostly "
-            f"{'; '.join(weak) or WEAKNESS['bruteforce']}. "
-            "Add two or three unrelated words; digits or signs at the end, repeating and "
-            "reversing help little"
+            CodedText(
+                "password-weak",
+                attempts=float(f"{attempts:.0e}"),
+                needed=PASSWORDS.min_attempts,
+                weak=" ".join(weak) or "bruteforce",
+            )
         )
 
 
 def _kind(match: dict[str, object]) -> str:
-    """Key of `WEAKNESS` for a match of zxcvbn."""
+    """Pattern of zxcvbn, with words that are known of the person; a word of the texts."""
     known = match.get("dictionary_name") == "user_inputs"
     return "user_inputs" if known and match["matched_word"] not in COMMON else str(match["pattern"])
 

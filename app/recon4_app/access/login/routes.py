@@ -9,6 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import address, audit
 from recon4_app.access.guests.guest_links import GuestEntry
 from recon4_app.access.login.login_service import Access, LoginOrigin, LoginResult
@@ -226,7 +227,7 @@ def enter_guest(access: Access, request: Request, response: Response, *, entry: 
 
 def _with_login(access: Access) -> Access:
     if not access.login:
-        raise Conflict(f"this server has no login: the person at this computer is {LOCAL.name}")
+        raise Conflict(CodedText("no-login", name=LOCAL.name))
     return access
 
 

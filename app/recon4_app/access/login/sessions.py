@@ -18,6 +18,7 @@ from typing import Any
 
 import sqlalchemy as sa
 
+from recon4.locales.coded import CodedText
 from recon4.units import HOUR_S
 from recon4_app.access.audit import printable
 from recon4_app.access.database import (
@@ -203,7 +204,7 @@ class Sessions:
         if person is not None:
             mine &= SESSIONS.c.person == lookup_key(person)
         if self._write(SESSIONS.delete().where(mine)) == 0:
-            raise NotFound(f"no session {session_id[:32]!r}")
+            raise NotFound(CodedText("session-unknown", session=session_id[:32]))
 
     def forget_cached(self) -> None:
         """Empty the cache, because sessions may have ended."""

@@ -14,6 +14,7 @@ from urllib.parse import urlsplit
 from starlette.datastructures import Headers, MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.middleware.rejection import Rejection, note
 from recon4_app.access.middleware.session import SessionMiddleware
 from recon4_app.access.people import NOBODY, SAFE_METHODS, Person
@@ -115,7 +116,7 @@ def judge(scope: Scope, hosts: Hosts) -> Rejection | None:
     headers = Headers(scope=scope)
     named = headers.getlist("host")
     if len(named) != 1 or not hosts.accepts(hostname(named[0]), scope):
-        return Rejection(400, "Refused", "this server does not answer to that host name")
+        return Rejection(400, "Refused", CodedText("other-host"))
     origins = headers.getlist("origin")
     secure = scope["scheme"] in ("https", "wss")
     if scope["type"] == "websocket" or origins:
@@ -127,7 +128,7 @@ def judge(scope: Scope, hosts: Hosts) -> Rejection | None:
         allowed = allowed or _is_navigation(scope, headers)
     if allowed:
         return None
-    return Rejection(403, "Refused", "requests from other sites are not accepted")
+    return Rejection(403, "Refused", CodedText("other-site"))
 
 
 def _is_navigation(scope: Scope, headers: Headers) -> bool:

@@ -9,7 +9,9 @@ from dataclasses import dataclass, field
 from starlette.requests import HTTPConnection
 from starlette.types import Receive, Scope, Send
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import audit
+from recon4_app.pages import language_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +21,7 @@ class Rejection:
     status: int
     error: str
     """Name of the error, as in `recon4_app.errors`."""
-    detail: str
+    detail: CodedText
     headers: dict[str, str] = field(default_factory=dict)
 
     async def answer(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -28,7 +30,15 @@ class Rejection:
             await receive()
             await send({"type": "websocket.close", "code": 1008, "reason": self.detail})
             return
-        body = json.dumps({"error": self.error, "detail": self.detail}).encode()
+        language = language_of(HTTPConnection(scope))
+        body = json.dumps(
+            {
+                "error": self.error,
+                "detail": self.detail.said(language),
+                "code": self.detail.code,
+                **({"values": dict(self.detail.values)} if self.detail.values else {}),
+            }
+        ).encode()
         headers = {"content-type": "application/json", "content-length": str(len(body))}
         raw = [
             (name.lower().encode(), text.encode())

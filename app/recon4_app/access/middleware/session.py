@@ -11,6 +11,7 @@ from urllib.parse import quote
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.login.login_backoff import TokenBuckets
 from recon4_app.access.login.login_service import Access
 from recon4_app.access.login.sessions import AuthenticatedSession, Session, form_token
@@ -98,11 +99,11 @@ class SessionMiddleware:
             return sign_in_first(scope)
         if wait_s := self._wait_s(authenticated.session):
             retry = {"Retry-After": str(int(wait_s) + 1)}
-            return Rejection(429, "TooMany", "too many requests at a time", retry)
+            return Rejection(429, "TooMany", CodedText("requests-too-many"), retry)
         if scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
             given = Headers(scope=scope).get(FORM_HEADER, "")
             if not hmac.compare_digest(given.encode(), scope["state"]["form_token"].encode()):
-                detail = f"the header {FORM_HEADER} must carry the token of /api/me"
+                detail = CodedText("token-stale", header=FORM_HEADER)
                 return Rejection(403, "StaleToken", detail)
         return None
 
@@ -206,8 +207,10 @@ def sign_in_first(scope: Scope) -> Rejection:
     accept = Headers(scope=scope).get("accept", "")
     page = scope["type"] == "http" and scope["method"] == "GET" and "text/html" in accept
     if not page:
-        return Rejection(401, "Unknown", "sign in first: POST /api/login")
+        return Rejection(401, "Unknown", CodedText("sign-in-first"))
     # A paired phone knows no password: the pairing page offers both.
     path = route_path(scope)
     there = "/pair" if path == "/live" else f"/login#next={quote(path)}"
-    return Rejection(303, "Unknown", "sign in first", {"Location": public_path(scope, there)})
+    return Rejection(
+        303, "Unknown", CodedText("sign-in-page"), {"Location": public_path(scope, there)}
+    )

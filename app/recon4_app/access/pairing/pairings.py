@@ -19,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import printable
 from recon4_app.access.login.login_backoff import TokenBuckets, network
 from recon4_app.access.login.sessions import hash_of
@@ -96,7 +97,7 @@ class Pairings:
         with self._lock:
             _drop_old(self._invitations, self._clock())
             if len(self._invitations) >= PAIRING.max_open:
-                raise TooMany("too many invitations are open", retry_after_s=PAIRING.invitation_s)
+                raise TooMany(CodedText("invitations-too-many"), retry_after_s=PAIRING.invitation_s)
             until_s = self._clock() + PAIRING.invitation_s
             self._invitations[hash_of(token)] = Invitation(grant=grant, until_s=until_s)
         return token
@@ -113,7 +114,7 @@ class Pairings:
             _drop_old(self._invitations, self._clock())
             invitation = self._invitations.pop(hash_of(token), None)
         if invitation is None:
-            raise Refused("this code was used already or is too old; make a new one")
+            raise Refused(CodedText("pairing-code-used"))
         return invitation.grant
 
     def request(self, name: str, address: str) -> PairingRequest:
@@ -124,7 +125,7 @@ class Pairings:
             TooMany: If too many phones wait, or this one sends too many requests.
         """
         if len(name) > PAIRING.longest_name:
-            raise Refused(f"the name of a phone has at most {PAIRING.longest_name} characters")
+            raise Refused(CodedText("phone-name-long", limit=PAIRING.longest_name))
         place = network(address)
         self._try(("request", place))
         with self._lock:
@@ -134,7 +135,7 @@ class Pairings:
                 len(self._requests) >= PAIRING.max_open
                 or len(from_there) >= PAIRING.max_open_a_network
             ):
-                raise TooMany("too many phones wait to be paired", retry_after_s=PAIRING.request_s)
+                raise TooMany(CodedText("phones-too-many"), retry_after_s=PAIRING.request_s)
             taken = {request.code for request in self._requests.values()}
             code = _code(taken)
             token = secrets.token_urlsafe(16)
@@ -162,7 +163,7 @@ class Pairings:
                 if secrets.compare_digest(request.code, code) and request.grant is None:
                     self._requests[key] = replace(request, grant=grant)
                     return self._requests[key]
-        raise NotFound("no phone shows that code now; they are good for five minutes")
+        raise NotFound(CodedText("phone-code-unknown"))
 
     def claim(self, token: str) -> PairingGrant | None:
         """What a waiting phone was granted, returned once; None = it still waits.
@@ -175,16 +176,14 @@ class Pairings:
             _drop_old(self._requests, self._clock())
             request = self._requests.get(key)
             if request is None:
-                raise Refused(
-                    "this phone was not approved within five minutes; request pairing again"
-                )
+                raise Refused(CodedText("phone-not-approved"))
             if request.grant is not None:
                 del self._requests[key]
             return request.grant
 
     def _try(self, key: tuple[str, str]) -> None:
         if wait_s := self._tries.take(key):
-            raise TooMany("too many attempts; wait a moment", retry_after_s=wait_s)
+            raise TooMany(CodedText("attempts-too-many"), retry_after_s=wait_s)
 
 
 def roles_for(maker: Person) -> list[Role]:
@@ -201,7 +200,7 @@ def grant_of(maker: Person, role: Role) -> PairingGrant:
         Refused: If the role exceeds the person's, or is none for phones.
     """
     if role not in roles_for(maker):
-        raise Refused(f"{maker.name} is a {maker.role} here and may not pair a phone as {role}")
+        raise Refused(CodedText("phone-role", name=maker.name, own=str(maker.role), role=str(role)))
     return PairingGrant(person=maker.name, role=role)
 
 

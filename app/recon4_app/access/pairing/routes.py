@@ -11,6 +11,7 @@ import segno
 from fastapi import APIRouter, Depends, Request, Response
 from pydantic import Field
 
+from recon4.locales.coded import CodedText
 from recon4_app.access.audit import address, audit
 from recon4_app.access.login.routes import Me, Text, Wire, enter_paired
 from recon4_app.access.pairing.pairings import PairingGrant, roles_for
@@ -189,16 +190,13 @@ def approve(given: PairingApproval, request: Request, server: Server, *, who: Wh
 
 def _with_login(server: Server) -> None:
     if not server.access.login:
-        raise Conflict(
-            "this server listens on this computer only: phones need one that was started with the "
-            "command recon4 serve ROOT --lan"
-        )
+        raise Conflict(CodedText("phones-need-lan"))
 
 
 def _signed_out(request: Request) -> None:
     """Reject a signed-in browser: a link must not sign it in as another person."""
     if request.scope["state"].get("session") is not None:
-        raise Refused("this browser is signed in already")
+        raise Refused(CodedText("signed-in-already"))
 
 
 def _note_failure(request: Request, server: Server, why: str) -> None:

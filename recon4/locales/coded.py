@@ -1,0 +1,108 @@
+"""Texts of programs that know their code: said again in the language of who reads them.
+
+Errors and reasons travel through code as what they always were, a text in English. One that is a
+`CodedText` also has its code and the values that it quotes, so that the edge (HTTP, a page) says
+it in another language, and a program compares the code.
+
+>>> raise NotFound(CodedText("project-unknown", name="attic"))
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from types import MappingProxyType
+
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Functions, Shown, Texts
+
+FILES = ("problems", "endings")
+"""Files of the texts with a code: problems of requests, reasons why jobs ended."""
+UNCODED = "message"
+"""Code of a text that has none; its value ``detail`` is the text."""
+
+
+class CodedText(str):
+    """A text in English that knows its code and its values."""
+
+    code: str
+    """Name of its message in one of `FILES`; stable."""
+    values: Mapping[str, Shown]
+    """What the text quotes, by name."""
+
+    def __new__(cls, code: str, /, **values: Shown) -> CodedText:
+        """The text of a code.
+
+        Raises:
+            KeyError: If there is no such code, or its text quotes a value that is not given.
+        """
+        text = super().__new__(cls, _texts(ENGLISH)(code, **values))
+        text.code, text.values = code, MappingProxyType(values)
+        return text
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """Code and values are enough to copy it into another process."""
+        return _again, (self.code, dict(self.values))
+
+    def said(self, language: str) -> str:
+        """The text in a language."""
+        return _texts(language)(self.code, **self.values)
+
+
+def coded(error: BaseException) -> CodedText:
+    """The message of an error with its code; `UNCODED` if it has none."""
+    return as_coded(error.args[0] if error.args else "", str(error))
+
+
+def as_coded(text: object, english: str = "") -> CodedText:
+    """A text with its code; `UNCODED` if it has none.
+
+    Args:
+        text: Perhaps a `CodedText`.
+        english: What it says in English; empty = itself.
+    """
+    if isinstance(text, CodedText):
+        return text
+    return CodedText(UNCODED, detail=english or str(text))
+
+
+def said(text: str, language: str) -> str:
+    """A text in a language, if it has a code; else as it is."""
+    return text.said(language) if isinstance(text, CodedText) else text
+
+
+def stored_text(code: str, values: Mapping[str, Shown], english: str) -> str:
+    """A text that was stored with its code and values; only English if they say nothing now.
+
+    A later version may have another code; what another process sent may be anything.
+    """
+    try:
+        return CodedText(code, **values)
+    except (KeyError, TypeError, ValueError):
+        return english
+
+
+def codes() -> tuple[str, ...]:
+    """All codes, in the order of the files; words that texts quote are none."""
+    names = [name for file in FILES for name in Texts(ENGLISH, file).names()]
+    return tuple(name for name in names if not name.startswith("word-"))
+
+
+def _again(code: str, values: dict[str, Shown]) -> CodedText:
+    return CodedText(code, **values)
+
+
+@cache
+def _texts(language: str) -> Texts:
+    return Texts(language, "shared", *FILES, functions=_functions)
+
+
+def _functions(texts: Texts) -> Functions:
+    def words(value: str, of: str) -> str:
+        named = ((f"word-{of}-{one}", f"{of}-{one}", one) for one in value.split())
+        return "; ".join(
+            next((texts(name) for name in (own, shared) if name in texts), one)
+            for own, shared, one in named
+        )
+
+    return {"QUOTED": lambda value: repr(str(value)), "WORDS": words}

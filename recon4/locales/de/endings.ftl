@@ -1,0 +1,1 @@
+### Gründe, aus denen Aufträge endeten.

@@ -1,0 +1,1 @@
+### Reasons why jobs ended: each has a code, which is stored, and values.

@@ -1,0 +1,126 @@
+"""Every problem has a code and a text in each language."""
+
+import pickle
+from collections import Counter
+from typing import Annotated, Any, Literal
+
+import pytest
+from pydantic import BaseModel, Field, ValidationError, model_validator
+
+from recon4.errors import ConfigError, WrongSettings
+from recon4.locales.coded import FILES, CodedText, as_coded, coded, codes, said, stored_text
+from recon4.locales.languages import ENGLISH, ROOT, languages
+from recon4.locales.texts import messages_of, texts
+from recon4_app.compute_pool.messages import decode_error, encode_error
+from recon4_app.error_responses import field_message
+
+OTHERS = languages()[1:]
+SAME = {"webhook-url"}
+"""Codes whose text is the same in German."""
+
+
+@pytest.mark.parametrize("language", OTHERS)
+@pytest.mark.parametrize("file", FILES)
+def test_every_code_is_said_in_each_language(language, file):
+    english = messages_of(ROOT / ENGLISH / f"{file}.ftl")
+    own = messages_of(ROOT / language / f"{file}.ftl")
+
+    assert english.keys() == own.keys()
+    assert {name for name in own if own[name].equals(english[name])} <= SAME
+
+
+def test_no_code_is_in_two_files_or_a_text_of_all_pages():
+    files = [list(messages_of(ROOT / ENGLISH / f"{file}.ftl")) for file in (*FILES, "shared")]
+    counted = Counter(name for names in files for name in names)
+
+    assert [name for name, count in counted.items() if count > 1] == []
+    assert "project-unknown" in codes() and "word-entry-note" not in codes()
+
+
+def test_a_text_is_english_and_is_said_again_in_another_language():
+    text = CodedText("export-no-room", needed_gb=12.34, free_gb=0.5)
+
+    assert text == "this export needs about 12.3 GB while it is made, 0.5 GB are free"
+    assert said(text, "de").endswith("etwa 12,3 GB, frei sind 0,5 GB")
+    assert said("as it is", "de") == "as it is"
+    assert pickle.loads(pickle.dumps(text)).values == text.values
+
+
+def test_words_of_the_server_are_those_of_the_pages():
+    text = CodedText("not-allowed", name="Jo", role="viewer", what="process")
+
+    assert text == "Jo is a viewer here and may not process; ask an admin"
+    assert text.said("de").startswith("Jo hat hier die Rolle Betrachter und darf nicht: verarbeit")
+    weak = CodedText("password-weak", attempts=2e3, needed=10**8, weak="date repeat")
+    assert "mostly a date or year; a repetition." in weak
+
+
+def test_an_error_without_a_code_is_quoted():
+    error = coded(ConfigError("voxel_m: expected a length"))
+
+    assert error.code == "message" and error == "voxel_m: expected a length"
+    assert error.said("de") == "Meldung auf Englisch: voxel_m: expected a length"
+    assert coded(WrongSettings({"a": "b"})).values == {"detail": "b"}
+    assert as_coded(error) is error
+
+
+def test_the_error_of_a_helper_process_keeps_its_code():
+    there = ConfigError(CodedText("map-empty"))
+    here = decode_error(encode_error(there))
+
+    assert isinstance(here, ConfigError) and coded(here).said("de") == "die Karte hat keine Punkte"
+
+
+def test_a_stored_code_that_says_nothing_now_leaves_the_english_text():
+    assert stored_text("gone-since", {}, "it failed") == "it failed"
+    assert stored_text("job-unknown", {}, "it failed") == "it failed"
+    assert stored_text("job-unknown", {"job": "a1"}, "it failed") == "no job a1"
+
+
+class _Asked(BaseModel):
+    number: Annotated[int, Field(ge=1, le=9)] = 1
+    length: Annotated[float, Field(gt=0.0, lt=5.0, allow_inf_nan=False)] = 1.0
+    name: Annotated[str, Field(min_length=1, max_length=3, pattern="^[a-z]+$")] = "a"
+    kind: Literal["a", "b"] = "a"
+    yes: bool = True
+    many: Annotated[list[int], Field(min_length=1, max_length=2)] = [1]
+    by_name: dict[str, int] = {}
+
+    @model_validator(mode="after")
+    def _named(self) -> "_Asked":
+        if self.name == "no":
+            raise ValueError(CodedText("project-or-title"))
+        return self
+
+
+WRONG = [
+    *({"number": value} for value in (0, 10, "x", 1.5, [])),
+    *({"length": value} for value in (0.0, 9.0, "x", [], float("inf"))),
+    *({"name": value} for value in ("", "long", "A", 3)),
+    *({"many": value} for value in ([], [1, 2, 3], 5)),
+    *({"kind": "c"}, {"yes": "perhaps"}, {"yes": []}, {"by_name": 3}),
+]
+
+
+def problem_of(given: dict[str, Any]) -> dict[str, Any]:
+    with pytest.raises(ValidationError) as raised:
+        _Asked.model_validate(given)
+    return {**raised.value.errors()[0], "loc": ("body", *raised.value.errors()[0]["loc"])}
+
+
+@pytest.mark.parametrize("given", WRONG, ids=str)
+def test_what_is_wrong_with_a_field_is_said_in_each_language(given):
+    problem, field = problem_of(given), next(iter(given))
+    name = f"field-{problem['type']}"
+
+    assert texts(ENGLISH, "problems")(name, **problem.get("ctx", {})) == problem["msg"]
+    assert field_message(problem, ENGLISH) == f"{field}: {problem['msg']}"
+    assert field_message(problem, "de").startswith(f"{field}: ")
+    assert problem["msg"] not in field_message(problem, "de")
+
+
+def test_a_rule_of_our_own_is_said_too():
+    problem = problem_of({"name": "no"})
+
+    assert field_message(problem, "de").endswith("project oder title angeben")
+    assert field_message(problem, ENGLISH).endswith("a project needs a name: give project or title")
