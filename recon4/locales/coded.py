@@ -9,6 +9,7 @@ it in another language, and a program compares the code.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import cache
 from types import MappingProxyType
@@ -18,6 +19,8 @@ from recon4.locales.texts import Functions, Shown, Texts
 
 FILES = ("problems", "endings")
 """Files of the texts with a code: problems of requests, reasons why jobs ended."""
+STEPS = ("projects",)
+"""Files with the names of stages and steps."""
 UNCODED = "message"
 """Code of a text that has none; its value ``detail`` is the text."""
 
@@ -52,6 +55,12 @@ class CodedText(str):
 def coded(error: BaseException) -> CodedText:
     """The message of an error with its code; `UNCODED` if it has none."""
     return as_coded(error.args[0] if error.args else "", str(error))
+
+
+def text_of(error: BaseException) -> str:
+    """The message of an error: a `CodedText` if it has a code."""
+    text = error.args[0] if error.args else ""
+    return text if isinstance(text, CodedText) else str(error)
 
 
 def as_coded(text: object, english: str = "") -> CodedText:
@@ -94,7 +103,7 @@ def _again(code: str, values: dict[str, Shown]) -> CodedText:
 
 @cache
 def _texts(language: str) -> Texts:
-    return Texts(language, "shared", *FILES, functions=_functions)
+    return Texts(language, "shared", *STEPS, *FILES, functions=_functions)
 
 
 def _functions(texts: Texts) -> Functions:
@@ -105,4 +114,23 @@ def _functions(texts: Texts) -> Functions:
             for own, shared, one in named
         )
 
-    return {"QUOTED": lambda value: repr(str(value)), "WORDS": words}
+    def named(word: str, of: str) -> str:
+        name = f"{of}-{re.sub(r'[^a-z0-9]+', '-', word.lower()).strip('-')}"
+        return texts(name) if name in texts else word
+
+    def how(ended: str, number: float) -> str:
+        name = f"word-exit-{ended}"
+        known = name if name in texts else "word-exit-other"
+        return texts(known, how=ended, number=number)
+
+    def place(stage: str, what: str) -> str:
+        kind = "none" if not what else "stage" if stage else "work"
+        return texts(f"word-place-{kind}", stage=stage, what=what)
+
+    return {
+        "QUOTED": lambda value: repr(str(value)),
+        "WORDS": words,
+        "NAMED": named,
+        "EXIT": how,
+        "PLACE": place,
+    }

@@ -154,10 +154,9 @@ def raise_if_full(error: BaseException, path: Path) -> None:
         NoSpace: If the error, or one it came from, is a full disk (or quota, or size limit).
     """
     if is_full(error):
-        raise NoSpace(
-            f"no space left on the disk while writing {path}; "
-            "make room and start again: finished stages are kept"
-        ) from error
+        from recon4.locales.coded import CodedText  # a program starts without it
+
+        raise NoSpace(CodedText("job-disk-full", file=str(path))) from error
 
 
 def is_full(error: BaseException) -> bool:

@@ -7,7 +7,7 @@ import { html, nothing, repeat } from "../shared/dom.js";
 import { bytes, when } from "../shared/format.js";
 import { t, wordOf } from "../shared/texts.js";
 import { optionWords } from "./export_options.js";
-import { noteText, stepText } from "./steps.js";
+import { stepText } from "./steps.js";
 
 /**
  * @import {ExportChoices, ExportView} from "../shared/http_types"
@@ -60,7 +60,7 @@ function exportRow(project, row, known, actions) {
       ${[made?.text, row.person, when(row.finished || row.created)].filter(Boolean).join(" · ")}
     </p>
     ${made ? details(row) : nothing}
-    ${row.note ? html`<p class="quiet">${noteText(row.note)}</p>` : nothing}
+    ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
     <div class="buttons">
       ${open && known.mine(row) ? button(t("cancel"), () => actions.cancel(row)) : nothing}
       ${row.kept && known.mine(row) ? button(t("remove-file"), () => actions.remove(row)) : nothing}

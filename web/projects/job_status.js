@@ -5,7 +5,7 @@ import { badge } from "../shared/badge.js";
 import { attempt, html, messagePlace, nothing, remedyLink, render, within } from "../shared/dom.js";
 import { runProgressText, progressText } from "../shared/format.js";
 import { t } from "../shared/texts.js";
-import { noteText, stepText } from "./steps.js";
+import { stepText } from "./steps.js";
 
 /** @import {JobView} from "../shared/http_types" */
 
@@ -33,7 +33,7 @@ export class JobStatus extends HTMLElement {
     if (!view) return;
     const { job, status } = view;
     const running = job.state === "running";
-    const text = running ? runProgressText(view) : noteText(job.note);
+    const text = running ? runProgressText(view) : job.note;
     const part = running && status.what ? progressText(view) : "";
     render(
       html`<div class="job-line">

@@ -10,6 +10,3 @@ export const stepText = (/** @type {string} */ what) =>
 
 /** A stage of the workflow. */
 export const stageText = (/** @type {string} */ stage) => wordOf("stage", stage);
-
-/** Why a job ended; a reason that no text has is shown as the server gave it. */
-export const noteText = (/** @type {string} */ note) => wordOf("note", note);

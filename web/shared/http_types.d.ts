@@ -666,8 +666,14 @@ export interface Job {
   started: string;
   finished: string;
   note: string;
+  reason: JobReason | null;
   person: string;
   made: ExportedFile | null;
+}
+
+export interface JobReason {
+  code: string;
+  values: Record<string, boolean | number | string>;
 }
 
 export type JobState = "queued" | "running" | "succeeded" | "failed" | "cancelled";

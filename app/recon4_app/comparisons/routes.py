@@ -26,6 +26,7 @@ from recon4_app.jobs.model import CompareOrder, Inputs, Job, JobKind
 from recon4_app.jobs.orders import add_order, find_order, latest_map_key, refuse_others
 from recon4_app.jobs.routes import refuse_too_many
 from recon4_app.network.rate_limit import at_most
+from recon4_app.pages import Language, language_of
 
 router = APIRouter(
     prefix="/api/projects/{project_id}/comparisons",
@@ -40,14 +41,14 @@ FOREVER = "private, max-age=31536000, immutable"
 
 
 @router.get("", summary="Comparisons of a map")
-def list_comparisons(project_id: str, server: Server) -> Comparisons:
+def list_comparisons(project_id: str, server: Server, *, language: Language) -> Comparisons:
     """List what the map was compared with, the newest first, and what it can be compared with."""
     server.projects.folder(project_id)
     jobs = server.jobs.of_project(project_id, JobKind.COMPARE)[: KEPT_EXPORTS.listed]
     map_key = latest_map_key(server, project_id)
     return Comparisons(
         others=server.slices.sources(project_id) if map_key else [],
-        comparisons=[_view(server, job, map_key) for job in jobs],
+        comparisons=[_view(server, job, map_key, language=language) for job in jobs],
         step_m=PAGE_POINTS.step_m,
     )
 
@@ -69,14 +70,16 @@ def order(
     asked = CompareOrder(against=new.against, align=new.align, core_spacing_m=new.core_spacing_m)
     job = add_order(server, project_id, Inputs(recordings=(), compare=asked), request=request)
     audit(request, "compare", f"{project_id}: {new.against}")
-    return _view(server, job, latest_map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id), language=language_of(request))
 
 
 @router.get("/{comparison_id}", summary="A comparison")
-def read_comparison(project_id: str, comparison_id: str, server: Server) -> ComparisonView:
+def read_comparison(
+    project_id: str, comparison_id: str, server: Server, *, language: Language
+) -> ComparisonView:
     """Its progress, and its figures when it is finished."""
     job = _comparison(server, project_id, comparison_id)
-    return _view(server, job, latest_map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id), language=language)
 
 
 @router.post("/{comparison_id}/cancel", responses=REFUSALS, summary="Cancel a comparison")
@@ -133,7 +136,7 @@ def _made(server: ServerParts, job: Job, name: str) -> Path:
     return path
 
 
-def _view(server: ServerParts, job: Job, map_key: str) -> ComparisonView:
+def _view(server: ServerParts, job: Job, map_key: str, *, language: str) -> ComparisonView:
     asked = job.inputs.compare or CompareOrder(against="")
     kept = server.exports.path(job) is not None
     return ComparisonView(
@@ -144,7 +147,7 @@ def _view(server: ServerParts, job: Job, map_key: str) -> ComparisonView:
         state=job.state,
         person=job.person,
         created=job.created,
-        note=job.note,
+        note=job.said(language).note,
         fraction=server.supervisor.status(job).fraction,
         kept=kept,
         of_this_map=job.made is not None and job.made.map_key == map_key,

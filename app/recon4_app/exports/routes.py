@@ -31,6 +31,7 @@ from recon4_app.jobs.orders import add_order, find_order, latest_map_key, refuse
 from recon4_app.jobs.routes import refuse_too_many
 from recon4_app.network.rate_limit import at_most
 from recon4_app.network.request_caller import CalledBy, Caller
+from recon4_app.pages import Language, language_of
 
 router = APIRouter(
     prefix="/api/projects/{project_id}/exports",
@@ -43,7 +44,7 @@ REFUSALS = problems(403, 429, 507)
 
 
 @router.get("", summary="Exports of a project")
-def list_exports(project_id: str, server: Server) -> list[ExportView]:
+def list_exports(project_id: str, server: Server, *, language: Language) -> list[ExportView]:
     """List what was exported, by whom and when, with hashes; the newest first.
 
     A row stays when its file is removed after a week.
@@ -51,7 +52,7 @@ def list_exports(project_id: str, server: Server) -> list[ExportView]:
     server.projects.folder(project_id)
     jobs = server.jobs.of_project(project_id, JobKind.EXPORT)[: KEPT_EXPORTS.listed]
     map_key = latest_map_key(server, project_id)
-    return [_view(server, job, map_key) for job in jobs]
+    return [_view(server, job, map_key, language=language) for job in jobs]
 
 
 @router.get("/choices", summary="What can be exported")
@@ -99,7 +100,7 @@ def cancel(project_id: str, export_id: str, *, server: Server, request: Request)
     refuse_others(request, job)
     job = server.supervisor.cancel(job)
     audit(request, "cancel export", f"{project_id}: {_file_of(job)}")
-    return _view(server, job, latest_map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id), language=language_of(request))
 
 
 @router.get("/{export_id}/file", response_class=FileResponse, summary="Download an export")
@@ -129,7 +130,7 @@ def remove(project_id: str, export_id: str, *, server: Server, request: Request)
         raise Conflict(CodedText("export-not-over"))
     server.exports.remove(job)
     audit(request, "remove export", f"{project_id}: {_file_of(job)}")
-    return _view(server, job, latest_map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id), language=language_of(request))
 
 
 async def _estimate(
@@ -158,7 +159,7 @@ def _add(
     asked = Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options))
     job = add_order(server, project_id, asked, request=request)
     audit(request, "export", f"{project_id}: {new.file}")
-    return _view(server, job, latest_map_key(server, project_id))
+    return _view(server, job, latest_map_key(server, project_id), language=language_of(request))
 
 
 def _export(server: ServerParts, project_id: str, export_id: str) -> Job:
@@ -169,7 +170,7 @@ def _file_of(job: Job) -> str:
     return job.inputs.export.file if job.inputs.export else ""
 
 
-def _view(server: ServerParts, job: Job, map_key: str) -> ExportView:
+def _view(server: ServerParts, job: Job, map_key: str, *, language: str) -> ExportView:
     status = server.supervisor.status(job)
     file = _file_of(job)
     return ExportView(
@@ -181,7 +182,7 @@ def _view(server: ServerParts, job: Job, map_key: str) -> ExportView:
         person=job.person,
         created=job.created,
         finished=job.finished,
-        note=job.note,
+        note=job.said(language).note,
         fraction=status.fraction,
         what=status.what,
         made=job.made,

@@ -12,6 +12,7 @@ from pathlib import Path
 import recon4
 from recon4.delivery.kinds import ExportedFile
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 from recon4.review.approval_state import latest_state
 from recon4.sandbox import Policy
@@ -65,7 +66,7 @@ def policy(folder: JobFolder) -> Policy:
 def _order(folder: JobFolder) -> CompareOrder:
     _, inputs = folder.request()
     if inputs.compare is None:
-        raise ConfigError("this job names no map to compare with")
+        raise ConfigError(CodedText("comparison-no-order"))
     return inputs.compare
 
 
@@ -73,7 +74,7 @@ def _other_map(project: Path, order: CompareOrder) -> Path:
     """The other project, or the folder of an earlier map; the server has checked the name."""
     kind, _, name = order.against.partition(":")
     if Path(name).name != name:
-        raise ConfigError(f"no map {order.against!r}")
+        raise ConfigError(CodedText("comparison-map-unknown", map=order.against))
     return project.parent / name if kind == "project" else project / "artifacts" / name
 
 

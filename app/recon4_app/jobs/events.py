@@ -16,6 +16,7 @@ import msgspec
 
 from recon4.errors import Cancelled, StoreError
 from recon4.findings.wording import whole_text
+from recon4.locales.coded import CodedText
 from recon4.model.events import KINDS, Event, Remarked, RunStarted, WorkProgress
 from recon4.model.plain import to_plain
 from recon4.store.json_files import parse_object
@@ -98,7 +99,7 @@ class EventWriter:
             )
         )
         if self._stop.exists():
-            raise Cancelled("stopped on request; finished stages are kept")
+            raise Cancelled(CodedText("job-stopped"))
 
     def _write(self, event: Event) -> None:
         line = {"t": round(time.time(), 3), **_facts(event), "kind": event.kind}

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from recon4.delivery.kinds import ExportedFile
 from recon4.errors import ConfigError, NoSpace, Recon4Error
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 from recon4.review.newest_approval import judging_folders
 from recon4.review.trusted_keys import STATE
@@ -35,19 +36,17 @@ def export(folder: JobFolder, progress: Progress) -> ExportedFile:
     project, inputs = folder.request()
     order = inputs.export
     if order is None:
-        raise ConfigError("this job orders no file")
+        raise ConfigError(CodedText("export-no-order"))
     free, reserve = shutil.disk_usage(folder.path).free, folder.limits().reserve_bytes
     if free < reserve:
-        raise NoSpace(f"no space: an export leaves {reserve} bytes free, there are {free}")
+        raise NoSpace(CodedText("export-disk-full", reserve=reserve, free=free))
     make_folders(folder.made)
     try:
         return export_file(
             project, order.file, folder.made, options=order.options, progress=progress
         )
     except MemoryError as error:
-        raise Recon4Error(
-            "out of memory: choose fewer points: some classes, a box, a storey, or thin them out"
-        ) from error
+        raise Recon4Error(CodedText("export-out-of-memory")) from error
 
 
 def policy(folder: JobFolder) -> Policy:

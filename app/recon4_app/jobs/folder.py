@@ -34,6 +34,7 @@ from recon4.store.atomic import make_folders, write_json
 from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock
 from recon4_app.jobs.model import Inputs
+from recon4_app.jobs.reason import JobReason, reason_of
 from recon4_app.jobs.tuning import JOB_FILES
 
 
@@ -43,7 +44,9 @@ class Outcome:
 
     state: Literal["succeeded", "failed", "cancelled"]
     note: str = ""
-    """Why, and what to do."""
+    """Why, and what to do; in English."""
+    reason: JobReason | None = None
+    """Code and values of `note`; None = it has none."""
     startable: bool = True
     """False = its recording or rig cannot be used, and no project was made: running it again would
     fail alike."""
@@ -51,6 +54,17 @@ class Outcome:
     """Whether the disk was full."""
     made: ExportedFile | None = None
     """The file that an export has made."""
+
+
+def failure(note: str, *, startable: bool = True, no_space: bool = False) -> Outcome:
+    """The outcome of a worker that failed."""
+    return Outcome(
+        state="failed",
+        note=str(note),
+        reason=reason_of(note),
+        startable=startable,
+        no_space=no_space,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,6 +10,7 @@ from recon4.delivery.kinds import ExportedFile
 from recon4.export.options import ExportOptions
 from recon4.locales.coded import CodedText
 from recon4_app.errors import IllegalTransition
+from recon4_app.jobs.reason import JobReason, in_language, reason_of
 
 
 class JobKind(StrEnum):
@@ -109,7 +110,9 @@ class Job:
     started: str = ""
     finished: str = ""
     note: str = ""
-    """What went wrong and what to do, as text for users."""
+    """What went wrong and what to do, as text for users; stored in English."""
+    reason: JobReason | None = None
+    """Code and values of `note`; None = it has none."""
     person: str = ""
     """Who started it; empty = not known."""
     made: ExportedFile | None = None
@@ -137,4 +140,10 @@ class Job:
             raise IllegalTransition(
                 CodedText("job-transition", job=self.id, state=str(self.state), next=str(state))
             )
+        if "note" in changes:
+            changes |= {"note": str(changes["note"]), "reason": reason_of(changes["note"])}
         return replace(self, state=state, **changes)
+
+    def said(self, language: str) -> Job:
+        """The job with its note in a language."""
+        return replace(self, note=in_language(self.reason, self.note, language))

@@ -36,12 +36,10 @@ class JobStatus:
     """Stages begun so far, in order."""
 
     @property
-    def where(self) -> str:
-        """The current stage and piece of work as text."""
-        if not self.what:
-            return "before it began"
+    def stage(self) -> str:
+        """The current stage; empty = none."""
         running = [row.stage for row in self.stages if row.state == "running"]
-        return f"in stage {running[-1]} ({self.what})" if running else f"in {self.what}"
+        return running[-1] if running else ""
 
     @property
     def fraction(self) -> float | None:

@@ -21,6 +21,7 @@ from recon4.untrusted.names import visible
 from recon4_app.databases import migrate, open_engine
 from recon4_app.errors import Conflict, NotFound, project_page
 from recon4_app.jobs.model import Inputs, Job, JobKind, JobState
+from recon4_app.jobs.reason import JobReason, reason_of
 from recon4_app.state_copies import StateCopies
 
 log = logging.getLogger(__name__)
@@ -42,10 +43,11 @@ JOBS = sa.Table(
     sa.Column("kind", sa.String, nullable=False),
     sa.Column("person", sa.String, nullable=False),
     sa.Column("made", sa.String, nullable=False),
+    sa.Column("reason", sa.String, nullable=False),
 )
-"""The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs`` and
-``made`` are JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one damaged
-row."""
+"""The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs``,
+``made`` and ``reason`` are JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails
+over one damaged row."""
 
 _PROCESSES = JOBS.c.kind == JobKind.PROCESS
 
@@ -199,7 +201,7 @@ def _restore(copies: StateCopies) -> str:
 def _row(job: Job) -> dict[str, object]:
     row = asdict(job)
     row |= {"inputs": json.dumps(row["inputs"]), "kind": job.kind}
-    return row | {"made": json.dumps(row["made"]) if job.made else ""}
+    return row | {name: json.dumps(row[name]) if row[name] else "" for name in ("made", "reason")}
 
 
 def _job(row: sa.RowMapping) -> Job:
@@ -207,19 +209,24 @@ def _job(row: sa.RowMapping) -> Job:
     try:
         return _whole_job(row)
     except (ValueError, KeyError, TypeError, StoreError, msgspec.ValidationError) as error:
+        note = CodedText("job-row-damaged", detail=visible(repr(error)))
         return Job(
             id=visible(str(row["id"])),
             project=visible(str(row["project"])),
             inputs=Inputs(recordings=()),
             created=visible(str(row["created"])),
             state=JobState.FAILED,
-            note=f"this row of jobs.sqlite is damaged: {visible(repr(error))}",
+            note=str(note),
+            reason=reason_of(note),
         )
 
 
 def _whole_job(row: sa.RowMapping) -> Job:
     inputs = msgspec.convert(parse_object(row["inputs"], "inputs"), Inputs)
     made = msgspec.convert(parse_object(row["made"], "made"), ExportedFile) if row["made"] else None
-    ours = ("number", "inputs", "state", "kind", "made")
+    reason = (
+        msgspec.convert(parse_object(row["reason"], "reason"), JobReason) if row["reason"] else None
+    )
+    ours = ("number", "inputs", "state", "kind", "made", "reason")
     fields = {name: row[name] for name in row if name not in ours}
-    return Job(**fields, inputs=inputs, made=made, state=JobState(row["state"]))
+    return Job(**fields, inputs=inputs, made=made, reason=reason, state=JobState(row["state"]))

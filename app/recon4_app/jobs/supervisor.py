@@ -24,6 +24,7 @@ from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.folder import JobFolder, Limits, Outcome
 from recon4_app.jobs.limits import allowed_memory
 from recon4_app.jobs.model import Job, JobKind, JobState
+from recon4_app.jobs.reason import said_before
 from recon4_app.jobs.run_progress import RunProgress
 from recon4_app.jobs.run_progress import after as progress_after
 from recon4_app.jobs.silence import SilenceClock, allowed_silence_s
@@ -284,19 +285,24 @@ class Supervisor:
         """The job after its worker is gone."""
         if outcome is not None:
             made = None if job.kind is JobKind.PROCESS else outcome.made
-            return job.to(JobState(outcome.state), finished=now(), note=outcome.note, made=made)
-        where, how = self._tail(job).status.where, exit_reason(code)
-        if job.id in self._hung:
-            how = f"made no progress for {self._hung[job.id]:.0f} s and was killed"
+            note = said_before(outcome.reason, outcome.note)
+            return job.to(JobState(outcome.state), finished=now(), note=note, made=made)
         if self.folder(job.id).stop_requested_s() is not None:
-            return job.to(JobState.CANCELLED, finished=now(), note="stopped on request")
+            note = CodedText("job-stopped-early")
+            return job.to(JobState.CANCELLED, finished=now(), note=note)
+        how, number = exit_reason(code)
+        if job.id in self._hung:
+            how, number = "silent", round(self._hung[job.id])
+        status = self._tail(job).status
+        about: dict[str, str | int] = {
+            "how": how,
+            "number": number,
+            "stage": status.stage,
+            "what": status.what,
+        }
         if job.attempt < self._settings.max_job_attempts:
-            note = f"the worker {how}, {where}; it continues after the last finished stage"
-            return job.to(JobState.QUEUED, note=note)
-        note = (
-            f"the worker died {job.attempt} times: last it {how}, {where}; perhaps the recording "
-            "is damaged or too large for this computer: see the log, then resume"
-        )
+            return job.to(JobState.QUEUED, note=CodedText("worker-continues", **about))
+        note = CodedText("worker-died", attempts=job.attempt, **about)
         return job.to(JobState.FAILED, finished=now(), note=note)
 
 

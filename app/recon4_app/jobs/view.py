@@ -35,7 +35,7 @@ def job_view(server: ServerParts, job: Job, language: str) -> JobView:
     failed = job.state is JobState.FAILED
     outcome = server.supervisor.folder(job.id).outcome() if failed else None
     return JobView(
-        job=job,
+        job=job.said(language),
         status=status,
         fraction=status.fraction,
         run_progress=run.fraction,

@@ -14,22 +14,19 @@ from pathlib import Path
 
 from recon4.delivery.kinds import ExportedFile
 from recon4.errors import Cancelled, ConfigError, NoSpace, Recon4Error, RecordingError
+from recon4.locales.coded import CodedText, coded, text_of
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.store.atomic import raise_if_full
 from recon4.store.project import Project, discard_unbegun, is_project
 from recon4.system.stopping import end_process
 from recon4_app.jobs.events import EventWriter
-from recon4_app.jobs.folder import JobFolder, Outcome
+from recon4_app.jobs.folder import JobFolder, Outcome, failure
 from recon4_app.jobs.limits import prepare_worker, worker_policy
+from recon4_app.jobs.reason import reason_of
 from recon4_app.jobs.space import refuse_if_full
 
 log = logging.getLogger("recon4.job")
-
-OUT_OF_MEMORY = (
-    "out of memory: the job reached the server's memory limit; close other programs, "
-    "or process fewer points (a larger map.voxel_m, a shorter recording), then resume"
-)
 
 Work = Callable[[JobFolder, Progress], ExportedFile | None]
 """Does the work of a job; returns the file of an export."""
@@ -58,20 +55,20 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         events = EventWriter(folder.path)
         made = work(folder, events)
     except Cancelled as stop:
-        return Outcome(state="cancelled", note=str(stop))
+        note = coded(stop)
+        return Outcome(state="cancelled", note=str(note), reason=reason_of(note))
     except (RecordingError, ConfigError) as error:
         project, _ = folder.request()
-        return Outcome(state="failed", note=str(error), startable=is_project(project))
+        return failure(text_of(error), startable=is_project(project))
     except Recon4Error as error:
-        return Outcome(state="failed", note=str(error), no_space=isinstance(error, NoSpace))
+        return failure(text_of(error), no_space=isinstance(error, NoSpace))
     except MemoryError:
-        return Outcome(state="failed", note=OUT_OF_MEMORY)
+        return failure(CodedText("job-out-of-memory"))
     except Exception as error:
         if (full := _full(error, folder.path)) is not None:
-            return Outcome(state="failed", note=full, no_space=True)
+            return failure(full, no_space=True)
         log.exception("unexpected")
-        note = f"{type(error).__name__} in the program; the log has the traceback"
-        return Outcome(state="failed", note=note)
+        return failure(CodedText("job-program-error", error=type(error).__name__))
     finally:
         if events is not None:
             events.close()
@@ -128,7 +125,7 @@ def _full(error: Exception, path: Path) -> str | None:
     try:
         raise_if_full(error, path)
     except NoSpace as full:
-        return str(full)
+        return text_of(full)
     return None
 
 

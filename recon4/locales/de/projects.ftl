@@ -46,7 +46,6 @@ free-space = Speicherplatz freigeben; erneute Verarbeitung stellt es wieder her
 progress-whole = Fortschritt des ganzen Laufs
 resume-job = Fortsetzen
 other-settings = Andere Einstellungen…
-note-stopped-on-request = auf Wunsch beendet
 
 ## Schritte eines Laufs
 

@@ -46,7 +46,6 @@ free-space = Free space; processing the recording again makes it again
 progress-whole = Progress of the whole run
 resume-job = Resume
 other-settings = Other settings…
-note-stopped-on-request = stopped on request
 
 ## Steps of a run
 
