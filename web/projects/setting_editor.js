@@ -152,7 +152,7 @@ export class SettingEditor extends HTMLElement {
     const fits = settings.map((setting) => this.#fits(setting));
     return html`<details class="group" ?hidden=${!fits.includes(true)}>
       <summary lang="en">${name}</summary>
-      <p class="quiet" lang="en">${text}</p>
+      <p class="quiet">${text}</p>
       ${settings.map((setting, k) => this.#setting(setting, !fits[k]))}
     </details>`;
   }
@@ -189,7 +189,7 @@ export class SettingEditor extends HTMLElement {
       >
       ${this.#input(setting, problem !== "")}
       <p class="hint" id="${id}-hint">
-        <span lang="en">${text}</span>
+        <span>${text}</span>
         <span class="quiet">(${about.filter(Boolean).join(", ")})</span>
       </p>
       <p class="error" id="${id}-error">${problem}</p>

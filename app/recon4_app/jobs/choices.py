@@ -10,10 +10,13 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel, ConfigDict, Field
 
 from recon4.errors import WrongSettings
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import texts
 from recon4.model.rig import rig_presets
 from recon4.settings import PRESET_TEXTS, PRESETS, override, preset, values_by_group
 from recon4.settings.help import GroupHelp, SettingHelp, describe_settings
 from recon4_app.access.people import Permission, needs
+from recon4_app.pages import Language
 
 router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(Permission.LOOK))])
 
@@ -52,7 +55,7 @@ class SettingView(BaseModel):
     """Values of a ``choice``."""
     unit: str
     text: str
-    """Description."""
+    """Description, in the language of the request."""
     default: Any
     value: Any
     """Value in the requested preset."""
@@ -90,10 +93,10 @@ def read_choices() -> Choices:
 
 
 @router.get("/settings", summary="Every setting")
-def read_settings(of: str = "indoor") -> list[GroupView]:
+def read_settings(language: Language, of: str = "indoor") -> list[GroupView]:
     """List every setting with meaning, unit, default, and value in the preset ``of``."""
     values = values_by_group(preset(of))
-    return [_group(group, values[group.name]) for group in _described()]
+    return [_group(group, values[group.name], language) for group in _described()]
 
 
 @router.post("/settings/check", summary="Check settings")
@@ -112,12 +115,13 @@ def _described() -> tuple[GroupHelp, ...]:
     return describe_settings()
 
 
-def _group(group: GroupHelp, values: dict[str, object]) -> GroupView:
-    settings = [_setting(one, values[one.name]) for one in group.settings]
-    return GroupView(name=group.name, text=_plain(group.text), settings=settings)
+def _group(group: GroupHelp, values: dict[str, object], language: str) -> GroupView:
+    settings = [_setting(one, values[one.name], language) for one in group.settings]
+    text = _in_language(group.name, group.text, language)
+    return GroupView(name=group.name, text=text, settings=settings)
 
 
-def _setting(one: SettingHelp, value: Any) -> SettingView:
+def _setting(one: SettingHelp, value: Any, language: str) -> SettingView:
     values = re.findall(r"`([^`]*)`", one.kind)
     truth = values == ["true", "false"]
     return SettingView(
@@ -126,7 +130,7 @@ def _setting(one: SettingHelp, value: Any) -> SettingView:
         kind="bool" if truth else "choice" if values else one.kind,
         choices=[] if truth else values,
         unit=unit_of(one.name),
-        text=_plain(one.text),
+        text=_in_language(one.path, one.text, language),
         default=one.default,
         value=value,
     )
@@ -138,5 +142,18 @@ def unit_of(name: str) -> str:
     return next((UNITS[ending] for ending in endings if name.endswith(f"_{ending}")), "")
 
 
-def _plain(text: str) -> str:
+def _in_language(path: str, declared: str, language: str) -> str:
+    """The sentence of a setting or group: as it is declared, or its translation."""
+    if language == ENGLISH:
+        return plain_text(declared)
+    return texts(language, "settings")(text_name(path))
+
+
+def text_name(path: str) -> str:
+    """Name of the text of a setting or group: ``map.voxel_m`` -> ``about-map-voxel_m``."""
+    return f"about-{path.replace('.', '-')}"
+
+
+def plain_text(text: str) -> str:
+    """A docstring without marks of code."""
     return text.replace("``", "")
