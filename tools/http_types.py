@@ -112,7 +112,7 @@ def _operation(name: str, operation: dict[str, Any]) -> str:
         for one in parameters
     ]
     body = operation.get("requestBody", {}).get("content", {}).get(JSON, {}).get("schema")
-    success = next(one for code, one in operation["responses"].items() if code.startswith("2"))
+    success = next(one for code, one in operation["responses"].items() if code[0] in "23")
     content = success.get("content", {})
     response = _type(content[JSON].get("schema", {})) if JSON in content else "string"
     fields = [f"    path: {{ {'; '.join(path)} }};\n"] if path else []

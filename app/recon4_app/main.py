@@ -38,6 +38,7 @@ from recon4_app.annotations import routes as annotation_routes
 from recon4_app.comparisons import routes as comparison_routes
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.deps import Server, ServerParts
+from recon4_app.exports import map_routes
 from recon4_app.exports import routes as export_routes
 from recon4_app.exports.kept import KeptExports
 from recon4_app.jobs import choices
@@ -71,7 +72,7 @@ from recon4_app.network.listen import (
 from recon4_app.network.streams import StreamLimits, Streams
 from recon4_app.openapi import description
 from recon4_app.pages import WEB, page_response
-from recon4_app.projects import map_routes, report_file
+from recon4_app.projects import report_file
 from recon4_app.projects import routes as project_routes
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.store import ProjectStore

@@ -161,6 +161,20 @@ def test_files_are_listed_and_others_refused_by_name(assistant):
     assert "pattern" in assistant.refused("project_summary", project="../../etc")
 
 
+def test_a_file_of_the_map_is_exported_once_and_fetched(assistant, server, downloads):
+    fetched = [assistant("download_export", project="office", file="map.xyz") for _ in range(2)]
+
+    assert fetched[0]["sha256"] == fetched[1]["sha256"]
+    assert len((downloads / "office-map.xyz").read_text().splitlines()) == 20_000 + 1
+    with server.signed_in("rita") as rita:
+        (listed,) = rita.get("/api/projects/office/exports").json()
+    assert (listed["file"], listed["person"]) == ("map.xyz", "rita")
+    refused = assistant.refused(
+        "download_export", project="office", file="map.xyz", crs="EPSG:25832"
+    )
+    assert "cannot be put into EPSG:25832" in refused
+
+
 def test_a_slice_is_an_image_with_its_scale(assistant):
     image, about = assistant.answer("slice_image", project="office").content
 

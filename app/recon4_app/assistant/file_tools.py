@@ -11,11 +11,13 @@ from mcp.server.mcpserver.exceptions import ToolError
 from pydantic import Field
 
 from recon4_app.assistant.arguments import Color, FileName, Meters, ProjectId, Xy
-from recon4_app.assistant.http_client import Query, ServerClient
+from recon4_app.assistant.http_client import ServerClient
+from recon4_app.assistant.job_tools import ended_job
 from recon4_app.assistant.records import (
     Downloaded,
     ExportList,
     MapExtent,
+    OrderedExport,
     ProjectFacts,
     ShownSlice,
 )
@@ -29,7 +31,7 @@ WRITTEN = (
 
 
 class FileTools:
-    """Tools that change nothing on the server; downloads go to one folder of this computer."""
+    """Tools that change no project; downloads go to one folder of this computer."""
 
     def __init__(self, server: ServerClient, downloads: Path | None) -> None:
         self._server, self._downloads = server, downloads
@@ -49,12 +51,31 @@ class FileTools:
             Field(description="CRS of a map file, as EPSG:25832; empty = that of the map."),
         ] = "",
     ) -> Downloaded:
-        """Download a file to the folder for downloads of this computer; nothing is overwritten."""
+        """Download a file to the folder for downloads of this computer; nothing is overwritten.
+
+        A file of the map is made first, and stands in the list of exports.
+        """
         assert self._downloads is not None  # else this is no tool
         facts = await self._server.get(f"api/projects/{project}", ProjectFacts)
-        path, query = _address(project, file, crs, results={one.name for one in facts.files})
+        results = {one.name for one in facts.files}
+        if file.startswith("map.") and file in WRITTEN and (crs or file not in results):
+            path = await self._exported(project, file, crs)
+        else:
+            path = _address(project, file, crs, results=results)
         target = _free_name(self._downloads / f"{project}-{file}")
-        return await self._server.download(path, target, query)
+        return await self._server.download(path, target)
+
+    async def _exported(self, project: str, file: str, crs: str) -> str:
+        """Path of a file of the map, ordered if nobody did before."""
+        base = f"api/projects/{project}/exports"
+        order = {"file": file, "options": {"crs": crs}}
+        made = await self._server.post(base, OrderedExport, order)
+        ended = await ended_job(self._server, made.id, wait_s=ASSISTANT.longest_wait_s)
+        if not ended.over:
+            raise ToolError(f"{file} is still being made: ask for it again later")
+        if ended.job.state != "succeeded":
+            raise ToolError(f"{file} was not made: {ended.job.note or ended.job.state}")
+        return f"{base}/{made.id}/file"
 
     async def slice_image(
         self,
@@ -95,19 +116,17 @@ class FileTools:
         return (extent.low_m[2] + extent.high_m[2]) / 2.0
 
 
-def _address(project: str, file: str, crs: str, *, results: set[str]) -> tuple[str, Query]:
-    """Path of a file on the server, and its query."""
+def _address(project: str, file: str, crs: str, *, results: set[str]) -> str:
+    """Path of a file on the server that is no export of the map."""
     base = f"api/projects/{project}"
     if file in results and not crs:
-        return f"{base}/files/{file}", {}
+        return f"{base}/files/{file}"
     if file not in WRITTEN:
         names = ", ".join(sorted({*results, *WRITTEN}))
         raise ToolError(f"{project} has no {file}; expected one of {names}")
-    if file.startswith("map."):
-        return f"{base}/{file}", {"crs": crs}
     if crs:
         raise ToolError(f"{file} is written in the CRS of the map: leave crs out")
-    return f"{base}/{file}", {}
+    return f"{base}/{file}"
 
 
 def _free_name(path: Path) -> Path:

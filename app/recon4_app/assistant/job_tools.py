@@ -46,6 +46,21 @@ class WatchTools:
         return view
 
 
+async def ended_job(server: ServerClient, job: str, *, wait_s: float) -> WatchedJob:
+    """A job when it has ended, or as it is after some time.
+
+    Raises:
+        ToolError: If the server cannot be asked.
+    """
+    view = await server.get(f"api/jobs/{job}", WatchedJob)
+    with anyio.move_on_after(wait_s):
+        async with server.job_events() as events:
+            view = await server.get(f"api/jobs/{job}", WatchedJob)
+            while not view.over:
+                view = await _next_of(job, events)
+    return view
+
+
 async def _next_of(job: str, events: AsyncIterator[WatchedJob]) -> WatchedJob:
     """The next event of a job.
 

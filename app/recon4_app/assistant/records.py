@@ -205,6 +205,13 @@ class ExportList:
 
 
 @dataclass(frozen=True, kw_only=True)
+class OrderedExport:
+    """A file of the map that the server makes, or has made."""
+
+    id: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Downloaded:
     """A file on this computer."""
 

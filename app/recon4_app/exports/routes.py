@@ -8,7 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from fastapi import APIRouter, Depends, Request
-from fastapi.responses import FileResponse
+from fastapi.encoders import jsonable_encoder
+from fastapi.responses import FileResponse, JSONResponse
 from pydantic import TypeAdapter, ValidationError
 from starlette.concurrency import run_in_threadpool
 
@@ -24,6 +25,7 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import STORAGE, Conflict, NoRoom, NotFound
 from recon4_app.exports import export_work
+from recon4_app.exports.equal_orders import equal_order
 from recon4_app.exports.model import ExportChoices, ExportView, NewExport
 from recon4_app.exports.tuning import KEPT_EXPORTS
 from recon4_app.jobs.model import ExportOrder, Inputs, Job, JobKind
@@ -83,12 +85,24 @@ async def estimate(
 
 
 @router.post(
-    "", status_code=201, dependencies=ORDER, responses=REFUSALS, summary="Make a file of the map"
+    "",
+    status_code=201,
+    response_model=ExportView,
+    dependencies=ORDER,
+    responses=REFUSALS | {200: {"model": ExportView, "description": "It was ordered before."}},
+    summary="Make a file of the map",
 )
 async def order(
     project_id: str, new: NewExport, *, server: Server, request: Request, caller: CalledBy
-) -> ExportView:
-    """Add an export to the queue; it runs beside jobs that process."""
+) -> ExportView | JSONResponse:
+    """Add an export to the queue; it runs beside jobs that process.
+
+    If the same one of this map waits, runs or is kept, that one is returned, with status 200.
+    """
+    wanted = ExportOrder(file=new.file, options=new.options)
+    if same := await run_in_threadpool(equal_order, server, project_id, wanted):
+        row = _view(server, same, latest_map_key(server, project_id))
+        return JSONResponse(jsonable_encoder(row))
     found = await _estimate(project_id, new, server=server, caller=caller)
     return await run_in_threadpool(_add, project_id, new, server, request=request, size=found.bytes)
 
