@@ -21,7 +21,7 @@ def move_points(artifact: Path, by_m: float = 0.1) -> None:
     index, column = columns.index.copy(), columns.fields.index("xyz")
     before, rows = int(index["end"][0, column]), slice(0, int(index["stop"][0]), 1)
     xyz = columns.read(["xyz"], rows)["xyz"] + np.array([by_m, 0.0, 0.0], np.float32)
-    data, index["width"][0, column] = pack("xyz", xyz[columns.order(0)])
+    data, index["width"][0, column], _ = pack("xyz", xyz[columns.order(0)])
     path = artifact / "tiles" / "xyz.zst"
     path.write_bytes(data + path.read_bytes()[before:])
     index["end"][:, column] += len(data) - before

@@ -151,7 +151,7 @@ def bytes_to_numbers(
     steps = np.empty(count, np.int64)
     few = np.empty(count, np.int32)
     for k in range(packed.shape[0]):
-        if packed.shape[1] > 2:
+        if packed.shape[1] > 3:
             _steps(packed[k], steps)
             _spread(steps, rows, along, step, out[:, k])
         else:
@@ -161,14 +161,19 @@ def bytes_to_numbers(
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _few_steps(packed: NDArray[np.uint8], steps: NDArray[np.int32]) -> None:
-    """Numbers of one or two bytes: loops that the compiler makes of vectors."""
+    """Numbers of up to three bytes: loops that the compiler makes of vectors."""
     if packed.shape[0] == 1:
         for n in range(len(steps)):
             bits = np.int32(packed[0, n])
             steps[n] = (bits >> 1) ^ -(bits & 1)
-    else:
+    elif packed.shape[0] == 2:
         for n in range(len(steps)):
             bits = np.int32(packed[0, n]) | (np.int32(packed[1, n]) << 8)
+            steps[n] = (bits >> 1) ^ -(bits & 1)
+    else:
+        for n in range(len(steps)):
+            low = np.int32(packed[0, n]) | (np.int32(packed[1, n]) << 8)
+            bits = low | (np.int32(packed[2, n]) << 16)
             steps[n] = (bits >> 1) ^ -(bits & 1)
 
 

@@ -22,7 +22,8 @@ from recon4.errors import StoreError
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import FIELDS, Columns
 from recon4.mapping.tile_order import Rows, places_of, spatial_order_of
-from recon4.mapping.tile_packing import FIELD_PACKING, unpack
+from recon4.mapping.tile_packing import FIELD_PACKING, PackedField, unpack
+from recon4.mapping.tuning import TILES
 from recon4.store.arrays import load_array
 from recon4.store.checked import CheckedArtifact
 
@@ -85,6 +86,8 @@ class PackedColumns:
     """Where the parts of the tiles begin and the last one ends: points, stray returns, (P + 1,)."""
     paths: SensorPaths
     kept: KeptBlocks
+    position_step_m: float = TILES.position_step_m
+    """Steps of positions; in maps of earlier versions other ones [m]."""
 
     @staticmethod
     def open(
@@ -192,7 +195,9 @@ class PackedColumns:
         except OSError as error:
             raise StoreError(f"{where} cannot be read: {error.strerror}") from error
         width = int(self.index["width"][block, self.fields.index(name)])
-        unpack(name, (data, width), rows=rows, out=out, where=f"{where}: block {block}")
+        step = self.position_step_m if name == "xyz" else FIELD_PACKING[name].step
+        packed = PackedField(data, width, step)
+        unpack(name, packed, rows=rows, out=out, where=f"{where}: block {block}")
 
     def _check(self, name: str, block: int, checked: CheckedArtifact | None) -> None:
         if checked is not None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +38,7 @@ class FieldPacking:
 
 
 FIELD_PACKING: Mapping[str, FieldPacking] = {
-    "xyz": FieldPacking(along=True, step=PACKING.step_m),
+    "xyz": FieldPacking(along=True, step=TILES.position_step_m),
     "intensity": FieldPacking(along=True),
     "intensity_normalized": FieldPacking(along=True, step=TILES.intensity_step),
     "ring": FieldPacking(),
@@ -57,8 +57,19 @@ FIELD_PACKING: Mapping[str, FieldPacking] = {
 """Of every field that is stored."""
 
 
-def pack(name: str, values: NDArray[Any]) -> tuple[bytes, int]:
-    """A field of a block, compressed, and the bytes of each of its numbers.
+class PackedField(NamedTuple):
+    """A field of a block."""
+
+    data: bytes
+    """Compressed."""
+    width: int
+    """Bytes of each of its numbers."""
+    step: float
+    """Of its numbers [unit of the field]; 0 = exact."""
+
+
+def pack(name: str, values: NDArray[Any]) -> PackedField:
+    """A field of a block, compressed.
 
     Args:
         name: Of the field.
@@ -75,12 +86,10 @@ def pack(name: str, values: NDArray[Any]) -> tuple[bytes, int]:
         width = numbers_to_bits(_numbers(name, column), packing.along, halves, bits)
     out = np.empty((many, width, len(column)), np.uint8)
     bits_to_bytes(bits, out)
-    return compress(out.data), width
+    return PackedField(compress(out.data), width, packing.step)
 
 
-def unpack(
-    name: str, packed: tuple[bytes, int], *, rows: Rows, out: NDArray[Any], where: str
-) -> None:
+def unpack(name: str, packed: PackedField, *, rows: Rows, out: NDArray[Any], where: str) -> None:
     """Write the values of `pack` to some rows.
 
     Args:
@@ -94,21 +103,21 @@ def unpack(
         StoreError: If the data are damaged or of another number of rows.
     """
     dtype, many = np.dtype(FIELDS[name][0]), FIELDS[name][1]
-    packing, count = FIELD_PACKING[name], len(rows)
-    data, width = packed
+    along, count = FIELD_PACKING[name].along, len(rows)
+    data, width, step = packed
     expanded = expand(data, many * width * count, where)
     digits = np.frombuffer(expanded, np.uint8).reshape(many, width, count)
     into = out.reshape(len(out), many)
-    if packing.step and dtype == np.float32:
-        bytes_to_numbers(digits, rows, packing.along, packing.step, into)
-    elif packing.step and dtype == np.float16:
+    if step and dtype == np.float32:
+        bytes_to_numbers(digits, rows, along, step, into)
+    elif step and dtype == np.float16:
         lengths, every = np.empty((count, many), np.float32), np.arange(count, dtype=np.int32)
-        bytes_to_numbers(digits, every, packing.along, packing.step, lengths)
+        bytes_to_numbers(digits, every, along, step, lengths)
         into[rows] = as_half(lengths)
     else:
         # Numbers without a sign and halves are bits, which the kernel cuts off as it stores them.
         bits = into.view(f"i{dtype.itemsize}")
-        bytes_to_numbers(digits, rows, packing.along, int(packing.step) or 1, bits)
+        bytes_to_numbers(digits, rows, along, int(step) or 1, bits)
 
 
 def as_stored(name: str, values: NDArray[Any]) -> NDArray[Any]:

@@ -182,8 +182,8 @@ class TileWriter:
         made = [pack(name, columns[name]) for name in self._fields]
         return _Block(
             len(columns["xyz"]),
-            [data for data, _ in made],
-            [width for _, width in made],
+            [one.data for one in made],
+            [one.width for one in made],
             low_m,
             high_m,
             (int(t_ns.min()), int(t_ns.max())),

@@ -30,6 +30,7 @@ from recon4.mapping.tuning import TILES
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.earlier_names import TILE_FIELDS
 from recon4.store.formats import FORMATS
+from recon4.store.tuning import PACKING
 
 RAW_OFFSET = "raw_offset_m"
 """From the surface to where the point was measured; only in maps of fitted surfaces."""
@@ -195,11 +196,9 @@ class TileSet:
             checked.check("tiles.json")
         try:
             facts = read_map_list(path)
-            if facts["format"] not in (FORMATS.earlier_tiles, FORMATS.tiles):
-                raise StoreError(
-                    f"{path.name}: expected format {FORMATS.earlier_tiles} or {FORMATS.tiles}, "
-                    f"got {facts['format']}"
-                )
+            if facts["format"] not in FORMATS.read_tiles:
+                known = "{}, {} or {}".format(*FORMATS.read_tiles)
+                raise StoreError(f"{path.name}: expected format {known}, got {facts['format']}")
             fields = tuple(TILE_FIELDS.get(name, str(name)) for name in facts["fields"])
             parts = _parts(facts["tiles"], int(facts["points"]))
             columns: TileColumns
@@ -209,6 +208,8 @@ class TileSet:
                 columns = PackedColumns.open(
                     folder / "tiles", fields, parts, checked=checked, kept_bytes=kept_bytes
                 )
+                if facts["format"] == FORMATS.coarse_tiles:
+                    columns = replace(columns, position_step_m=PACKING.step_m)
             tiles = tuple(_tile(columns, row, checked=checked) for row in facts["tiles"])
             points, tile_m = int(facts["points"]), float(facts["tile_m"])
             first_ns, last_ns = (int(t_ns) for t_ns in facts["time_ns"] or (0, 0))

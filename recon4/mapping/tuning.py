@@ -145,6 +145,9 @@ class TileTuning(Struct, frozen=True, kw_only=True):
     """Memory of a process for blocks of a map that people look at."""
     intensity_step: float = 1.0 / 16.0
     """Steps of normalized intensities: finer than the raw ones."""
+    position_step_m: float = 0.0001
+    """Steps of positions, those of a LAZ [m]: what is exported is not rounded twice. Study:
+    docs/studies/map-size.md."""
     deviation_step_m: float = 0.0001
     """Steps of the deviations of positions, those of a LAZ [m]."""
     time_step_ns: int = 1000

@@ -19,8 +19,10 @@ class FileFormats:
     """The ledger of the stages (``PRAGMA user_version``)."""
     seal: int = 1
     """Hashes of the files of an artifact."""
-    tiles: int = 2
+    tiles: int = 3
     """``tiles.json`` and the blocks of the tiles."""
+    coarse_tiles: int = 2
+    """The same with positions in steps of 0.49 mm, which are only read."""
     earlier_tiles: int = 1
     """Tiles in plain columns, which are only read."""
     summary: int = 3
@@ -35,6 +37,11 @@ class FileFormats:
     """The list of a backup."""
     delivery: int = 1
     """``manifest.json`` of a delivery."""
+
+    @property
+    def read_tiles(self) -> tuple[int, ...]:
+        """Formats of tiles that are read."""
+        return self.earlier_tiles, self.coarse_tiles, self.tiles
 
 
 FORMATS = FileFormats()

@@ -272,7 +272,7 @@ def test_damaged_maps_are_refused(tmp_path):
         tiles.tiles[0].read(["color"])
 
     (tmp_path / "map" / "tiles.json").write_text('{"format": 99}')
-    with pytest.raises(StoreError, match="expected format 1 or 2, got 99"):
+    with pytest.raises(StoreError, match="expected format 1, 2 or 3, got 99"):
         TileSet.open(tmp_path / "map")
 
 

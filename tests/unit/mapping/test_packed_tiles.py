@@ -1,6 +1,7 @@
 """Blocks of tiles: what is written is what is read, block by block, and damage is named."""
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -17,10 +18,11 @@ from recon4.mapping.tile_order import (
     spatial_order_of,
     stored_blocks,
 )
-from recon4.mapping.tile_packing import pack, unpack
+from recon4.mapping.tile_packing import FIELD_PACKING, pack, unpack
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import TILES
+from recon4.store.tuning import PACKING
 from tests.earlier_map import write_earlier
 
 T0_NS = 1_700_000_000_000_000_000
@@ -71,7 +73,7 @@ def test_fields_are_exact_and_lengths_and_times_within_half_a_step(written):
     found = tiles.tiles[0].read(STORED)
 
     off_m = np.abs(found["xyz"].astype(float) - first["xyz"][:2800])
-    assert 2e-4 < off_m.max() < 2.5e-4
+    assert 4e-5 < off_m.max() < 5.1e-5
     raw_m = found["raw_offset_m"].astype(float) - first["raw_offset_m"][:2800]
     assert np.abs(raw_m).max() < 2.5e-4
     assert np.abs(found["t_ns"] - first["t_ns"][:2800]).max() <= 500
@@ -80,6 +82,23 @@ def test_fields_are_exact_and_lengths_and_times_within_half_a_step(written):
     for name in set(STORED) - {"xyz", "raw_offset_m", "t_ns", "position_sd_m"}:
         assert found[name].dtype == FIELDS[name][0]
         np.testing.assert_array_equal(found[name], first[name][:2800], err_msg=name)
+
+
+def test_a_map_with_coarser_steps_is_read_as_before(tmp_path, monkeypatch):
+    coarse = replace(FIELD_PACKING["xyz"], step=PACKING.step_m)
+    columns = some_columns(np.random.default_rng(5), 500)
+    with monkeypatch.context() as patch:
+        patch.setitem(FIELD_PACKING, "xyz", coarse)
+        with TileWriter(tmp_path, STORED, tile_m=5.0, paths=walk_paths()) as writer:
+            writer.append((0, 0, 0), columns)
+    facts = json.loads((tmp_path / "tiles.json").read_text())
+    (tmp_path / "tiles.json").write_text(json.dumps(facts | {"format": 2}))
+
+    found = TileSet.open(tmp_path).tiles[0].read(["xyz", "raw_offset_m"])
+
+    off_m = np.abs(found["xyz"].astype(float) - columns["xyz"])
+    assert 2e-4 < off_m.max() < 2.5e-4
+    assert np.abs(found["raw_offset_m"] - columns["raw_offset_m"].astype(float)).max() < 2.5e-4
 
 
 def test_any_rows_are_those_of_the_whole_tile(written):
