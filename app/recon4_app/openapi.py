@@ -52,14 +52,15 @@ def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
     for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others
         parts["schemas"].pop(name, None)
     _describe_fields(parts["schemas"])
-    needed = {
-        (route.path, method.lower()): sorted(route.needs)
-        for route in declared(app)
-        for method in route.methods
+    routes = {
+        (route.path, method.lower()): route for route in declared(app) for method in route.methods
     }
     for path, methods in described["paths"].items():
         for method, operation in methods.items():
-            operation["x-needs"] = needed[path, method]
+            route = routes[path, method]
+            operation["x-needs"] = sorted(route.needs)
+            # Generated clients make a name of it, which must not change with the path.
+            operation["operationId"] = f"{operation['tags'][-1]}_{route.name}".replace(" ", "_")
             if "422" in operation["responses"]:
                 operation["responses"]["422"]["content"] = PROBLEM
     return described

@@ -18,6 +18,8 @@ class Declared:
     """What a route declares about access."""
 
     path: str
+    name: str
+    """Of the function that answers."""
     methods: frozenset[str]
     """Empty for a WebSocket."""
     needs: frozenset[Permission]
@@ -34,6 +36,7 @@ def declared(app: FastAPI) -> Iterator[Declared]:
         calls = list(_calls(getattr(route, "dependant", None)))
         yield Declared(
             path=str(route.path),
+            name=str(getattr(route, "name", "")),
             methods=frozenset(getattr(route, "methods", None) or ()),
             needs=frozenset(call.needs for call in calls if hasattr(call, "needs")),
             allow_anonymous=allow_anonymous in calls,

@@ -169,11 +169,12 @@ async def align_pair(
 
 
 @router.post("/fit", dependencies=REVIEW, summary="Fit picked points")
-def fit_picked(picked: PointPairs) -> list[float]:
+def fit_picked(project_id: str, picked: PointPairs, server: Server) -> list[float]:
     """``T_i_j`` that aligns the points of the second multiframe with those of the first.
 
     The journal is not changed.
     """
+    server.projects.folder(project_id)  # raises if there is none
     return list(fit_points(np.array(picked.p_i), np.array(picked.p_j)))
 
 
