@@ -32,6 +32,7 @@ from recon4.recording.formats.limits import (
     Budget,
     RecordFile,
     decompress_partly,
+    is_zstd,
 )
 from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
@@ -117,7 +118,6 @@ class Bag:
         self._sources: list[StorageFile] = []
         self._origins: list[Path] = []
         """Of each source: its file, or the folder whose description names it."""
-        self._compressed_messages = False
         self._stored_bytes = 0
         self._points: dict[str, PointReader] = {}
         """Of the types of points other than ``PointCloud2``."""
@@ -248,7 +248,6 @@ class Bag:
             absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
             there = tuple(file for file in metadata.files if file.is_file())
             metadata = replace(metadata, files=there or _storage_files(path, absent))
-        self._compressed_messages = metadata.compression == "message"
         files = metadata.files
         if metadata.compression == "file":
             files = self._decompressed(files)
@@ -379,7 +378,7 @@ class Bag:
     ) -> Iterator[BagMessage]:
         source.report = self.report
         for topic, kind, t_ns, data in source.messages(topics):
-            if not self._compressed_messages:
+            if self.ros1 or not is_zstd(data):
                 yield BagMessage(topic, kind, t_ns, data)
                 continue
             most = min(MAX_MESSAGE_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * len(data)))

@@ -161,6 +161,11 @@ def check_ratio(compressed: int, size: int, where: str) -> None:
         )
 
 
+def is_zstd(data: bytes) -> bool:
+    """Whether data begin as those compressed by zstd; a message of ROS 2 never does."""
+    return data[:4] == b"\x28\xb5\x2f\xfd"
+
+
 def decompress_partly(how: str, data: bytes, *, most: int, where: str) -> bytes:
     """Decompress possibly damaged bytes as far as possible, at most ``most`` bytes.
 

@@ -4,6 +4,9 @@ import shutil
 
 import numpy as np
 import pytest
+import zstandard
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording, RecordingError
 from recon4.model.rig import load_rig
@@ -76,6 +79,23 @@ def test_a_folder_without_its_description_is_read_file_by_file(rooms, tmp_path):
     assert len(messages(folder, report)) == len(messages(rooms["db3"]))
     assert any("no metadata.yaml" in text for text in report.derived)
     assert not report.findings
+
+
+def test_compressed_messages_are_read_without_their_description_beside_others(rooms, tmp_path):
+    packed = tmp_path / "packed"
+    with Writer(packed, version=9, storage_plugin=StoragePlugin.SQLITE3) as writer:
+        kind = "sensor_msgs/msg/Imu"
+        connection = writer.add_connection("/imu", kind, typestore=get_typestore(Stores.LATEST))
+        for message in messages(rooms["db3"]):
+            if message.topic == "/imu":
+                data = zstandard.ZstdCompressor().compress(message.data)
+                writer.write(connection, message.t_ns, data)
+    (packed / "metadata.yaml").unlink()
+
+    with Bag([packed, rooms["db3"]], ImportReport()) as bag:
+        found = [(m.t_ns, bag.decode(m).angular_velocity.x) for m in bag.messages({"/imu"})]
+
+    assert found and found[::2] == found[1::2]
 
 
 def test_a_damaged_description_of_a_folder_is_a_warning(rooms, tmp_path):
