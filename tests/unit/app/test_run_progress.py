@@ -2,6 +2,7 @@
 
 import pytest
 
+from recon4.locales.coded import CodedText
 from recon4_app.jobs.events import event_of
 from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.run_progress import RunProgress, after, stage_weight
@@ -79,4 +80,6 @@ def test_another_worker_resets_the_progress():
     ],
 )
 def test_exit_reasons(code, words):
-    assert words in exit_reason(code)
+    how, number = exit_reason(code)
+
+    assert words in CodedText("worker-continues", how=how, number=number, stage="", what="")
