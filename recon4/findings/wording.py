@@ -19,36 +19,25 @@ Texts call the functions of `recon4.locales.numbers`, and ``COUNTED``, ``COUNTS`
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Any
 
 import msgspec
 
+from recon4.findings.sentences import (
+    Sentence,
+    functions,
+    in_name,
+    known_values,
+    said_of,
+    sentences_of,
+    word,
+)
 from recon4.locales.languages import ENGLISH
-from recon4.locales.texts import Functions, Texts, quoted_by, readable
+from recon4.locales.texts import Texts, quoted_by, readable
 from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
-from recon4.model.import_counts import count_fate, count_label, count_noun, count_text
-
-_SENTENCE = re.compile(r"text\d+(?:-if-(\w+))?")
-
-
-@dataclass(frozen=True, slots=True)
-class Sentence:
-    """A sentence of a kind of finding."""
-
-    part: str
-    """Its name in the message."""
-    given: str
-    """Name of a value that must be there and not be false, zero or empty; empty = always."""
-    quotes: frozenset[str]
-    """Names of the values in it."""
-    readable: str
-    """It, with the names of its values in place of them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,13 +66,13 @@ class Catalog:
 
     def word(self, value: str, kind: str = "") -> str:
         """The words of a value of a kind of finding, else those of all; else the value."""
-        return _word(self.texts, value, kind)
+        return word(self.texts, value, kind)
 
 
 @cache
 def catalog(language: str = ENGLISH) -> Catalog:
     """All kinds of findings in a language."""
-    texts = Texts(language, "findings", "readers", "counts", functions=_functions)
+    texts = Texts(language, "findings", "readers", "counts", functions=functions)
     of_readers = set(Texts(ENGLISH, "readers").names())
     kinds = {kind: _kind_text(texts, kind) for kind in FindingKind}
     return Catalog(texts, kinds, frozenset(kind for kind in FindingKind if kind in of_readers))
@@ -93,13 +82,8 @@ def text_of(finding: Finding, language: str = ENGLISH) -> str:
     """A finding as sentences, without its remedy."""
     known = catalog(language)
     entry = known.kinds[finding.kind]
-    values = _values(finding)
-    parts = [
-        known.texts.part(finding.kind, one.part, values)
-        for one in entry.text
-        if one.quotes <= values.keys() and (not one.given or values.get(one.given))
-    ]
-    return " ".join(parts) or f"{entry.title}."
+    text = said_of(known.texts, finding.kind, entry.text, _values(finding))
+    return text or f"{entry.title}."
 
 
 def remedy_of(finding: Finding, language: str = ENGLISH) -> str:
@@ -130,7 +114,7 @@ def word_of(kind: FindingKind, word: str, language: str = ENGLISH) -> str:
 
 def headline(usability: str, language: str = ENGLISH) -> str:
     """The verdict in one line."""
-    return catalog(language).texts(f"headline-{_name(usability)}")
+    return catalog(language).texts(f"headline-{in_name(usability)}")
 
 
 def said(finding: Finding, language: str = ENGLISH) -> dict[str, object]:
@@ -146,14 +130,9 @@ def said(finding: Finding, language: str = ENGLISH) -> dict[str, object]:
 def _kind_text(texts: Texts, kind: FindingKind) -> KindText:
     parts = texts.parts(kind)
     shown = {name: readable(pattern) for name, pattern in parts.items()}
-    sentences = [
-        Sentence(name, found[1] or "", quoted_by(pattern), shown[name])
-        for name, pattern in parts.items()
-        if (found := _SENTENCE.fullmatch(name))
-    ]
     return KindText(
         title=shown[""],
-        text=tuple(sentences),
+        text=sentences_of(texts, kind),
         remedy=shown.get("remedy", ""),
         remedy_quotes=quoted_by(parts["remedy"]) if "remedy" in parts else frozenset(),
         meaning=shown.get("meaning", ""),
@@ -162,7 +141,7 @@ def _kind_text(texts: Texts, kind: FindingKind) -> KindText:
 
 
 def _values(finding: Finding) -> dict[str, Value]:
-    values = {name: value for name, value in finding.values.items() if _is_known(value)}
+    values = known_values(finding.values)
     if finding.span_s is not None:
         values["start_s"], values["end_s"] = finding.span_s
     if finding.direction:
@@ -170,48 +149,3 @@ def _values(finding: Finding) -> dict[str, Value]:
     if finding.sensor:
         values["sensor"] = finding.sensor
     return values
-
-
-def _is_known(value: Value) -> bool:
-    return not (isinstance(value, float) and math.isnan(value))
-
-
-def _functions(texts: Texts) -> Functions:
-    """What texts of findings call besides the functions for numbers."""
-    language = texts.language
-
-    def fates(value: str) -> str:
-        counts = _counts(value).items()
-        return "; ".join(f"{number}: {count_fate(name, language)}" for name, number in counts)
-
-    def counted(value: str) -> str:
-        counts = _counts(value)
-        return "; ".join(count_text(name, counts, language=language) for name in counts)
-
-    def word(value: Any, *, of: str = "") -> str:
-        return _word(texts, str(value), of)
-
-    return {
-        "WORD": word,
-        "COUNTED": lambda name: count_label(name, language),
-        "COUNTS": counted,
-        "FATES": fates,
-        "NOUN": lambda name: count_noun(name, language),
-    }
-
-
-def _word(texts: Texts, value: str, kind: str) -> str:
-    word = f"word-{_name(value)}"
-    if kind and word in texts.parts(kind):
-        return texts.part(kind, word, {})
-    return texts(word) if word in texts else value
-
-
-def _name(value: str) -> str:
-    """A value as a part of the name of a message."""
-    return value.replace(" ", "-")
-
-
-def _counts(value: str) -> dict[str, int]:
-    pairs = (one.partition("=") for one in value.split())
-    return {name: int(number) for name, _, number in pairs}
