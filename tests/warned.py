@@ -1,14 +1,15 @@
-"""What readers warn of, for tests: kinds and values, whatever the words are."""
+"""What readers warn of and derive, for tests: kinds and values, or the words."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
+from recon4.findings.derived import derived_text
 from recon4.findings.wording import whole_text
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
-from recon4.model.import_notes import import_notes
+from recon4.model.import_notes import derived_in, import_notes
 
 K = FindingKind
 
@@ -31,6 +32,12 @@ def warned(where: Any, kind: FindingKind, **values: object) -> bool:
 def words(where: Any) -> str:
     """All warnings in words."""
     return " | ".join(map(whole_text, findings_of(where)))
+
+
+def derivations(where: Any) -> list[str]:
+    """What was derived, in words, in an import report, contents of a recording, ``report.json``."""
+    found = derived_in(where) if isinstance(where, Mapping) else where.derived
+    return [derived_text(one) for one in found]
 
 
 def _has(found: Finding, values: Mapping[str, object]) -> bool:

@@ -37,7 +37,7 @@ from recon4.cli.slices import slices
 from recon4.cli.storage import space
 from recon4.cli.terminal import write
 from recon4.errors import Cancelled, Recon4Error
-from recon4.locales.languages import ENVIRONMENT, LANGUAGE_HELP, checked
+from recon4.locales.languages import ENVIRONMENT, LANGUAGE_HELP, checked, of_terminal
 from recon4.system.stopping import StopSignals
 from recon4_app.cli.keys import keys
 from recon4_app.cli.mcp import assistant
@@ -115,8 +115,6 @@ def info(
 ) -> None:
     """Say what a recording holds, what will be derived and what is missing."""
     confine_command(write=[rig_out.parent] if rig_out else [])
-    from dataclasses import asdict
-
     from recon4.recording.info import describe
     from recon4.recording.recipes.given_rig import recipe_given
 
@@ -126,9 +124,9 @@ def info(
 
         write_first_rig(found.first_rig, rig_out)
     if as_json:
-        _write_json(asdict(found))
+        _write_json(found.to_json(of_terminal()))
     else:
-        write("\n".join(found.lines()))
+        write("\n".join(found.lines(of_terminal())))
 
 
 @app.command()

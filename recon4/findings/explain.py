@@ -6,10 +6,12 @@ import textwrap
 from difflib import get_close_matches
 
 from recon4.errors import ConfigError
+from recon4.findings.derived import derived_sentences
 from recon4.findings.measured import sources
 from recon4.findings.wording import KindText, catalog
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 
 _WIDTH = 88
@@ -49,6 +51,13 @@ made, `recon4 process` while it reads, the phone while it records. They make a 3
 2-D map they are notes, except what they say of mounts. In the measured runs they are counted
 together, as IMPORT-REMARK.
 """
+_DERIVED = """\
+## What readers derive
+
+What a recording does not say, and its reader works out or chooses. It is no finding and changes no
+verdict. `recon4 info`, the page of a new project and the report list it, `report.json` of the
+import has code and values. A sentence whose values are not known is left out.
+"""
 
 
 def listed(language: str = ENGLISH) -> str:
@@ -58,15 +67,19 @@ def listed(language: str = ENGLISH) -> str:
 
 
 def explained(code: str, language: str = ENGLISH) -> str:
-    """A kind of finding on a terminal.
+    """A kind of finding, or of what readers derive, on a terminal.
 
     Raises:
         ConfigError: If there is no such code.
     """
+    name = code.upper()
+    if name in list(DerivedKind):
+        sentences = derived_sentences(language)[DerivedKind(name)]
+        return "\n\n".join([name, *(textwrap.fill(one.readable, _WIDTH) for one in sentences)])
     try:
-        kind = FindingKind(code.upper())
+        kind = FindingKind(name)
     except ValueError:
-        near = get_close_matches(code.upper(), list(FindingKind), n=3)
+        near = get_close_matches(name, [*FindingKind, *DerivedKind], n=3)
         hint = f"; similar: {', '.join(near)}" if near else ""
         raise ConfigError(f"expected the code of a finding, got {code!r}{hint}") from None
     entry, heads = catalog(language).kinds[kind], texts(language, "findings")
@@ -84,7 +97,13 @@ def markdown() -> str:
         _section(kind, catalog().kinds[kind]) for kind in FindingKind if kind not in readers
     )
     warnings = (_section(kind, catalog().kinds[kind]) for kind in FindingKind if kind in readers)
-    return "\n".join([_INTRODUCTION, *witnesses, _READERS, *warnings])
+    derived = (_derived_row(kind) for kind in DerivedKind)
+    return "\n".join([_INTRODUCTION, *witnesses, _READERS, *warnings, _DERIVED, *derived, ""])
+
+
+def _derived_row(kind: DerivedKind) -> str:
+    shown = " ".join(one.readable for one in derived_sentences()[kind])
+    return f"- **{kind}**: {shown}"
 
 
 def _section(kind: FindingKind, entry: KindText) -> str:

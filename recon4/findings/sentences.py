@@ -47,7 +47,7 @@ def sentences_of(texts: Texts, name: str) -> tuple[Sentence, ...]:
 
 
 def said_of(
-    texts: Texts, name: str, sentences: Iterable[Sentence], values: Mapping[str, Value]
+    texts: Texts, name: str, sentences: Iterable[Sentence], *, values: Mapping[str, Value]
 ) -> str:
     """The sentences of a message whose values are known; empty = none is."""
     return " ".join(

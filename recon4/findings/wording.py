@@ -4,8 +4,7 @@
 recordings warn of: a message for each kind, with its title. Its parts are
 
 ============= ====================================================================================
-``text1`` …    sentences, in order. One is left out if a value that it quotes is not known; one
-               whose name ends with ``-if-VALUE`` also if that value is not there or not true
+``text1`` …    sentences, in order (`recon4.findings.sentences`)
 ``remedy``     what to do about it
 ``meaning``    what it says of the map, for ``docs/reference/findings.md`` and ``recon4 explain``
 ``detection``  how it is detected, and from which size on
@@ -82,7 +81,7 @@ def text_of(finding: Finding, language: str = ENGLISH) -> str:
     """A finding as sentences, without its remedy."""
     known = catalog(language)
     entry = known.kinds[finding.kind]
-    text = said_of(known.texts, finding.kind, entry.text, _values(finding))
+    text = said_of(known.texts, finding.kind, entry.text, values=_values(finding))
     return text or f"{entry.title}."
 
 

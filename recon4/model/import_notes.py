@@ -8,6 +8,8 @@ import msgspec
 from msgspec.structs import replace
 
 from recon4.errors import StoreError
+from recon4.model.derived import Derived
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 
@@ -61,6 +63,25 @@ def import_notes(report: Mapping[str, object], mount_doubts: Sequence[str] = ())
     earlier = [_quoted(FindingKind.LASER_MOUNT, text) for text in mount_doubts]
     earlier += [_quoted(FindingKind.IMPORT_REMARK, text) for text in others]
     return replace(notes, findings=(*notes.findings, *earlier))
+
+
+def derived_in(report: Mapping[str, object]) -> tuple[Derived, ...]:
+    """What the readers derived, in a parsed import report.
+
+    Sentences of earlier versions become records that quote them.
+
+    Raises:
+        StoreError: If a value has another type.
+    """
+    try:
+        found = msgspec.convert(report.get("derived", []), list[str | Derived])
+    except msgspec.ValidationError as error:
+        raise StoreError(f"report.json of the frames cannot be read: {error}") from error
+    earlier = DerivedKind.EARLIER_SENTENCE
+    return tuple(
+        Derived(kind=earlier, values={"text": one}) if isinstance(one, str) else one
+        for one in found
+    )
 
 
 def _quoted(kind: FindingKind, text: str) -> Finding:

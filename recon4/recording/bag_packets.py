@@ -191,7 +191,7 @@ class PacketReader:
 def imu_in_packets(
     packets: BagPackets, rig: Rig | None, streams: Sequence[Stream], *, settings: IngestSettings
 ) -> str:
-    """Says that the IMU that a rig names is in the packets of its LiDAR; empty = it is not.
+    """Name of the LiDAR whose packets have the IMU that a rig names; empty = none has.
 
     Args:
         packets: Of an open bag.
@@ -212,7 +212,7 @@ def imu_in_packets(
     imu = LidarImu(rig, other="", report=quiet)
     topics = PacketTopics(packets, rig, settings, imu, quiet)
     has_imu = topics.have_imu(row, rig.sensors[row])
-    return f"IMU: that in the packets of {rig.imu_sensor} is read" * has_imu
+    return rig.imu_sensor * has_imu
 
 
 def packets_in(message: BagMessage, content: Any) -> Datagrams:

@@ -12,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
@@ -32,20 +33,22 @@ from recon4.recording.bag_messages import (
 from recon4.recording.bag_packets import BagPackets, PacketTopics, imu_in_packets
 from recon4.recording.clock_compare import LIDAR, warn_of_other_joint_clock
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
-from recon4.recording.driver_topics import no_lidar_text, unread_text, warn_of_drivers
+from recon4.recording.driver_topics import no_lidar_text, say_drivers, unread_text, warn_of_drivers
 from recon4.recording.formats.bags import CLOUD, Bag, BagMessage, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_table
-from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds, shared_topics
+from recon4.recording.lidar_choice import (
+    CloudTopic,
+    is_cloud,
+    judged_clouds,
+    say_clouds_left_out,
+    shared_topics,
+)
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, on_their_joints, read_mounts
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import DATA_MESSAGES
-from recon4.recording.recipes.bag_points import (
-    declared_recipes,
-    overlooked_columns,
-    unknown_points,
-)
+from recon4.recording.recipes.bag_points import declared_recipes, say_columns, unknown_points
 from recon4.recording.recipes.refuse import require_known
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
@@ -152,7 +155,7 @@ class BagRecording:
     def _is_in_packets(self, rig: Rig | None) -> bool:
         found = imu_in_packets(self._packets, rig, self.streams, settings=self._settings)
         if found:
-            self._report.derive(f"{found}, as the rig says, not {self.imu.topic}")
+            self._report.derive(DerivedKind.IMU_CHOSEN, sensor=found, other=self.imu.topic)
         return bool(found)
 
     def read(self) -> Iterator[Item]:
@@ -268,23 +271,19 @@ def lidar_streams(
         ]
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
     used = [one for one in found if not one.why_not and one.has_places]
-    if unread := unread_text(bag.topics):
+    if unread_text(bag.topics):
         named = {settings.lidar_topic, *by_rig}
         lidars = [one for one in used if one.is_measured or one.topic.name in named]
         if lidars:
-            report.derive(unread)
+            say_drivers(bag.topics, report)
         else:
             warn_of_drivers(bag.topics, report)
         used = lidars  # a map or a depth camera does not stand in for the LiDAR
-    if used and len(used) < len(found):
-        names = ", ".join(one.topic.name for one in used)
-        others = ", ".join(f"{one.topic.name} ({one.why_not})" for one in found if one.why_not)
-        report.derive(f"LiDAR: {names} is read, not {others}")
+    say_clouds_left_out(used, found, report)
     unknown = unknown_points(bag, found, only=settings.lidar_topic)
     if not used:
         require_known([(one.stream, one.proposal) for one in unknown], bag.paths[0].name)
-    for text in (*(f"not read: {u.text()}" for u in unknown), *overlooked_columns(bag, used)):
-        report.derive(text)
+    say_columns(bag, used, unknown, report=report)
     return [_cloud_stream(bag, one) for one in used]
 
 
@@ -310,7 +309,7 @@ def _beside_packets(
     """
     read = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
     if repeated := [t.name for t in clouds if t not in read]:
-        report.derive(f"raw packets are read, not {', '.join(repeated)}")
+        report.derive(DerivedKind.CLOUDS_OF_PACKETS, topics=", ".join(repeated))
     return read
 
 

@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -34,8 +35,7 @@ def with_clock_rates(recording: Recording, report: ImportReport) -> Recording:
     rated = [sensor for sensor in recording.rig.sensors if sensor.clock_rate_ppm]
     for sensor in rated:
         report.derive(
-            f"{sensor.name}: its clock is corrected by {sensor.clock_rate_ppm:+.1f} µs a second "
-            "since its first measurement, as the rig file says"
+            DerivedKind.CLOCK_CORRECTED, sensor=sensor.name, rate_ppm=sensor.clock_rate_ppm
         )
     if not rated:
         return recording

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, UnknownFormat
 from recon4.geometry.distinct import distinct
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.model.rig import Sensor
@@ -130,19 +132,18 @@ class CloudDecoder:
     def _intensity(self, table: Table, count: int) -> NDArray[np.uint16]:
         key = find_field(table, INTENSITY_FIELDS)
         if not key:
-            self._report.derive(f"{self._name}: no intensity field, 0 is stored")
+            self._report.derive(DerivedKind.INTENSITY_MISSING, where=self._name)
             return np.zeros(count, np.uint16)
         values = table[key]
         if count >= POINT_CLOCK.many_points and _is_constant(values):
-            text = f"{key} is {values[0]:g} in all points of a cloud: it was not measured"
-            self._report.derive(f"{self._name}: {text}")
+            self._say_constant(key, float(values[0]))
         elif values.dtype.kind == "f":
             self._report.count("intensity_wrong", int(np.count_nonzero(~np.isfinite(values))))
         if values.dtype.kind == "f":
             finite = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
             # Not the largest: single damaged values do not change the scale of the others.
             if len(finite) and np.percentile(finite, 99) <= 1.0 and np.any(finite % 1.0):
-                self._report.derive(f"{self._name}: intensity 0..1 is stored times 255")
+                self._report.derive(DerivedKind.INTENSITY_SCALED, where=self._name)
                 finite = finite * 255.0
             values = np.rint(finite)
         outside = int(np.count_nonzero((values < 0) | (values > 65535)))
@@ -151,22 +152,28 @@ class CloudDecoder:
             self._report.warn(FindingKind.INTENSITY_CLIPPED, where=self._name)
         return np.clip(values, 0, 65535).astype(np.uint16)
 
+    def _say_constant(self, key: str, value: float) -> None:
+        known: dict[str, Value] = {"no_number": True} if np.isnan(value) else {"value": value}
+        self._report.derive(DerivedKind.INTENSITY_CONSTANT, where=self._name, field=key, **known)
+
     # -- ring
 
     def _rings(self, table: Table, xyz: NDArray[np.float32]) -> NDArray[np.uint8]:
         key = find_field(table, RING_FIELDS)
         elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
         if not key:
-            return self._rings_from_elevation(elevation, "no ring field")
+            return self._rings_from_elevation(elevation, fieldless=True)
         if _is_flat(table[key], elevation):
-            return self._rings_from_elevation(elevation, f"{key} is {table[key][0]:g} everywhere")
+            value = float(table[key][0])
+            why = {"outside": True} if np.isnan(value) else {"everywhere": value}
+            return self._rings_from_elevation(elevation, field=key, **why)
         rings = self._sound_rings(table[key], elevation)
         if rings is None:
-            return self._rings_from_elevation(elevation, f"{key} is mostly outside 0..255")
+            return self._rings_from_elevation(elevation, field=key, outside=True)
         if self._ring_of is None and len(rings):
             self._ring_of = _upwards(rings, elevation)
             if np.any(self._ring_of[: int(rings.max()) + 1] != np.arange(int(rings.max()) + 1)):
-                self._report.derive(f"{self._name}: {key} renumbered, 0 = lowest elevation")
+                self._report.derive(DerivedKind.RINGS_RENUMBERED, where=self._name, field=key)
         return rings if self._ring_of is None else self._ring_of[rings]
 
     def _sound_rings(
@@ -186,9 +193,11 @@ class CloudDecoder:
             rings[~sound] = rings[order[np.minimum(place, len(order) - 1)]]
         return rings
 
-    def _rings_from_elevation(self, elevation: NDArray[np.floating], why: str) -> NDArray[np.uint8]:
-        rings, how = rings_by_elevation(self._model, elevation)
-        self._report.derive(f"{self._name}: {why}, {how}")
+    def _rings_from_elevation(
+        self, elevation: NDArray[np.floating], **why: Value
+    ) -> NDArray[np.uint8]:
+        rings, bands = rings_by_elevation(self._model, elevation)
+        say_rings(self._report, self._name, bands, **why)
         return rings
 
     # -- time
@@ -227,9 +236,7 @@ class CloudDecoder:
             return at_stamp
         turn, order = _turn_from_order(azimuth)
         if key:
-            self._report.derive(
-                f"{self._name}: no time per point, time from azimuth, {_ORDERS[order]}"
-            )
+            self._report.derive(DerivedKind.TIMES_BY_AZIMUTH, where=self._name, order=order)
         else:
             self._report.warn(FindingKind.POINTS_TIMED_BY_AZIMUTH, where=self._name, order=order)
         since_ns = np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
@@ -238,20 +245,32 @@ class CloudDecoder:
 
 def rings_by_elevation(
     model: str, elevation: NDArray[np.floating]
-) -> tuple[NDArray[np.uint8], str]:
-    """Rings of points without, (N,), and how they were found.
+) -> tuple[NDArray[np.uint8], int]:
+    """Rings of points without, (N,), and the number of bands in place of beams, 0 = none.
 
     Args:
         model: Of the sensor; ``generic`` = the beams that the points fit, else bands.
         elevation: Of each point [rad], (N,).
     """
-    beams, how = _beams(model, elevation), "ring from elevation"
+    beams, bands = _beams(model, elevation), 0
     if beams is None:
-        beams = np.deg2rad(np.linspace(-25.0, 15.0, CLOUDS.bands))
-        how = f"{CLOUDS.bands} bands of elevation"
-        how += " instead"
+        bands = CLOUDS.bands
+        beams = np.deg2rad(np.linspace(-25.0, 15.0, bands))
     middles = (beams[1:] + beams[:-1]) / 2.0
-    return np.searchsorted(middles, elevation).astype(np.uint8), how
+    return np.searchsorted(middles, elevation).astype(np.uint8), bands
+
+
+def say_rings(report: ImportReport, where: str, bands: int, **why: Value) -> None:
+    """State that rings are by elevation.
+
+    Args:
+        report: Receives it.
+        where: Name of the sensor or topic.
+        bands: Number of bands in place of beams; 0 = the beams are known.
+        why: Values that say why, of `DerivedKind.RINGS_BY_ELEVATION`.
+    """
+    how: dict[str, Value] = {"bands": bands} if bands else {"beams": True}
+    report.derive(DerivedKind.RINGS_BY_ELEVATION, where=where, **why, **how)
 
 
 def model_of_points(table: Table) -> str:
@@ -337,9 +356,3 @@ def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64]
         turn = (swept - swept[0]) * np.sign(total) / max(2.0 * np.pi, abs(total))
         return turn, "firing"
     return (np.pi - azimuth.astype(np.float64)) / (2.0 * np.pi), "from-rear"
-
-
-_ORDERS = {
-    "firing": "points are in firing order",
-    "from-rear": "taken as one clockwise turn from the rear",
-}

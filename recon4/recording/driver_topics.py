@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, BagTopic
 from recon4.recording.formats.point_messages import POINT_MESSAGES
@@ -34,6 +35,13 @@ def warn_of_drivers(topics: Sequence[BagTopic], report: ImportReport) -> None:
     """Warn of each of `driver_topics`."""
     for topic in driver_topics(topics):
         report.warn(FindingKind.DRIVER_UNREAD, topic=topic.name, type=short_type(topic.type))
+
+
+def say_drivers(topics: Sequence[BagTopic], report: ImportReport) -> None:
+    """State each of `driver_topics` where another LiDAR is read."""
+    for topic in driver_topics(topics):
+        kind = short_type(topic.type)
+        report.derive(DerivedKind.TOPIC_OF_DRIVER, topic=topic.name, type=kind)
 
 
 def unread_text(topics: Sequence[BagTopic]) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
-from recon4.recording.clock_names import described
+from recon4.recording.clock_names import offset_values
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import POINT_CLOCK
 
@@ -69,8 +70,10 @@ class ExactClock:
             self._offset_ns = 0 if abs(ahead) < same_ns else ahead
             if self._offset_ns:
                 self._report.derive(
-                    f"{self._name}: the points' clock is not the stamps' clock, it is ahead by "
-                    f"{described(-ahead * 1e-9)}; first stamp = first point"
+                    DerivedKind.CLOCK_OF_POINTS,
+                    where=self._name,
+                    first=True,
+                    **offset_values(-ahead * 1e-9),
                 )
         if abs(ahead - self._offset_ns) <= POINT_CLOCK.jump_ns:
             self._others = []

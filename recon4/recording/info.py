@@ -299,7 +299,8 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
         info,
         t_first_ns=first,
         t_last_ns=last,
-        samples=(text, *report.derived),
+        samples=(text,),
+        derived=tuple(report.derived),
         lost=tuple(report.lost()),
         findings=tuple(report.findings),
     )

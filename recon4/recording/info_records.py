@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from recon4.findings.derived import derived_text, said_derived
 from recon4.findings.wording import whole_text
+from recon4.locales.languages import ENGLISH
+from recon4.model.derived import Derived
 from recon4.model.finding import Finding
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.formats.file_times import utc
@@ -54,8 +57,8 @@ class RecordingInfo:
     unread: tuple[str, ...] = ()
     """Senders of packets that are not read, and why."""
     gaps: tuple[TimeGap, ...] = ()
-    derived: tuple[str, ...] = ()
-    """What recon4 derives because the recording lacks it."""
+    derived: tuple[Derived, ...] = ()
+    """What recon4 derives or chooses because the recording does not say it."""
     missing: tuple[str, ...] = ()
     lost: tuple[str, ...] = ()
     """Counts of data that is not used, in words; of a large recording, at its head."""
@@ -71,8 +74,12 @@ class RecordingInfo:
         """Duration [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
-    def lines(self) -> list[str]:
-        """The contents as text."""
+    def to_json(self, language: str = ENGLISH) -> dict[str, object]:
+        """The contents as a record; what is derived also as text in a language."""
+        return asdict(self) | {"derived": [said_derived(one, language) for one in self.derived]}
+
+    def lines(self, language: str = ENGLISH) -> list[str]:
+        """The contents as text; what is derived and warned of in a language."""
         about = "about " if self.estimated else ""
         lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
         absolute = self.t_first_ns > FRAME_TIMES.earliest_ns
@@ -81,7 +88,7 @@ class RecordingInfo:
             lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
         lines += [f"walk      {self.walk}"] if self.walk else []
         for sensor in self.sensors:
-            lines += _sensor_lines(sensor, about)
+            lines += _sensor_lines(sensor, about, language)
         lines += [f"samples   {text}" for text in self.samples]
         lines += [f"not read  {text}" for text in self.unread]
         for gap in self.gaps[:10]:
@@ -92,15 +99,15 @@ class RecordingInfo:
             )
         if len(self.gaps) > 10:
             lines.append(f"gap       … {len(self.gaps)} in all")
-        lines += [f"derived   {text}" for text in self.derived]
+        lines += [f"derived   {derived_text(one, language)}" for one in self.derived]
         lines += [f"missing   {text}" for text in self.missing]
         lines += [f"lost      {text}" for text in self.lost]
         lines += [f"repaired  {text}" for text in self.repaired]
-        lines += [f"warning   {whole_text(one)}" for one in self.findings]
+        lines += [f"warning   {whole_text(one, language)}" for one in self.findings]
         return lines
 
 
-def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
+def _sensor_lines(sensor: SensorInfo, about: str, language: str) -> list[str]:
     rate = f", {sensor.rate_hz:.1f} a second" if np.isfinite(sensor.rate_hz) else ""
     turns = f", {sensor.rotation_hz:.2f} revolutions a second" * bool(
         np.isfinite(sensor.rotation_hz)
@@ -110,4 +117,4 @@ def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:
     if sensor.fields:
         lines.append(f"fields    {', '.join(sensor.fields)}")
     lines += [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
-    return lines + [f"remark    {whole_text(one)}" for one in sensor.findings]
+    return lines + [f"remark    {whole_text(one, language)}" for one in sensor.findings]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.events import Remarked
 from recon4.model.gps_time import day_of
 from recon4.model.laser_scans import LaserScans
@@ -263,10 +264,10 @@ def _imu(
 ) -> ImuSamples | None:
     samples = join(given.imu or found.imu)
     if samples is None:
-        report.derive("no IMU: motion within a frame is estimated from the points alone")
+        report.derive(DerivedKind.IMU_ABSENT)
         return None
     if given.imu and found.imu:
-        report.derive("IMU samples are those of the CSV file, not the recording's")
+        report.derive(DerivedKind.SAMPLES_OF_FILE, imu=True)
     offset_s = rig.imu_clock_offset_s
     if not given.imu and not is_same_clock(IMU_CLOCK, offset_s, report):
         return None
@@ -291,7 +292,7 @@ def _gnss(
         return None
     if from_file and recorded:
         compare_heights(from_file, recorded, report)
-        report.derive("GNSS samples are those of the file given, not the recording's")
+        report.derive(DerivedKind.SAMPLES_OF_FILE, gnss=True)
     offset_s = rig.gnss_time_offset_s
     if not from_file and not is_same_clock(GNSS_CLOCK, offset_s, report):
         return None
@@ -305,8 +306,13 @@ def _dated(file: GnssFile | None, written: _IngestSpan, report: ImportReport) ->
         return None
     samples = file.dated(written.t_first_ns)
     if file.dating is not Dating.UTC and len(samples):
-        day = f"{day_of(int(samples.t_ns[0])).isoformat()}, as the points say"
-        report.derive(f"{file.text}: the first is of {day}")
+        report.derive(
+            DerivedKind.POSITIONS_DATED,
+            what=file.what,
+            day=day_of(int(samples.t_ns[0])).isoformat(),
+            dateless=file.dating is Dating.DAY,
+            weekless=file.dating is Dating.WEEK,
+        )
     return samples
 
 
@@ -322,7 +328,7 @@ def _write_poses(out: Path, parts: Sequence[Trajectory], report: ImportReport) -
     )
     later = np.diff(np.maximum.accumulate(t_ns), prepend=np.int64(-1)) > 0
     report.count("poses", int(np.count_nonzero(later)))
-    report.derive("poses of the recording are kept in poses.tum for comparison, not used")
+    report.derive(DerivedKind.POSES_KEPT)
     write_tum(out / "poses.tum", Trajectory(t_ns[later], T[later]))
 
 
@@ -355,7 +361,7 @@ def _summary(
         "t_last_ns": written.t_last_ns,
         "counts": dict(sorted(report.counts.items())),
         "gaps": [asdict(gap) for gap in gaps[: LIMITS.gaps]],
-        "derived": report.derived,
+        "derived": to_builtins(report.derived),
         "findings": to_builtins(report.findings),
     }
 

@@ -127,14 +127,6 @@ class FolderContents:
         ]
         return (*files[: LIMITS.folders], *self.folders)
 
-    def passed_over(self) -> list[str]:
-        """Sentences on what is not read because the folder itself is a recording."""
-        texts = [f"{name} is a mesh, not a recording: passed over" for name in self.meshes]
-        if self.folders:
-            names = ", ".join(str(one.relative_to(self.folder)) for one in self.folders[:8])
-            texts.append(f"recordings in subfolders are not read: {names}")
-        return texts
-
 
 def recognize(path: Path) -> RecordingKind:
     """Detect the kind of recording at a path.

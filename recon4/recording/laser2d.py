@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.rig import Rig
@@ -163,7 +164,7 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
         at_largest = ranges >= np.repeat(log.range_max_m, np.diff(log.start))
         largest = float(log.range_max_m.max())
     elif largest >= LASERS.shortest_reach_m and int(at_largest.sum()) >= LASERS.repeated:
-        report.derive(f"ranges of {0.99 * largest:.2f} m and more, the largest: no return")
+        report.derive(DerivedKind.RANGE_LARGEST, limit_m=0.99 * largest)
     else:
         return largest, ranges
     ranges[at_largest] = np.nan
@@ -173,19 +174,19 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
 def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
     """Raw odometry of the laser; corrected logs have it only for the robot."""
     if log.laser is None or log.robot is None:
-        report.derive("the log has no odometry: motion is predicted from the scans before")
+        report.derive(DerivedKind.ODOMETRY_MISSING)
         return None
     if not np.ptp(log.laser, axis=0).any() and not np.ptp(log.robot, axis=0).any():
-        report.derive("the odometry of the log never changes: it is not used")
+        report.derive(DerivedKind.ODOMETRY_STILL)
         return None
     if log.message.encode() in REAR and np.array_equal(log.robot, log.laser):
-        report.derive("the poses of the rear laser are those of the robot: it looks backward")
+        report.derive(DerivedKind.ODOMETRY_OF_REAR)
         return log.robot + np.array([0.0, 0.0, np.pi])
     mounted = between(log.robot, log.laser)
     mounted[:, 2] = np.unwrap(mounted[:, 2])
     if float(np.std(mounted, axis=0).max()) < LASERS.mounting_sd:
         return log.laser
-    report.derive("the poses of the laser are corrected ones: the raw odometry is used instead")
+    report.derive(DerivedKind.ODOMETRY_RAW)
     return log.robot
 
 
@@ -231,14 +232,14 @@ def _of_bags(
 def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportReport) -> Array | None:
     """Odometry of a bag at the times of the scans; None = there is none for all of them."""
     if not walks:
-        report.derive("no odometry: motion is predicted from the scans before")
+        report.derive(DerivedKind.ODOMETRY_MISSING)
         return None
     t_ns = np.concatenate([walk.t_ns for walk in walks])
     pose = np.concatenate([from_se3(walk.T_a_b) for walk in walks])
     first = np.concatenate([[True], np.diff(np.maximum.accumulate(t_ns)) > 0])
     t_ns, pose = t_ns[first], pose[first]
     if len(pose) > 1 and not np.ptp(pose, axis=0).any():
-        report.derive("the odometry never changes: it is not used")
+        report.derive(DerivedKind.ODOMETRY_STILL)
         return None
     slack_ns = 500_000_000
     if scans.t_ns[0] < t_ns[0] - slack_ns or scans.t_ns[-1] > t_ns[-1] + slack_ns:

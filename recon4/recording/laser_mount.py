@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
@@ -9,12 +10,14 @@ import numpy as np
 
 from recon4.geometry.se2 import compose
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import is_upside_down, turned_round
 from recon4.recording.formats.bags import Bag
 from recon4.recording.frame_graph import last_name, mount_text
-from recon4.recording.mounts import Mounts, read_mounts, stated_text
+from recon4.recording.mounts import Mounts, read_mounts, stated_text, stated_values
 from recon4.recording.report import ImportReport
 from recon4.recording.transform_messages import frame_name
 from recon4.recording.tuning_heads import PROBE
@@ -33,6 +36,8 @@ class LaserMount:
     """Mount in the frame whose poses the odometry gives."""
     source: str
     """Who states it, with values."""
+    stated: Mapping[str, Value]
+    """The same as values of `DerivedKind.MOUNT_STATED`."""
 
     @property
     def is_upside_down(self) -> bool:
@@ -71,7 +76,9 @@ class MountedScans:
 
 def mount_of_rig(T_body_laser: SE3) -> LaserMount:
     """The mount that a rig file states; its odometry is that of the body."""
-    return LaserMount(T_body_laser, T_body_laser, f"the rig file: {mount_text(T_body_laser)}")
+    by_rig = mount_text(T_body_laser)
+    stated: dict[str, Value] = {"what": "laser", "by_rig": by_rig}
+    return LaserMount(T_body_laser, T_body_laser, f"the rig file: {by_rig}", stated)
 
 
 def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -> LaserMount | None:
@@ -91,10 +98,7 @@ def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -
     body = _body_of(mounts, frame)
     T_body_laser = mounts.graph.T_a_b(body, frame) if body else None
     if T_body_laser is None:
-        report.derive(
-            f"{topic}: the transforms of the bag (tf) do not say how its frame "
-            f"{frame or '(no name)'} is mounted on the robot: it is taken as level and upright"
-        )
+        report.derive(DerivedKind.LASER_MOUNT_UNSTATED, topic=topic, frame=frame or "no-name")
         return None
     moving = mounts.graph.meant_by(_child_frame(bag, odometry) if odometry else "")
     T_odometry_laser = mounts.graph.T_a_b(moving[0], frame) if len(moving) == 1 else None
@@ -102,6 +106,7 @@ def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -
         T_body_laser,
         T_body_laser if T_odometry_laser is None else T_odometry_laser,
         stated_text(mounts, body, frame, what="laser"),
+        stated_values(mounts, body, frame, what="laser"),
     )
 
 
@@ -121,15 +126,17 @@ def mounted_scans(
     scans = recording.scans
     if mount is None:
         if recording.of_robot and scans.odometry is not None:
-            report.derive("how the laser is mounted is unknown: the odometry is taken as its own")
+            report.derive(DerivedKind.LASER_MOUNT_UNSTATED, of_odometry=True)
         return MountedScans(scans, None)
     if recording.of_robot and scans.odometry is not None:
         T_odometry_laser = _planar(mount.T_odometry_laser)
         scans = replace(scans, odometry=compose(scans.odometry, T_odometry_laser[None]))
         if T_odometry_laser.any():
-            report.derive(f"the odometry is moved to the laser; {mount.source}")
+            report.derive(DerivedKind.ODOMETRY_MOVED)
+            report.derive(DerivedKind.MOUNT_STATED, **mount.stated)
     if mount.is_upside_down:
-        report.derive(f"the laser is upside down, its scans are turned round; {mount.source}")
+        report.derive(DerivedKind.LASER_UPSIDE_DOWN)
+        report.derive(DerivedKind.MOUNT_STATED, **mount.stated)
         scans = turned_round(scans)
     if mount.tilt_rad > LASERS.tilted_rad:
         longer = 1.0 / max(np.cos(mount.tilt_rad), 1e-3) - 1.0

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.recording.formats.columns import TIME, Columns, column_names, read_columns
 from recon4.recording.limits import LIMITS
@@ -47,7 +48,7 @@ def read_laser_table(path: Path, report: ImportReport) -> LaserScans:
         raise EmptyRecording(f"{path.name}: no scan of a 2-D laser can be read")
     scans = joined_scans(parts)
     if scans.odometry is None:
-        report.derive("no odometry: motion is predicted from the scans before")
+        report.derive(DerivedKind.ODOMETRY_MISSING)
     return scans
 
 

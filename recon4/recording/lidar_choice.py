@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import repeat
 from typing import Any, ClassVar
 
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import RecordingError
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.recording.formats.bags import IMU, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.formats.shared_topics import TopicSource, sources_of
@@ -19,7 +21,7 @@ from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.senders import OwnPackets, parts_of
 from recon4.recording.point_fields import EXACT_TIME, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
-from recon4.recording.topic_contents import Contents, read_contents
+from recon4.recording.topic_contents import Contents, read_contents, say_left_out
 from recon4.recording.transform_messages import frame_name, has_frames, read_frames
 from recon4.recording.tuning import SHARED_TOPICS
 from recon4.recording.tuning_topics import LIDAR_CHOICE
@@ -45,8 +47,8 @@ class CloudTopic:
     clouds: Mapping[int, NDArray[np.float64]]
     """Stamp of the first messages [ns] -> their finite points [m], (N, 3)."""
     is_camera: bool = False
-    why_not: str = ""
-    """Empty = it is read."""
+    why_not: Mapping[str, Value] = field(default_factory=dict)
+    """Values of `DerivedKind.TOPIC_LEFT_OUT` that say why; empty = it is read."""
 
     @property
     def stamps(self) -> Set[int]:
@@ -91,16 +93,27 @@ def judged_clouds(bag: Bag, clouds: Sequence[BagTopic], keep: Collection[str]) -
     found = [_described(one) for one in contents.values()]
     fixed = _frames_of_poses(bag, {one.frame for one in found}) if len(found) > 1 else set()
     reasons = {one.topic.name: _why_not(one, found, fixed) for one in found}
-    reasons |= dict.fromkeys(keep, "")
+    reasons |= {name: {} for name in keep}
     if not any(not reasons[one.topic.name] for one in found):
         reasons = {}
     return [
         CloudTopic(
             one.topic, one.frame, one.points, one.fields, one.clouds, one.is_camera,
-            reasons.get(one.topic.name, ""),
+            reasons.get(one.topic.name, {}),
         )
         for one in found
     ]  # fmt: skip
+
+
+def say_clouds_left_out(
+    used: Sequence[CloudTopic], found: Sequence[CloudTopic], report: ImportReport
+) -> None:
+    """State which clouds are not read beside those that are."""
+    names = ", ".join(one.topic.name for one in used)
+    for one in found if used else ():
+        if one.why_not:
+            left = {"topic": one.topic.name, **one.why_not}
+            say_left_out("LiDAR", names, left, report=report)
 
 
 def _frames_of_poses(bag: Bag, frames: Collection[str]) -> set[str]:
@@ -135,24 +148,26 @@ def _described(found: Contents) -> CloudTopic:
     )
 
 
-def _why_not(one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[str]) -> str:
+def _why_not(
+    one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[str]
+) -> dict[str, Value]:
     """Why a cloud is not as a LiDAR measured it; empty = it is."""
     if not one.points:
-        return "no points in its first minute"
+        return {"no_points": True}
     better = [o for o in others if o is not one and o.points and not o.is_camera]
     in_detail = [o.topic.name for o in better if o.detail > one.detail]
     if one.is_camera:
-        return "of a depth camera: a narrow view without rings and times of points"
+        return {"camera": True}
     if one.is_placed or _is_in_frame_of_poses(one, better, fixed):
-        return f"in the fixed frame {one.frame}: points that a program has placed"
+        return {"fixed_frame": one.frame}
     if in_detail and last_name(one.frame) in _ROBOT_FRAMES:
-        return f"in the frame of the robot, {one.frame}, with less detail than {in_detail[0]}"
+        return {"robot_frame": one.frame, "better": in_detail[0]}
     for other in better:
         if other.frame == one.frame and _has_less(one, other):
-            return f"a copy of {other.topic.name} with less in it"
+            return {"copy_of": other.topic.name, "lesser": True}
         if _has_same_points(one, other) and _rank(one) < _rank(other):
-            return f"a copy of {other.topic.name}"
-    return ""
+            return {"copy_of": other.topic.name, "whole": True}
+    return {}
 
 
 def _is_in_frame_of_poses(
@@ -244,8 +259,12 @@ def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[TopicSource
             continue
         if sources := sources_of(_sources_at_head(bag, topic)):
             found[topic.name] = sources
-            names = ", ".join(map(str, sources))
-            report.derive(f"{topic.name} is of {len(sources)} LiDARs: {names}")
+            report.derive(
+                DerivedKind.TOPIC_SHARED,
+                topic=topic.name,
+                lidars=len(sources),
+                sources=", ".join(map(str, sources)),
+            )
     return found
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
@@ -206,9 +207,7 @@ class LineRecording:
                 f"{frame or '(no name)'}, got none"
             )
         if joint is not None:
-            self._report.derive(
-                f"{sensor.name}: its mount moves, the rig has that of {joint.base}; {joint.text}"
-            )
+            self._report.derive(DerivedKind.MOUNT_MOVES, sensor=sensor.name, **joint.values)
         return joint
 
     def _find_head(self, rig: Rig, row: int) -> str:
@@ -220,8 +219,7 @@ class LineRecording:
         sensor = rig.sensors[row]
         if sensor.head_rate_rad_s:
             self._report.derive(
-                f"{sensor.name}: the head turns at {np.rad2deg(sensor.head_rate_rad_s):g}°/s, as "
-                "the rig file says"
+                DerivedKind.HEAD_ANGLES, sensor=sensor.name, rate_rad_s=sensor.head_rate_rad_s
             )
             return ""
         joints = [t for t in self.topics if t.type == JOINT_STATES and t.messages]
@@ -229,7 +227,7 @@ class LineRecording:
         if named:
             return named[0]
         if len(joints) == 1 and not sensor.head_topic:
-            self._report.derive(f"{sensor.name}: the angles of its head are {joints[0].name}")
+            self._report.derive(DerivedKind.HEAD_ANGLES, sensor=sensor.name, topic=joints[0].name)
             return joints[0].name
         there = ", ".join(t.name for t in joints) or "none"
         raise ConfigError(

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.assembly.shots import Shots
@@ -134,7 +135,7 @@ class LineTableRecording:
         xyz = np.stack([r * np.cos(angle), np.zeros(len(r)), r * np.sin(angle)], axis=1)
         intensity = np.clip(np.nan_to_num(line["intensity"][seen]), 0, 65535)
         if not np.isfinite(line["intensity"]).any():
-            self._report.derive("line scans without intensities: 0 is stored")
+            self._report.derive(DerivedKind.INTENSITY_MISSING, line_scans=True)
         none = np.zeros(len(r), np.uint8)
         return Shots(
             self._row,

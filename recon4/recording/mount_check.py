@@ -8,15 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.frame_graph import difference, mount_text
 from recon4.recording.mounts import (
     Mounts,
     SampleTopics,
-    frame_remarks,
     is_placeholder,
     rig_by_frames,
+    say_frames,
     why_no_rig,
 )
 from recon4.recording.report import ImportReport
@@ -55,8 +56,7 @@ def mounted_rig(
     Raises:
         ConfigError: If the rig does not fit, or nobody says how several LiDARs are mounted.
     """
-    for text in frame_remarks(mounts, [stream.topic for stream in streams]):
-        report.derive(text)
+    say_frames(mounts, [stream.topic for stream in streams], report)
     why = why_no_rig(streams, mounts)
     if rig is None and not why:
         return rig_by_frames(streams, samples, mounts, report=report)
@@ -93,7 +93,7 @@ def compare_mounts(
             continue
         values = _facts(first, part, mounts, by_rig=by_rig, by_bag=by_bag)
         if is_placeholder(by_bag):
-            report.derive(_PLACEHOLDER.format_map(values))
+            report.derive(DerivedKind.MOUNT_PLACEHOLDER, **values)
             continue
         report.warn(
             FindingKind.MOUNT_CONTRADICTED,
@@ -121,12 +121,6 @@ def _parts(rig: Rig, samples: SampleTopics, mounts: Mounts) -> Iterator[_Part]:
     if mounts.frame_of(samples.fixes):
         antenna = SE3(np.eye(3), rig.p_body_antenna)
         yield _Part("GNSS antenna", samples.fixes, antenna, turned=False)
-
-
-_PLACEHOLDER = (
-    "mount of {part} relative to {other}: {by_rig} in the rig, {by_bag} in {source} of the bag "
-    "({parent} -> {child}): a placeholder?"
-)
 
 
 def _facts(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
 from recon4.recording.formats.bags import Bag
@@ -100,12 +102,15 @@ def _without_prefixes(
             continue
         if len(names) == 1 and claimed[names[0]] == 1:
             named[topic] = names[0]
-            report.derive(f"{topic}: its frame {frame} is {names[0]} of the transforms")
+            report.derive(DerivedKind.FRAME_NAMED, topic=topic, frame=frame, name=names[0])
         else:
-            of = "one of" if len(names) > 1 else "also that of another sensor:"
             report.derive(
-                f"{topic}: which frame of the transforms its frame {frame} is, is not certain: "
-                f"{of} {', '.join(names[: LISTED.few])}"
+                DerivedKind.FRAME_UNCERTAIN,
+                topic=topic,
+                frame=frame,
+                names=", ".join(names[: LISTED.few]),
+                several=len(names) > 1,
+                shared=len(names) == 1,
             )
     return named
 
@@ -148,15 +153,12 @@ def on_their_joints(
         frame = mounts.frame_of(topic)
         joints = {joint.child for joint in mounts.graph.joints_above(frame)}
         if joints and joints == of_imu:
-            report.derive(f"{topic} and {imu} turn together: the body is what the joint moves")
+            report.derive(DerivedKind.MOUNT_TURNS_TOGETHER, topic=topic, imu=imu)
             continue
         mount = moving_mount(bag, mounts.graph, frame, report=report)
         if mount is not None:
             moving[topic] = mount
-            report.derive(
-                f"{topic}: its mount moves, every point is placed in {mount.base} by the mount of "
-                f"its time; {mount.text}"
-            )
+            report.derive(DerivedKind.MOUNT_MOVES, placed=topic, **mount.values)
     frames = {**mounts.frames, **{topic: mount.base for topic, mount in moving.items()}}
     return replace(mounts, frames=frames, moving=moving)
 
@@ -233,14 +235,16 @@ def stated_mount(
     T_a_b = mounts.T_a_b(topic_a, topic_b)
     if T_a_b is None:
         report.derive(
-            f"mount of the {what}: the transforms of the bag (tf) do not connect {a or 'no frame'} "
-            f"and {b or 'no frame'}: it is taken as not turned against the LiDAR"
+            DerivedKind.MOUNT_UNSTATED,
+            what=what,
+            parent=a or "no-frame",
+            child=b or "no-frame",
         )
         return None
     if _is_far(T_a_b):
         report.warn(FindingKind.MOUNT_FAR, what=what, parent=a, child=b, mount=mount_text(T_a_b))
         return None
-    report.derive(stated_text(mounts, a, b, what=what))
+    report.derive(DerivedKind.MOUNT_STATED, **stated_values(mounts, a, b, what=what))
     return T_a_b
 
 
@@ -254,6 +258,16 @@ def stated_text(mounts: Mounts, a: str, b: str, *, what: str) -> str:
         f"mount of the {what} from {' and '.join(sources)}: {a} -> {b} "
         f"{values or mount_text(T_a_b)}"
     )
+
+
+def stated_values(mounts: Mounts, a: str, b: str, *, what: str) -> dict[str, Value]:
+    """Where a mount comes from, and what it is, as values of `DerivedKind.MOUNT_STATED`."""
+    T_a_b = mounts.graph.T_a_b(a, b)
+    assert T_a_b is not None
+    sources = sorted({one.source for one in mounts.graph.path(a, b)})
+    values: dict[str, Value] = {"what": what, "parent": a, "child": b}
+    values |= {"placeholder": True} if is_placeholder(T_a_b) else {"mount": mount_text(T_a_b)}
+    return values | {"sources": ", ".join(sources)}
 
 
 def _is_far(T_a_b: SE3) -> bool:
@@ -270,12 +284,10 @@ def _of_one(stream: Stream, mounts: Mounts, report: ImportReport) -> tuple[Rig, 
         T_base_lidar is None
         or difference(SE3(T_base_lidar.R, np.zeros(3)), SE3.identity())[0] < 1e-6
     ):
-        report.derive(f"no rig given: one {stream.model}, its frame is the body's")
+        report.derive(DerivedKind.RIG_CHOSEN, model=stream.model, own_frame=True)
         return rig, SE3.identity()
-    report.derive(
-        f"no rig given: one {stream.model}, the body has its origin and the axes of {base}"
-    )
-    report.derive(stated_text(mounts, base, frame, what="LiDAR"))
+    report.derive(DerivedKind.RIG_CHOSEN, model=stream.model, axes_of=base)
+    report.derive(DerivedKind.MOUNT_STATED, **stated_values(mounts, base, frame, what="LiDAR"))
     T_body_lidar = SE3(T_base_lidar.R, np.zeros(3))
     sensor = replace(rig.sensors[0], T_body_sensor=T_body_lidar)
     return replace(rig, sensors=(sensor,)), T_body_lidar
@@ -285,12 +297,13 @@ def _of_several(streams: Sequence[Stream], mounts: Mounts, report: ImportReport)
     """The rig of several LiDARs, and the mount of the first."""
     frames = [mounts.frame_of(stream.topic) for stream in streams]
     body = mounts.graph.body_of(frames[0]) or mounts.graph.top_of(frames[0])
-    report.derive(f"no rig given: {len(streams)} LiDARs, the body is the frame {body}")
+    report.derive(DerivedKind.RIG_CHOSEN, lidars=len(streams), frame=body)
     sensors = []
     for stream, frame in zip(streams, frames, strict=True):
         T_body_sensor = mounts.graph.T_a_b(body, frame)
         assert T_body_sensor is not None
-        report.derive(stated_text(mounts, body, frame, what=f"LiDAR {stream.topic}"))
+        stated = stated_values(mounts, body, frame, what=f"LiDAR {stream.topic}")
+        report.derive(DerivedKind.MOUNT_STATED, **stated)
         sensor = single_rig(stream).sensors[0]
         sensors.append(replace(sensor, name=frame, T_body_sensor=T_body_sensor))
     rig = replace(single_rig(streams[0]), name="by tf", sensors=tuple(sensors))
@@ -300,17 +313,11 @@ def _of_several(streams: Sequence[Stream], mounts: Mounts, report: ImportReport)
 # -- frames that are none of a sensor
 
 
-def frame_remarks(mounts: Mounts, topics: Sequence[str]) -> Iterator[str]:
-    """Points that are not given in the frame of their sensor."""
+def say_frames(mounts: Mounts, topics: Sequence[str], report: ImportReport) -> None:
+    """State which points are not given in the frame of their sensor."""
     for topic in topics:
         frame = mounts.frame_of(topic)
         if last_name(frame) in WORLD_FRAMES:
-            yield (
-                f"{topic}: the frame of its points is {frame}: another program has placed them "
-                "already, expected the points as the sensor measured them"
-            )
+            report.derive(DerivedKind.FRAME_OF_POINTS, topic=topic, frame=frame, placed=True)
         elif last_name(frame) in BODY_FRAMES:
-            yield (
-                f"{topic}: its points are in the frame of the robot, {frame}: where the sensor is "
-                "in it is not known"
-            )
+            report.derive(DerivedKind.FRAME_OF_POINTS, topic=topic, frame=frame, on_robot=True)

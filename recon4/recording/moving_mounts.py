@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import SE3, Array, so3_log
 from recon4.kernels.imu import place_points
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.bags import Bag
@@ -36,8 +38,31 @@ class MovingMount:
     """Poses of the sensor."""
     angle_rad: Array
     """How far it has turned about the axis of the joint at each pose, continuous [rad], (K,)."""
-    text: str
-    """Joint, range, number of poses, for people."""
+    joints: str
+    """Names of the frames that the joints connect."""
+    source: str
+    """Topic that states the first joint."""
+
+    @property
+    def values(self) -> dict[str, Value]:
+        """Joint, range, number of poses, as values of `DerivedKind.MOUNT_MOVES`."""
+        return {
+            "base": self.base,
+            "joints": self.joints,
+            "turned_rad": float(np.ptp(self.angle_rad)),
+            "source": self.source,
+            "poses": len(self.T_base_sensor),
+            "seconds": float(np.ptp(self.T_base_sensor.t_ns)) * 1e-9,
+        }
+
+    @property
+    def text(self) -> str:
+        """The same for messages of errors."""
+        seconds = float(np.ptp(self.T_base_sensor.t_ns)) * 1e-9
+        return (
+            f"{self.joints} turns by {np.rad2deg(np.ptp(self.angle_rad)):.0f}° ({self.source}, "
+            f"{len(self.T_base_sensor)} poses in {seconds:.1f} s)"
+        )
 
     def known(self, t_ns: Times) -> NDArray[np.bool_]:
         """Whether the pose is known at each time, (N,)."""
@@ -100,32 +125,31 @@ def moving_mount(
     for joint in joints:
         why = _why_no_joint(poses[joint.child])
         if why:
-            report.derive(f"{joint.parent} -> {joint.child} ({joint.source}) is no joint: {why}")
+            report.derive(
+                DerivedKind.JOINT_NONE,
+                parent=joint.parent,
+                child=joint.child,
+                source=joint.source,
+                **why,
+            )
             return None
     T_base_sensor = _composed(graph, joints, frame, poses=poses)
     if T_base_sensor is None:
         return None
     angle_rad = _turned_rad(T_base_sensor.T_a_b)
     names = ", ".join(f"{j.parent} -> {j.child}" for j in joints)
-    seconds = float(np.ptp(T_base_sensor.t_ns)) * 1e-9
-    text = (
-        f"{names} turns by {np.rad2deg(np.ptp(angle_rad)):.0f}° ({joints[0].source}, "
-        f"{len(T_base_sensor)} poses in {seconds:.1f} s)"
-    )
-    return MovingMount(joints[-1].parent, T_base_sensor, angle_rad, text)
+    return MovingMount(joints[-1].parent, T_base_sensor, angle_rad, names, joints[0].source)
 
 
-def _why_no_joint(poses: Trajectory) -> str:
-    """Why poses are not those of a joint; empty = they are."""
+def _why_no_joint(poses: Trajectory) -> dict[str, Value]:
+    """Why poses are not those of a joint, as values; empty = they are."""
     if len(poses) < 2:
-        return "its transforms have no times"
+        return {"untimed": True}
     travel_m = float(np.ptp(poses.T_a_b.t, axis=0).max())
     if travel_m > JOINTS.travel_m:
-        return f"it moves by {travel_m:.1f} m, as a body in the world"
+        return {"travel_m": travel_m}
     off = _off_axis(poses.T_a_b)
-    if off > JOINTS.off_axis:
-        return f"{off:.0%} of its turns are about other axes than its main one"
-    return ""
+    return {"off_axis": off} if off > JOINTS.off_axis else {}
 
 
 def _turns(T: SE3) -> Array:

@@ -7,14 +7,16 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.model.derived_kinds import DerivedKind
 from recon4.recording.clock_rates import with_clock_rates
-from recon4.recording.kinds import PLANAR, RecordingKind, contents_of, recognize
+from recon4.recording.kinds import PLANAR, FolderContents, RecordingKind, contents_of, recognize
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
 from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
 from recon4.recording.openers.frames import open_frames
 from recon4.recording.openers.mandeye import open_mandeye
 from recon4.recording.openers.request import Opener, OpenRequest, Recording
 from recon4.recording.openers.tables import open_line_tables
+from recon4.recording.report import ImportReport
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +63,22 @@ def open_recording(request: OpenRequest, kinds: Kinds = KINDS) -> Recording:
     found = [folders[path].kind if path in folders else recognize(path) for path in paths]
     kind = _one_kind(paths, found, kinds)
     for contents in folders.values():
-        for text in contents.passed_over():
-            request.report.derive(text)
+        _say_passed_over(contents, request.report)
     for opener in kinds[kind].openers:
         recording = opener(request)
         if recording is not None:
             named = replace(recording, kind=recording.kind or str(kind))
             return with_clock_rates(named, request.report)
     raise UnknownFormat(f"{paths[0].name}: {kind}: no reader knows the sensor that made it")
+
+
+def _say_passed_over(contents: FolderContents, report: ImportReport) -> None:
+    """State what is not read because the folder itself is a recording."""
+    for name in contents.meshes:
+        report.derive(DerivedKind.FILE_PASSED_OVER, name=name)
+    if contents.folders:
+        names = ", ".join(str(one.relative_to(contents.folder)) for one in contents.folders[:8])
+        report.derive(DerivedKind.FOLDERS_PASSED_OVER, folders=names)
 
 
 def _one_kind(

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.trajectory import Times
-from recon4.recording.clock_names import described
+from recon4.recording.clock_names import offset_values
 from recon4.recording.exact_times import ExactClock
 from recon4.recording.point_fields import NS_TIME
 from recon4.recording.report import ImportReport
@@ -139,10 +140,7 @@ class PointClock:
     ) -> float:
         by_span = _unit_of_turn(numbers) if full_turn else _unit_of_part(numbers, period_ns)
         if _is_part_of_cloud(numbers, period_ns):
-            self._report.derive(
-                f"{self._name}: times of points are from 0 to 1: parts of the time from "
-                "cloud to cloud"
-            )
+            self._report.derive(DerivedKind.TIMES_AS_PARTS, where=self._name)
             by_span = float(period_ns)
         unit = _unit_of_clock(numbers, t_ns, period_ns) or _unit_of_dates(numbers) or by_span
         self._known_unit = unit or self._known_unit
@@ -199,7 +197,7 @@ class PointClock:
         """
         near_ns = POINT_TIMES.revolutions * revolution_ns
         if self._points_lead and _is_date(middle_ns):
-            self._report.derive(f"{self._name}: times are those of the points")
+            self._report.derive(DerivedKind.TIMES_OF_POINTS, where=self._name)
             return middle_ns
         if _is_date(middle_ns) and _is_date(t_ns) and not _is_hours(t_ns - first_ns, near_ns):
             # Drivers repeat stamps; two dates have one offset for the whole walk.
@@ -212,8 +210,7 @@ class PointClock:
             at_ns = middle_ns + round((t_ns - middle_ns) / cycle_ns) * cycle_ns
             if abs(at_ns - t_ns) <= near_ns:
                 self._report.derive(
-                    f"{self._name}: times of points begin again every {cycle_ns * 1e-9:.6g} s: "
-                    "continued by the stamps"
+                    DerivedKind.TIMES_CONTINUED, where=self._name, cycle_s=cycle_ns * 1e-9
                 )
                 return at_ns
         self._note_offset((first_ns - t_ns) * 1e-9)
@@ -223,8 +220,7 @@ class PointClock:
         if not self._noted:
             self._noted = True
             self._report.derive(
-                f"{self._name}: the points' clock is not the stamps' clock, it is ahead by "
-                f"{described(ahead_s)}; stamp = first point"
+                DerivedKind.CLOCK_OF_POINTS, where=self._name, each=True, **offset_values(ahead_s)
             )
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.recording.formats.bags import IMU, LASER_SCAN, Bag
@@ -51,9 +52,7 @@ def profiler_rig(bag: Bag, rig: Rig | None, report: ImportReport) -> Rig | None:
     shipped = load_rig(WUERZBURG)
     row = shipped.row_of("profiler")
     if row is not None and shipped.sensors[row].topic in {topic.name for topic in bag.topics}:
-        report.derive(
-            f"no rig given: the topics match the preset {WUERZBURG}, its mounting is used"
-        )
+        report.derive(DerivedKind.RIG_CHOSEN, preset=WUERZBURG, by_topics=True)
         return shipped
     return _tilting_rig(bag, report)
 
@@ -78,9 +77,10 @@ def _tilting_rig(bag: Bag, report: ImportReport) -> Rig | None:
         report.warn(FindingKind.IMU_ON_JOINT, topic=imu)
         return None
     report.derive(
-        f"{tilting.topic} is a profiler, not a 2-D laser that maps a plane: its mount moves by "
-        f"{tilting.source}, and every shot is placed by the mount of its time; "
-        f"{tilting.mount.text}"
+        DerivedKind.MOUNT_MOVES,
+        profiler=tilting.topic,
+        moved_by=tilting.source,
+        **tilting.mount.values,
     )
     return _rig(tilting, mounts, SampleTopics(imu), level=level, report=report)
 
@@ -113,7 +113,7 @@ def _rig(
     for topic in level[:1]:
         T_base_laser = carried.T_a_b(laser.topic, topic)
         assert T_base_laser is not None
-        report.derive(f"{topic} is the 2-D laser that gives the first motion")
+        report.derive(DerivedKind.LASER_OF_MOTION, topic=topic)
         sensors.append(
             Sensor(
                 name="laser2d",

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from recon4.findings.wording import whole_text
+from recon4.model.derived import Derived
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import Loss, count_text, losses, repairs, replaced
@@ -23,7 +26,7 @@ def warning(kind: FindingKind, **values: Value) -> Finding:
             ``sensor`` is the name of the sensor that it is about; ``start_s`` and ``end_s`` are its
             stretch, after the first multiframe [s].
     """
-    known = {name: _bounded(one) for name, one in values.items() if one == one}
+    known = _known(values)
     sensor = str(known.pop("sensor", ""))
     span_s = None
     if "start_s" in known:
@@ -40,8 +43,8 @@ class ImportReport:
     for example ``packets``, ``packets_duplicate``, ``points_nan``."""
     details: dict[str, str] = field(default_factory=dict)
     """What is known of a count besides, by its name, for example a port."""
-    derived: list[str] = field(default_factory=list)
-    """What the recording lacks and was derived."""
+    derived: list[Derived] = field(default_factory=list)
+    """What the recording lacks and was derived or chosen."""
     findings: list[Finding] = field(default_factory=list)
     """What the readers warn of: repairs, gaps, missing sensors, forced models."""
     ahead_ns: dict[str, int] = field(default_factory=dict)
@@ -65,12 +68,18 @@ class ImportReport:
         if len(lags) < LIMITS.lags:
             lags.append(lag_ns)
 
-    def derive(self, text: str) -> None:
-        """Add a derived value once."""
-        if text in self.derived:
+    def derive(self, kind: DerivedKind, **values: Value) -> None:
+        """State once what the recording lacks and was derived or chosen.
+
+        Args:
+            kind: What it is; the catalog has its words.
+            values: Figures and names that its text quotes; NaN is left out, a text of a file cut.
+        """
+        found = Derived(kind=kind, values=_known(values))
+        if found in self.derived:
             return
         if len(self.derived) < LIMITS.texts:
-            self.derived.append(text[: LIMITS.text_characters])
+            self.derived.append(found)
         else:
             self.count("remarks_more")
 
@@ -120,6 +129,10 @@ class ImportReport:
     def repaired(self) -> list[str]:
         """All counts of repaired data, in words."""
         return repairs(self.counts)
+
+
+def _known(values: Mapping[str, Value]) -> dict[str, Value]:
+    return {name: _bounded(one) for name, one in values.items() if one == one}
 
 
 def _bounded(value: Value) -> Value:

@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
@@ -80,13 +81,11 @@ def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = ""
     """
     if len(streams) == 1:
         rig = single_rig(streams[0])
-        report.derive(f"no rig given: one {streams[0].model}, its frame is the body's")
+        report.derive(DerivedKind.RIG_CHOSEN, model=streams[0].model, own_frame=True)
         return rig
     thesis = load_rig(THESIS_RIG)
     if _is_thesis(streams, thesis):
-        report.derive(
-            f"no rig given: {_names(streams)} match the preset {thesis.name}, its mounting is used"
-        )
+        report.derive(DerivedKind.RIG_CHOSEN, sensors=_names(streams), preset=thesis.name)
         return thesis
     raise UnknownMounts(_remedy(streams, why), rig_to_complete(streams))
 
@@ -203,7 +202,7 @@ def assign_topics(rig: Rig, streams: Sequence[Stream], report: ImportReport) -> 
     if len(left) == len(_free(topics, chosen)):
         for sensor, topic in zip(left, _free(topics, chosen), strict=True):
             chosen[sensor.name] = topic
-            report.derive(f"{sensor.name} is topic {topic}: the rig names none")
+            report.derive(DerivedKind.SENSOR_TOPIC, sensor=sensor.name, topic=topic)
     if not chosen:
         raise ConfigError(
             f"no LiDAR of the rig {rig.name!r} is in the recording; it has {_names(streams)}"

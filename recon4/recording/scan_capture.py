@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Rig, Sensor
@@ -115,7 +116,7 @@ def rig_of_scans(files: Sequence[Path], report: ImportReport) -> Rig:
     if found is None:
         raise EmptyRecording(f"{files[0].name}: no datagrams of a 2-D laser")
     address, port = found
-    report.derive(f"the 2-D laser is what sends scans from {address} to port {port}")
+    report.derive(DerivedKind.LASER_BY_SENDER, address=address, port=port)
     laser = Sensor(
         name="laser2d",
         model="generic",
@@ -322,7 +323,7 @@ def read_scan_captures(files: Sequence[Path], report: ImportReport) -> LaserScan
         raise EmptyRecording(f"{files[0].name}: no scan of the 2-D laser can be read")
     scans = joined_scans(parts)
     if scans.odometry is None:
-        report.derive("no odometry: motion is predicted from the scans before")
+        report.derive(DerivedKind.ODOMETRY_MISSING)
     return scans
 
 

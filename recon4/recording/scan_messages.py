@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.assembly.shots import Shots
@@ -36,7 +37,7 @@ def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport, across
     """
     ranges, step_rad, step_s = _checked(scan, report)
     if step_s == 0.0:
-        report.derive("line scans without times of their shots: all shots at the stamp")
+        report.derive(DerivedKind.LINES_UNTIMED)
     seen = _returns(scan, ranges)
     number = np.flatnonzero(seen)
     angle = float(scan.angle_min) + step_rad * number
@@ -47,7 +48,7 @@ def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport, across
     if len(intensities) == len(ranges):
         intensity = np.clip(np.nan_to_num(intensities[seen]), 0, 65535).astype(np.uint16)
     else:
-        report.derive("line scans without intensities: 0 is stored")
+        report.derive(DerivedKind.INTENSITY_MISSING, line_scans=True)
         intensity = np.zeros(len(r), np.uint16)
     none = np.zeros(len(r), np.uint8)
     times = t_ns + np.rint(1e9 * step_s * number).astype(np.int64)

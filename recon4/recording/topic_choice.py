@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
@@ -33,13 +34,14 @@ from recon4.recording.topic_contents import (
     near,
     odometry_faults,
     read_contents,
+    say_left_out,
     view_deg,
 )
 from recon4.recording.transform_messages import has_frames, read_frames
 from recon4.recording.tuning_topics import LIDAR_CHOICE
 from recon4.settings import IngestSettings
 
-_NO_FORCES, _NO_TURNS = "no accelerometer", "no gyroscope"
+_NO_FORCES, _NO_TURNS = "no_accelerometer", "no_gyroscope"
 
 
 def _nothing(found: Contents) -> float:
@@ -62,8 +64,8 @@ class Kind:
     """What speaks against a topic."""
     value: Callable[[Contents], float] = _nothing
     """Ranks topics of equal faults."""
-    less: str = "as good"
-    """What a topic of equal faults and a lower value is."""
+    less: str = "as_good"
+    """What a topic of equal faults and a lower value is, as a value of `TOPIC_LEFT_OUT`."""
     rig_key: str = ""
     """Table of the rig file whose ``topic`` names it too; empty = none."""
     decisive: bool = True
@@ -75,7 +77,7 @@ IMU_KIND = Kind(
     label="IMU",
     setting="ingest.imu_topic",
     faults=imu_faults,
-    less="by frame and name not the IMU of the LiDAR",
+    less="elsewhere",
     rig_key="imu",
 )
 FIX_KIND = Kind(
@@ -84,7 +86,7 @@ FIX_KIND = Kind(
     setting="ingest.gnss_topic",
     faults=fix_faults,
     value=fix_quality,
-    less="a lower status of its fixes",
+    less="lower_status",
     rig_key="gnss",
 )
 ODOMETRY_KIND = Kind(
@@ -100,7 +102,7 @@ LASER_KIND = Kind(
     setting="ingest.laser_topic",
     faults=laser_faults,
     value=_is_wide,
-    less="a narrower view",
+    less="narrower",
     rig_key="[sensor]",
 )
 
@@ -144,12 +146,13 @@ class _Candidate:
     def key(self) -> tuple[float, ...]:
         return (-sum(fault.weight for fault in self.faults), *self.rank)
 
-    def text(self, best: _Candidate, kind: Kind) -> str:
-        """Its topic, and why it is not the best one."""
-        why = ", ".join(fault.text for fault in self.faults) or kind.less
-        if not self.faults and self.rank[:-1] == best.rank[:-1]:
-            why = "as good" + ", with fewer messages" * (self.rank[-1] < best.rank[-1])
-        return f"{self.found.topic.name} ({why})"
+    def why_not(self, best: _Candidate, kind: Kind) -> dict[str, Value]:
+        """Why it is not the best one, as values of `DerivedKind.TOPIC_LEFT_OUT`."""
+        if self.faults:
+            return {fault.what: fault.value for fault in self.faults}
+        if self.rank[:-1] != best.rank[:-1]:
+            return {kind.less: True}
+        return {"fewer" if self.rank[-1] < best.rank[-1] else "as_good": True}
 
 
 def choose_imu(
@@ -175,7 +178,7 @@ def choose_imu(
     forces = _forces_beside(best, candidates)
     if forces:
         name = best.found.topic.name
-        report.derive(f"IMU: angular rates of {name} and accelerations of {forces} are joined")
+        report.derive(DerivedKind.IMU_JOINED, turns=name, forces=forces)
     others = [c for c in candidates if c is not best and c.found.topic.name != forces]
     _say(best, others, IMU_KIND, report=report)
     return ImuTopics(best.found.topic.name, forces)
@@ -276,13 +279,13 @@ def _best(candidates: Sequence[_Candidate]) -> _Candidate:
 
 def _forces_beside(best: _Candidate, candidates: Sequence[_Candidate]) -> str:
     """The topic of accelerations alone that belongs to one of angular rates alone; else empty."""
-    if _NO_FORCES not in {fault.text for fault in best.faults}:
+    if _NO_FORCES not in {fault.what for fault in best.faults}:
         return ""
     beside: Mapping[str, Contents] = {"": best.found}
     alone = [
         one
         for one in candidates
-        if [fault.text for fault in one.faults if fault.weight > 1.0] == [_NO_TURNS]
+        if [fault.what for fault in one.faults if fault.weight > 1.0] == [_NO_TURNS]
         and near(one.found, beside)
     ]
     return alone[0].found.topic.name if len(alone) == 1 else ""
@@ -297,10 +300,9 @@ def _say(
     is_rival = [one.key[:-1] == best.key[:-1] and one.found.frame != frame for one in others]
     rivals = [one for one, equal in zip(others, is_rival, strict=True) if equal and kind.decisive]
     worse = [one for one in others if one not in rivals]
-    if worse:
-        chosen = f"{best.found.topic.name}{f' (frame {frame})' * bool(frame)}"
-        text = ", ".join(one.text(best, kind) for one in worse)
-        report.derive(f"{kind.label}: {chosen} is read, not {text}")
+    for one in worse:
+        left = {"topic": one.found.topic.name} | one.why_not(best, kind)
+        say_left_out(kind.label, best.found.topic.name, left, frame=frame, report=report)
     if not rivals:
         return
     by_rig: dict[str, Value] = {"table": kind.rig_key} if kind.rig_key else {"settable": True}

@@ -8,10 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.samples import ImuSamples
 from recon4.recording.bag_messages import imu_row, pose_row, stamp_ns
 from recon4.recording.formats.bags import Bag, BagTopic
 from recon4.recording.packets.messages import DATA_MESSAGES
+from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured_channels import imu_channels
 from recon4.recording.samples.tuning import IMU_UNITS
 from recon4.recording.transform_messages import frame_of
@@ -57,7 +60,25 @@ class Fault:
     """What speaks against a topic."""
 
     weight: float
-    text: str
+    what: str
+    """A value of `DerivedKind.TOPIC_LEFT_OUT`."""
+    value: Value = True
+
+
+def say_left_out(
+    what: str, read: str, left: Mapping[str, Value], *, frame: str = "", report: ImportReport
+) -> None:
+    """State that one of several topics is not read.
+
+    Args:
+        what: Kind of the topics.
+        read: Topic that is read in its place.
+        left: Values of `DerivedKind.TOPIC_LEFT_OUT`: the ``topic``, and those that say why.
+        frame: Of the topic that is read; empty = not said.
+        report: Receives it.
+    """
+    of: dict[str, Value] = {"frame": frame} if frame else {"frameless": True}
+    report.derive(DerivedKind.TOPIC_LEFT_OUT, what=what, read=read, **left, **of)
 
 
 def read_contents(
@@ -115,18 +136,18 @@ def imu_faults(found: Contents) -> list[Fault]:
     channels = imu_channels(imu_rows(found))
     out = []
     if channels.no_gyroscope:
-        out.append(Fault(4.0, "no gyroscope"))
+        out.append(Fault(4.0, "no_gyroscope"))
     elif float(np.nanpercentile(_lengths(channels.imu.gyro_rad_s), 90)) > IMU_UNITS.fastest_rad_s:
-        out.append(Fault(1.0, "angular rates that are not in rad/s"))
+        out.append(Fault(1.0, "unit_unknown"))
     if channels.no_accelerometer:
-        out.append(Fault(2.0, "no accelerometer"))
+        out.append(Fault(2.0, "no_accelerometer"))
     else:
         usual = float(np.nanmedian(_lengths(channels.imu.accel_m_s2)))
         units = (IMU_UNITS.gravity_m_s2, IMU_UNITS.gravity_g)
         if not any(low < usual < high for low, high in units):
-            out.append(Fault(2.0, f"accelerations of {usual:.2g}, expected about 9.8 m/s²"))
+            out.append(Fault(2.0, "usual_m_s2", usual))
     if found.rate_hz < TOPIC_CONTENTS.slow_hz:
-        out.append(Fault(1.0, f"{found.rate_hz:.0f} samples a second"))
+        out.append(Fault(1.0, "rate_hz", found.rate_hz))
     return out
 
 
@@ -135,11 +156,11 @@ def fix_faults(found: Contents) -> list[Fault]:
     good = [m for m in found.messages if m.status.status != -1 and _is_place(m)]
     out = []
     if not good:
-        out.append(Fault(4.0, f"no fix in {len(found.messages)} messages"))
+        out.append(Fault(4.0, "without_fix", len(found.messages)))
     elif len(good) >= 10 and len({(m.latitude, m.longitude) for m in good}) == 1:
-        out.append(Fault(4.0, "a position that never changes"))
+        out.append(Fault(4.0, "one_position"))
     if any(word in found.topic.name.lower() for word in _DERIVED_WORDS):
-        out.append(Fault(0.5, "by its name the output of a filter"))
+        out.append(Fault(0.5, "filtered"))
     return out
 
 
@@ -153,8 +174,8 @@ def odometry_faults(found: Contents) -> list[Fault]:
     """What speaks against poses: no numbers, or always the same."""
     rows = np.array([pose_row(m) for m in found.messages], np.float64).reshape(-1, 7)
     if not np.isfinite(rows).all(axis=1).any():
-        return [Fault(4.0, "no poses that are numbers")]
-    return [Fault(2.0, "poses that never change")] if not np.ptp(rows, axis=0).any() else []
+        return [Fault(4.0, "no_poses")]
+    return [Fault(2.0, "still")] if not np.ptp(rows, axis=0).any() else []
 
 
 def laser_faults(found: Contents) -> list[Fault]:
@@ -162,9 +183,9 @@ def laser_faults(found: Contents) -> list[Fault]:
     ranges = np.concatenate([np.zeros(0), *(np.asarray(m.ranges) for m in found.messages)])
     out = []
     if not np.any(np.isfinite(ranges) & (ranges > 0.0)):
-        out.append(Fault(4.0, "no returns"))
+        out.append(Fault(4.0, "no_returns"))
     if view_deg(found) < TOPIC_CONTENTS.wide_deg:
-        out.append(Fault(1.0, f"a view of {view_deg(found):.0f}°"))
+        out.append(Fault(1.0, "view_rad", float(np.deg2rad(view_deg(found)))))
     return out
 
 
@@ -177,9 +198,9 @@ def view_deg(found: Contents) -> float:
 def common_faults(found: Contents) -> list[Fault]:
     """What speaks against a topic of any kind."""
     if not found.messages:
-        return [Fault(8.0, "no message in its first minute that can be read")]
+        return [Fault(8.0, "unreadable")]
     if found.covered < TOPIC_CONTENTS.covered:
-        return [Fault(2.0, f"only {found.covered:.0%} of the recording")]
+        return [Fault(2.0, "covered", found.covered)]
     return []
 
 

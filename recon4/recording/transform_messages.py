@@ -16,6 +16,8 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.recording.driven_joints import DrivenJoint, driven_joint, stated_positions
 from recon4.recording.formats.bags import JOINT_STATES, TEXT, Bag, BagTopic
 from recon4.recording.formats.limits import clean_name
@@ -109,7 +111,7 @@ def _messages(bag: Bag, name: str, *, most: int, report: ImportReport) -> Iterat
         if content is not None:
             yield content
     if number == most:
-        report.derive(f"{name}: its first {most} messages are read")
+        report.derive(DerivedKind.TRANSFORMS_CUT, topic=name, messages=most)
 
 
 @dataclass(slots=True)
@@ -172,7 +174,7 @@ class _Statements:
             joints = urdf_joints(texts[-1])
         except CorruptFile as error:
             self._report.count("robot_descriptions_refused")
-            self._report.derive(f"{name}: the robot description is not read: {error}")
+            self._report.derive(DerivedKind.DESCRIPTION_UNREAD, topic=name, error=str(error))
             return
         for joint in joints:
             self._add_joint(name, joint)
@@ -189,9 +191,7 @@ class _Statements:
         driven = driven_joint(joint, name)
         if driven is None:
             self._report.count("transforms_invalid")
-            self._report.derive(
-                f"{name}: joint {joint.name!r}: expected a name, an axis and a gear"
-            )
+            self._report.derive(DerivedKind.DESCRIPTION_UNREAD, topic=name, joint=joint.name)
         elif pair[1] not in self._children:
             self._driven[pair] = driven
 
@@ -222,7 +222,9 @@ class _Statements:
         every = (one for content in messages for one in content.transforms)
         for number, one in enumerate(every):
             if number >= LIMITS.transforms:
-                self._report.derive(f"{name}: its first {LIMITS.transforms} transforms are read")
+                self._report.derive(
+                    DerivedKind.TRANSFORMS_CUT, topic=name, transforms=LIMITS.transforms
+                )
                 break
             numbers = numbers_of(one.transform)
             pair = self._pair(name, (one.header.frame_id, one.child_frame_id), numbers)
@@ -235,7 +237,7 @@ class _Statements:
             else:
                 self._report.count("transforms_beyond_limit")
                 self._report.derive(
-                    f"{name}: expected at most {LIMITS.frame_pairs} pairs of frames"
+                    DerivedKind.TRANSFORMS_CUT, topic=name, pairs=LIMITS.frame_pairs
                 )
         return found
 
@@ -246,7 +248,9 @@ class _Statements:
         if not wrong:
             return pair
         self._report.count("transforms_invalid")
-        self._report.derive(f"{name}: transforms are left out: {pair[0]!r} -> {pair[1]!r}: {wrong}")
+        self._report.derive(
+            DerivedKind.TRANSFORM_LEFT_OUT, topic=name, parent=pair[0], child=pair[1], **wrong
+        )
         return None
 
 
@@ -256,21 +260,21 @@ def numbers_of(transform: Any) -> tuple[float, ...]:
     return t.x, t.y, t.z, q.x, q.y, q.z, q.w
 
 
-def transform_fault(pair: tuple[str, str], numbers: tuple[float, ...]) -> str:
-    """Why a transform makes no sense; empty = it does."""
+def transform_fault(pair: tuple[str, str], numbers: tuple[float, ...]) -> dict[str, Value]:
+    """Why a transform makes no sense, as values of `TRANSFORM_LEFT_OUT`; empty = it does."""
     if not all(pair):
-        return "expected two names of frames"
+        return {"expected": "names"}
     if pair[0] == pair[1]:
-        return "expected two frames"
+        return {"expected": "frames"}
     if not all(map(isfinite, numbers)):
-        return "expected numbers"
+        return {"expected": "numbers"}
     if abs(sum(value * value for value in numbers[3:]) - 1.0) > TRANSFORM_LIMITS.unit:
-        return f"expected a quaternion of length 1, got {[*numbers[3:]]}"
+        return {"expected": "quaternion", "got": str([*numbers[3:]])}
     # Poses on the earth are no fault, but no mount either.
     longest_m = TRANSFORM_LIMITS.longest_m
     if max(map(abs, numbers[:3])) > longest_m and last_name(pair[0]) not in WORLD_FRAMES:
-        return f"expected at most {longest_m:g} m, got {[*numbers[:3]]}"
-    return ""
+        return {"longest_m": longest_m, "got": str([*numbers[:3]])}
+    return {}
 
 
 def _repeat(one: _Statement, numbers: _Numbers, *, last: bool) -> None:

@@ -12,11 +12,13 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from recon4.evaluation.table import number, percentage
+from recon4.findings.derived import derived_text
 from recon4.findings.drift import DriftClosed
 from recon4.findings.walk import WalkRecord, path_length_m
 from recon4.findings.wording import headline
 from recon4.mapping.tiles import Surface, TileSet, surface_text
 from recon4.model.figures import MapFigures
+from recon4.model.import_notes import derived_in
 from recon4.model.pose_graph import EdgeKind
 from recon4.model.tried_hypotheses import TriedHypothesis
 from recon4.report import chart_groups
@@ -83,6 +85,7 @@ def render(assessed: Assessment) -> str:
             placed=placed_rows(results.georeference),
             placed_charts=chart_groups.georeference_figures(results),
             imported=imported_rows(results.imported),
+            derived=[derived_text(one) for one in derived_in(results.imported)],
             changed=changed_settings(facts.settings, facts.preset),
             all_settings=_flat(asdict(facts.settings)),
             frame=_frame(facts, results),

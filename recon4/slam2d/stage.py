@@ -94,7 +94,7 @@ def _write_report(path: Path, recordings: Sequence[Path], report: ImportReport) 
             "recordings": [recording.name for recording in recordings],
             "outcome": report.outcome,
             "counts": dict(sorted(report.counts.items())),
-            "derived": report.derived,
+            "derived": to_builtins(report.derived),
             "findings": to_builtins(report.findings),
         },
     )

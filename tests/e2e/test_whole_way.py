@@ -83,7 +83,7 @@ def upload(page, walk):
     expect(page.locator("upload-box")).to_contain_text("On the server")
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
     expect(page.locator("recording-look")).to_contain_text("imu.csv, next to it")
-    expect(page.locator("recording-look")).not_to_contain_text("no rig given")
+    expect(page.locator("recording-look")).not_to_contain_text("No rig given")
     expect(page.get_by_label("Project name")).to_have_value("Office walk")
     expect(page.get_by_label("Preset")).to_have_value("indoor")
     expect(page.get_by_label("Rig").locator("option:checked")).to_have_text("rig.toml")

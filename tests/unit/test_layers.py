@@ -49,7 +49,8 @@ MAY_IMPORT = {
     "recon4/sandbox": {"recon4.sandbox", "recon4.kernels.processor"},
     "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
-    "recon4/recording/info_records.py": STAGE | {"recon4.recording", "recon4.findings.wording"},
+    "recon4/recording/info_records.py": STAGE
+    | {"recon4.recording", "recon4.findings.derived", "recon4.findings.wording"},
     "recon4/recording/report.py": STAGE | {"recon4.recording", "recon4.findings.wording"},
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}

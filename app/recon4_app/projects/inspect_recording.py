@@ -82,12 +82,14 @@ def inspect_recording(
     Args:
         path: File or folder.
         beside: Result of `files_beside`.
-        language: Of its warnings.
+        language: Of its warnings, and of what is derived.
 
     Raises:
         RecordingError: If it cannot be read or has an unknown format.
     """
+    from recon4.findings.derived import derived_text
     from recon4.findings.wording import whole_text
+    from recon4.model.derived_kinds import DerivedKind
     from recon4.recording.info import describe
 
     info = describe(path, near=beside)
@@ -102,7 +104,11 @@ def inspect_recording(
         estimated=info.estimated,
         sensors=tuple(map(_summary_of, info.sensors)),
         samples=info.samples,
-        derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
+        derived=tuple(
+            derived_text(one, language)
+            for one in info.derived
+            if one.kind is not DerivedKind.RIG_CHOSEN or "rig" not in suited
+        ),
         missing=tuple(text for text in info.missing if not _is_in(text, suited)),
         warnings=(
             *(whole_text(finding, language) for finding in info.findings),
@@ -161,11 +167,6 @@ def _is_in(text: str, beside: dict[str, str]) -> bool:
     return any(text.startswith(kind) for kind in beside) or (
         text.startswith("rig") and "rig" in beside
     )
-
-
-def _is_detected_rig(text: str, beside: dict[str, str]) -> bool:
-    """Whether a text is about a detected rig that a file beside the recording replaces."""
-    return "rig" in beside and text.startswith("no rig given")
 
 
 def _gap_warnings(seconds: list[float]) -> list[str]:

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
@@ -215,13 +216,11 @@ class Assembler:
         measured = [rate for rate in self.rotation_hz.values() if np.isfinite(rate)]
         requested = self._settings.rate_hz
         if not requested and not measured:
-            self._report.derive(
-                f"no rotation found, cut into frames at {ASSEMBLY.fallback_hz:g} Hz"
-            )
+            self._report.derive(DerivedKind.FRAMES_RATE, rate_hz=ASSEMBLY.fallback_hz, assumed=True)
             return ASSEMBLY.fallback_hz
         slowest = nominal(min(measured)) if measured else requested
         if not requested:
-            self._report.derive(f"frames at {slowest:.6g} Hz: one revolution of the slowest LiDAR")
+            self._report.derive(DerivedKind.FRAMES_RATE, rate_hz=slowest, by_rotation=True)
             return slowest
         if (
             abs(slowest / requested - round(slowest / requested)) > 0.03

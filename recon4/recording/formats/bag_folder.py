@@ -8,6 +8,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from recon4.errors import CorruptFile
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.report import ImportReport
 
@@ -60,7 +61,7 @@ def say_undescribed(folder: Path, error: CorruptFile, report: ImportReport) -> N
     if (folder / METADATA).exists():
         report.warn(FindingKind.FOLDER_DESCRIPTION, name=folder.name, error=str(error))
     else:
-        report.derive(f"{folder.name}: no {METADATA}: all files in it are one recording")
+        report.derive(DerivedKind.FILES_AS_ONE, folder=folder.name, name=METADATA)
 
 
 def _load(text: bytes) -> Any:

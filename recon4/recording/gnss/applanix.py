@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.recording.gnss.records import Dating, GnssFile
 from recon4.recording.gnss.tuning import GNSS_FILES
@@ -127,22 +128,19 @@ def _accuracies(path: Path, at_s: Array, report: ImportReport) -> Array:
     nothing = np.full((len(at_s), 3), np.nan)
     beside = next((file for file in _named_alike(path) if file.is_file()), None)
     if beside is None:
-        report.derive(
-            f"{path.name}: no smrmsg file with its accuracies lies beside it; its positions count "
-            "as single fixes"
-        )
+        report.derive(DerivedKind.POSITIONS_ACCURACY, name=path.name, absent=True)
         return nothing
     try:
         rms = _rows(beside, _Rms.COLUMNS)
     except RecordingError as error:
-        report.derive(f"accuracies of {path.name} are not read: {error}")
+        report.derive(DerivedKind.POSITIONS_ACCURACY, name=path.name, error=str(error))
         return nothing
     sound = np.isfinite(rms[:, :4]).all(axis=1) & (
         rms[:, [_Rms.NORTH, _Rms.EAST, _Rms.DOWN]] > 0.0
     ).all(axis=1)
     rms = rms[sound][np.argsort(rms[sound, 0], kind="stable")]
     if not len(rms):
-        report.derive(f"{beside.name}: no accuracy in it is a positive number")
+        report.derive(DerivedKind.POSITIONS_ACCURACY, name=beside.name, no_number=True)
         return nothing
     axes = (_Rms.NORTH, _Rms.EAST, _Rms.DOWN)
     north, east, down = (np.interp(at_s, rms[:, 0], rms[:, k]) for k in axes)
@@ -150,7 +148,7 @@ def _accuracies(path: Path, at_s: Array, report: ImportReport) -> Array:
     gap_s = np.minimum(
         np.abs(rms[near - 1, 0] - at_s), np.abs(rms[np.minimum(near, len(rms) - 1), 0] - at_s)
     )
-    report.derive(f"accuracies of {path.name} are those of {beside.name}")
+    report.derive(DerivedKind.POSITIONS_ACCURACY, name=path.name, source=beside.name)
     found = np.column_stack([east, north, down])
     return np.where((gap_s <= GNSS_FILES.rms_gap_s)[:, None], found, np.nan)
 

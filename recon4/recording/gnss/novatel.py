@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import GnssQuality
 from recon4.recording.gnss.records import FixRows, week_ns
 from recon4.recording.gnss.tuning import GNSS_FILES
@@ -134,9 +135,9 @@ class NovatelLogs:
         """The kind of message that tells most, and its fixes; says which others are not read."""
         found = Counter({name: len(rows) for name, rows in self._rows.items() if len(rows)})
         name = next((log.name for log in _LOGS if log.name in found), "")
-        others = ", ".join(f"{count} {other}" for other, count in found.items() if other != name)
+        others = ", ".join(f"{other} ({count})" for other, count in found.items() if other != name)
         if others:
-            self._report.derive(f"positions are those of {name}; not read beside them: {others}")
+            self._report.derive(DerivedKind.POSITIONS_CHOSEN, message=name, others=others)
         return name, self._rows.get(name, FixRows())
 
     def _add(self, log: _Log, fields: Sequence[object], *, week: int, second_ns: int) -> None:

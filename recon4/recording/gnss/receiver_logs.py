@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.derived_kinds import DerivedKind
 from recon4.recording.gnss.novatel import LONG_SYNC, SHORT_SYNC, NovatelLogs
 from recon4.recording.gnss.records import Dating, FixRows, GnssFile
 from recon4.recording.gnss.tuning import GNSS_FILES
@@ -142,9 +143,11 @@ def read_receiver_log(path: Path, report: ImportReport) -> GnssFile:
             f"{path.name}: no fix in this log; expected NAV-PVT, BESTPOS, INSPVA or GGA messages "
             f"with a position; {report.counted() or 'no message of these kinds'}"
         )
-    others = [f"{len(rows)} of {other}" for other, rows in found.items() if rows and other != name]
+    others = [f"{other} ({len(rows)})" for other, rows in found.items() if rows and other != name]
     if others:
-        report.derive(f"{path.name}: positions are those of {name}; not read: {', '.join(others)}")
+        report.derive(
+            DerivedKind.POSITIONS_CHOSEN, name=path.name, log=name, others=", ".join(others)
+        )
     dated = name != "NMEA" or log.nmea.is_dated
     return GnssFile(
         found[name].samples(gps=name.startswith("NovAtel")),

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import ImuSamples
 from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.mandeye.tuning import MANDEYE
@@ -115,7 +116,7 @@ def _joined(
     usual = float(np.nanmedian(lengths)) if len(lengths) and np.isfinite(lengths).any() else 0.0
     unit = STANDARD_GRAVITY_M_S2 if usual < MANDEYE.most_g else 1.0
     if unit == 1.0:
-        report.derive(f"IMU: accelerations of {usual:.3g} in {name} and others are m/s², not g")
+        report.derive(DerivedKind.FORCES_UNIT, usual=usual, name=name)
     t_ns = np.array([row[0] for row in sound], np.int64)
     samples = ImuSamples(t_ns, numbers[:, :3], numbers[:, 3:] * unit)
     return ImuFile(samples, tuple(row[7] for row in sound) if has_ids else ())

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
@@ -16,7 +17,7 @@ from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.cloud_points import model_of_points, rings_by_elevation
+from recon4.recording.cloud_points import model_of_points, rings_by_elevation, say_rings
 from recon4.recording.formats.las_records import las_points
 from recon4.recording.mandeye.folder import MandeyeWalk, WalkPart, times_ns
 from recon4.recording.mandeye.gnss import read_positions
@@ -77,7 +78,7 @@ def assigned(rig: Rig, walk: MandeyeWalk, report: ImportReport) -> dict[int, int
     for lidar, k in zip([one for one in walk.ids if one not in found], left, strict=False):
         found[lidar] = k
         if len(rows) > 1:
-            report.derive(f"{rig.sensors[k].name} is LiDAR {lidar}: the rig has no serial number")
+            report.derive(DerivedKind.SENSOR_NUMBER, sensor=rig.sensors[k].name, number=lidar)
     if not found:
         raise EmptyRecording(
             f"{walk.folder.name}: no LiDAR of the rig {rig.name!r} is in it; it has "
@@ -116,7 +117,7 @@ class MandeyeRecording:
     def read(self) -> Iterator[Shots | ImuSamples | GnssSamples]:
         """Positions, then one part after the other; a damaged file is left out and counted."""
         for path in self._walk.positions:
-            self._report.derive("positions have the times at which the device received them")
+            self._report.derive(DerivedKind.POSITIONS_BY_ARRIVAL, by_device=True)
             try:
                 fixes = read_positions(path, self._report)
             except CorruptFile as error:
@@ -146,7 +147,7 @@ class MandeyeRecording:
         rows = read_imu(part.imu, self._report)
         if rows.ids and self._imu_of not in rows.ids and self._imu_is_free:
             self._imu_of = min(rows.ids)
-            self._report.derive(f"IMU: number {self._imu_of} is read, that of no LiDAR")
+            self._report.derive(DerivedKind.IMU_CHOSEN, number=self._imu_of)
         self._imu_is_free &= not rows.ids
         samples = rows.of(self._imu_of)
         self._report.count("imu_samples_not_read", len(rows.samples.t_ns) - len(samples.t_ns))
@@ -180,8 +181,8 @@ class MandeyeRecording:
         ring = np.zeros(len(xyz), np.uint8)
         if lidar_model(sensor.model).has_rings:
             elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
-            ring, how = rings_by_elevation(sensor.model, elevation)
-            self._report.derive(f"{sensor.name}: no rings in the files, {how}")
+            ring, bands = rings_by_elevation(sensor.model, elevation)
+            say_rings(self._report, sensor.name, bands, in_files=True)
         shots = Shots(row, t_ns, xyz, intensity, ring, np.zeros(len(xyz), np.uint8))
         return moved(shots, round(sensor.time_offset_s * 1e9))
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import RecordingError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.lidars import LIDARS
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.report import ImportReport
@@ -70,9 +71,9 @@ def read_status(paths: Iterable[Path], report: ImportReport) -> DeviceStatus:
         if found.models:
             break
     if found.device:
-        report.derive(f"recorded by {found.device}")
+        report.derive(DerivedKind.DEVICE, device=found.device)
     if not found.is_synced and len(found.models) > 1:
-        report.derive("the device states that its LiDARs had no common source of time")
+        report.derive(DerivedKind.DEVICE_CLOCKS)
     return found
 
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.rig import Rig, load_rig
 from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.datagrams import address_text
@@ -73,7 +74,7 @@ def _rig_of_devices(streams: Sequence[Stream], request: OpenRequest) -> Rig:
     if len(found) < 2 or len(mounted) < len(found):
         return choose_rig(streams, request.report)
     names = ", ".join(f"{s.name} ({s.model}, {s.serial})" for s in mounted)
-    request.report.derive(f"no rig given: {names} are mounted as the file says")
+    request.report.derive(DerivedKind.RIG_CHOSEN, sensors=names, by_file=True)
     return with_lidars(heads, mounted)
 
 
@@ -95,9 +96,7 @@ def _scan_rig(files: Sequence[Path], request: OpenRequest) -> Rig | None:
         return rig if kinds <= {"laser2d", "profiler"} else None
     if not scan_streams(files).heads:
         return None
-    request.report.derive(
-        f"no rig given: line scans, the mounting of the preset {WUERZBURG} is used"
-    )
+    request.report.derive(DerivedKind.RIG_CHOSEN, preset=WUERZBURG, line_scans=True)
     return load_rig(WUERZBURG)
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import EmptyRecording
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
@@ -161,7 +163,9 @@ class PacketCapture:
                 self._claimed.add((stream.source, stream.port))
                 streams = tuple(replace(stream, file=path) for path in self._paths)
                 self._channels.append(self._channel(row, streams))
-                self._report.derive(f"{sensor.name}: sends only later, from {stream.label}")
+                self._report.derive(
+                    DerivedKind.SENSOR_LATER, sensor=sensor.name, sender=stream.label
+                )
 
     def _decode(
         self, channel: _Channel, path: Path, datagrams: Datagrams
@@ -250,8 +254,7 @@ class PacketCapture:
         own = [s.label for s in self.streams if s.kind == "IMU" and s.port == self.rig.imu_port]
         named = [s for s in self.rig.sensors if s.name == self.rig.imu_sensor]
         if own and any(lidar_model(sensor.model).has_imu for sensor in named):
-            name = named[0].name
-            self._report.derive(f"IMU: that in {name} is read, as the rig says, not {own[0]}")
+            self._report.derive(DerivedKind.IMU_CHOSEN, sensor=named[0].name, other=own[0])
             return ""
         return next(iter(own), "")
 
@@ -339,9 +342,14 @@ def _match(
         chosen[row] = streams
         left.remove(streams)
         likely.remove(streams)
+        expected = sensors[row].address
+        where: dict[str, Value] = {"address": expected} if expected else {"anywhere": True}
         report.derive(
-            f"{sensors[row].name}: taken from {streams[0].label}, the rig expects "
-            f"{sensors[row].address or 'any address'} to port {sensors[row].port}"
+            DerivedKind.SENSOR_ELSEWHERE,
+            sensor=sensors[row].name,
+            sender=streams[0].label,
+            port=sensors[row].port,
+            **where,
         )
     for streams in left:
         report.warn(FindingKind.PACKETS_UNASSIGNED, sender=streams[0].label)

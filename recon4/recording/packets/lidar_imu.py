@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from recon4.geometry.se3 import SE3
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.imu_mounts import with_imu_of
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
@@ -46,8 +47,7 @@ class LidarImu:
         left_out = [name for name in with_imu if name != self._chosen]
         if left_out and (self._chosen or other):
             report.derive(
-                f"IMU: {self._chosen or other} is read, not that of {', '.join(left_out)} "
-                "(another one: [imu] sensor = NAME in the rig file)"
+                DerivedKind.IMU_CHOSEN, read=self._chosen or other, others=", ".join(left_out)
             )
 
     def of(self, name: str, samples: PacketSamples) -> PacketSamples:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.packets.tuning import CLOCKS
@@ -140,9 +141,7 @@ class SensorClock:
         past = int(np.count_nonzero(t_us >= HOUR_US))
         self._report.count("packets_past_hour", past)
         if past:
-            self._report.derive(
-                f"{self._name}: its timestamps run on past the full hour (3600 s): continued"
-            )
+            self._report.derive(DerivedKind.CLOCK_PAST_HOUR, sensor=self._name)
 
     def _continued(self, t_us: NDArray[np.integer], expected: Times) -> NDArray[np.int64]:
         """Stamps with the wraps of a counter that runs on past the hour added [µs], (N,)."""
@@ -195,8 +194,7 @@ class SensorClock:
         offset += round((known - offset) / HOUR_NS) * HOUR_NS
         if self.utc_offset_ns is not None:
             self._report.derive(
-                f"{self._name}: the hour is from its GPS; the recorder's clock is "
-                f"{-offset / SECOND_NS:+.3f} s off UTC"
+                DerivedKind.CLOCK_BY_GPS, sensor=self._name, off_s=-offset / SECOND_NS
             )
         elif abs(offset - known) > CLOCKS.same_clock_ns:
             self._free_running, self._base_ns = True, known
@@ -213,10 +211,12 @@ class SensorClock:
         self._report.count(f"clock_runs_freely_{self._name}")
         ahead_s = offset_ns / SECOND_NS
         if self._alone:
-            whole = "" if self.past_hour else " and whole hours"
             self._report.derive(
-                f"{self._name}: its clock is {ahead_s:+.3f} s{whole} off the recorder's and no GPS "
-                "drives it: its times are shifted to the recorder's clock"
+                DerivedKind.CLOCK_SHIFTED,
+                sensor=self._name,
+                ahead_s=ahead_s,
+                hours=not self.past_hour,
+                past_hour=self.past_hour,
             )
             return
         hours = not self.past_hour

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.recording.formats.bags import CLOUD, Bag, BagTopic
@@ -15,8 +16,13 @@ from recon4.recording.formats.cloud_tables import cloud_lists
 from recon4.recording.lidar_choice import CloudTopic
 from recon4.recording.recipes.apply import Columns, chosen_list
 from recon4.recording.recipes.check import RecipeSample, require_fitting
-from recon4.recording.recipes.propose import Proposal, overlooked, propose
-from recon4.recording.recipes.refuse import proposal_text, with_doubts
+from recon4.recording.recipes.propose import (
+    Proposal,
+    proposal_values,
+    propose,
+    say_overlooked,
+)
+from recon4.recording.recipes.refuse import with_doubts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.topic_contents import read_contents
@@ -40,10 +46,6 @@ class UnknownPoints:
             name, "generic", topic=name, frame=self.frame, points=self.points,
             fields=self.proposal.recipe,
         )  # fmt: skip
-
-    def text(self) -> str:
-        """What it has, and the recipe for it."""
-        return proposal_text(self.topic.name, self.proposal)
 
 
 def declared_recipes(
@@ -143,17 +145,26 @@ def _count(lists: Mapping[str, Columns]) -> int:
     return int(np.max([len(c) for one in lists.values() for c in one.values()], initial=0))
 
 
-def overlooked_columns(bag: Bag, clouds: Iterable[CloudTopic]) -> list[str]:
-    """Columns of clouds that are read, which look like times, rings or intensities by a recipe.
+def say_columns(
+    bag: Bag,
+    clouds: Iterable[CloudTopic],
+    unknown: Iterable[UnknownPoints],
+    *,
+    report: ImportReport,
+) -> None:
+    """State columns that are not read and look like times, rings, intensities or places.
 
     Args:
         bag: An open bag.
         clouds: Those that are read.
+        unknown: Those that are not.
+        report: Receives them, each with a recipe.
     """
+    for one in unknown:
+        values = proposal_values(one.proposal)
+        report.derive(DerivedKind.COLUMNS_UNKNOWN, topic=one.topic.name, **values)
     lacking = [one.topic for one in clouds if one.detail < one.FULL_DETAIL and one.has_places]
-    texts = []
     for name, sample in bag_samples(bag, [t for t in lacking if t.name not in bag.recipes]).items():
         proposal = with_doubts(propose(name, sample.largest, sample.period_s), sample)
         for columns in sample.largest.values():
-            texts += overlooked(name, proposal, columns)
-    return texts
+            say_overlooked(name, proposal, columns, report=report)

@@ -10,7 +10,7 @@ from recon4.model.point_recipes import PointRecipe
 from recon4.recording.formats.cloud_files import Table, read_cloud
 from recon4.recording.formats.point_messages import POINTS
 from recon4.recording.recipes.check import RecipeSample, require_fitting
-from recon4.recording.recipes.propose import overlooked, propose
+from recon4.recording.recipes.propose import propose, say_overlooked
 from recon4.recording.recipes.refuse import require_known, with_doubts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
@@ -46,8 +46,7 @@ def require_fields(
     columns = sample.largest[POINTS]
     proposal = with_doubts(propose(folder, sample.largest, period_s), sample)
     if {"x", "y", "z"} <= set(columns):
-        for text in overlooked(folder, proposal, columns):
-            report.derive(text)
+        say_overlooked(folder, proposal, columns, report=report)
     elif proposal.recipe is not None:
         stream = Stream(folder, "generic", fields=proposal.recipe)
         require_known([(stream, proposal)], folder)

@@ -10,6 +10,8 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.point_recipes import (
     ANGLES,
     LENGTHS,
@@ -29,7 +31,8 @@ from recon4.recording.point_fields import (
     find_field,
 )
 from recon4.recording.recipes.apply import Columns
-from recon4.recording.tuning import RECIPES
+from recon4.recording.report import ImportReport
+from recon4.recording.tuning import LISTED, RECIPES
 
 _NAMES: Mapping[str, tuple[str, ...]] = {
     "x": ("x", "px", "posx", "xpos", "cx", "forward"),
@@ -112,24 +115,43 @@ def propose(name: str, lists: Mapping[str, Columns], period_s: float) -> Proposa
 _COMMON = {"time": (EXACT_TIME, *TIME_FIELDS), "ring": RING_FIELDS, "intensity": INTENSITY_FIELDS}
 
 
-def overlooked(name: str, proposal: Proposal, columns: Columns) -> list[str]:
-    """A sentence if columns of points that are read look like what is missing otherwise.
+def proposal_values(proposal: Proposal) -> dict[str, Value]:
+    """A proposal as values of `DerivedKind.COLUMNS_UNKNOWN`."""
+    if proposal.recipe is None:
+        names = ", ".join(column[:40] for column in proposal.columns[: LISTED.names])
+        return {"columns": names}
+    return {"recipe": proposal.recipe.toml()} | _doubts(proposal)
+
+
+def _doubts(proposal: Proposal) -> dict[str, Value]:
+    return {"doubts": "; ".join(proposal.uncertain)} if proposal.uncertain else {}
+
+
+def say_overlooked(
+    name: str, proposal: Proposal, columns: Columns, *, report: ImportReport
+) -> None:
+    """State which columns of points that are read look like what is missing otherwise.
 
     Args:
         name: Topic or file.
         proposal: For the same columns.
         columns: With the common names x, y, z.
+        report: Receives them, with a recipe.
     """
     recipe = proposal.recipe
     if recipe is None:
-        return []
+        return
     more = [r for r in _COMMON if r in recipe.terms and not find_field(columns, _COMMON[r])]
     if not more:
-        return []
+        return
     texts = dict(recipe.texts)
-    found = ", ".join(f"{role} may be {texts[role]}" for role in more)
-    doubts = f" (uncertain: {'; '.join(proposal.uncertain)})" * bool(proposal.uncertain)
-    return [f"{name}: {found}: read with {recipe.toml()} in a rig file{doubts}"]
+    report.derive(
+        DerivedKind.COLUMNS_OVERLOOKED,
+        where=name,
+        columns=", ".join(f"{role} = {texts[role]}" for role in more),
+        recipe=recipe.toml(),
+        **_doubts(proposal),
+    )
 
 
 def _count(columns: Columns) -> int:

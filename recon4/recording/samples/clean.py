@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
@@ -101,7 +102,7 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     found = _sorted(usable, offset_s, "gnss", report=report)
     report.count("gnss_kept", len(found))
     if len(found) and not np.isfinite(found.height_m).any():
-        report.derive("no GNSS position has a height: they cannot place the map")
+        report.derive(DerivedKind.HEIGHTS_MISSING)
     if not len(found):
         report.warn(
             FindingKind.GNSS_EMPTY,

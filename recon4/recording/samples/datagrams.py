@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.packets.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.report import ImportReport
@@ -148,7 +149,7 @@ class SampleDecoder:
         t_ns = fix.utc_ns
         if abs(t_ns - arrival_ns) > NMEA.utc_within_ns:
             t_ns = arrival_ns
-            self.report.derive("NMEA: timed by arrival, its UTC is not the points' clock")
+            self.report.derive(DerivedKind.POSITIONS_BY_ARRIVAL, nmea=True)
         fresh = arrival_ns - self._sd[0] < NMEA.gst_lasts_ns
         sd = self._sd[1] if fresh else [math.nan] * 3
         place = [fix.lat_deg, fix.lon_deg, fix.height_m]

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.geometry.se3 import Array, so3_exp
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -19,9 +20,6 @@ GyroUnit = Literal["auto", "rad_s", "deg_s"]
 
 _ACCEL_UNITS = {"g": STANDARD_GRAVITY_M_S2, "mg": 1e-3 * STANDARD_GRAVITY_M_S2, "cm/s²": 1e-2}
 """Units in which sensors state accelerations, and their m/s²."""
-
-
-_FAST = "IMU: a tenth of its angular rates is above {:.1f}"
 
 
 def in_rad_s(imu: ImuSamples, unit: GyroUnit, report: ImportReport) -> ImuSamples | None:
@@ -47,13 +45,12 @@ def in_rad_s(imu: ImuSamples, unit: GyroUnit, report: ImportReport) -> ImuSample
     if unit == "auto" and high <= IMU_UNITS.fastest_rad_s and not by_gravity:
         # The LiDARs decide: `recon4.findings.witnesses.imu` names it if they do not agree.
         report.count(GYRO_UNIT_ASSUMED, len(imu))
-        report.derive(f"{_FAST.format(high)}: taken as rad/s ({np.rad2deg(high):.0f} deg/s)")
+        high_deg_s = float(np.rad2deg(high))
+        report.derive(DerivedKind.TURNS_UNIT, high=high, high_deg_s=high_deg_s, kept=True)
         return imu
     report.count("imu_gyro_scaled", len(imu))
-    found = (
-        f"; against it: ingest.imu_gyro_unit=rad_s ({_FAST.format(high)})" if unit == "auto" else ""
-    )
-    report.derive(f"IMU: angular rates are in deg/s, stored in rad/s{found}")
+    by_content = unit == "auto"
+    report.derive(DerivedKind.TURNS_UNIT, high=high, converted=True, by_content=by_content)
     return replace(imu, gyro_rad_s=np.deg2rad(imu.gyro_rad_s))
 
 
@@ -78,7 +75,7 @@ def in_m_s2(imu: ImuSamples, report: ImportReport) -> ImuSamples:
         g = usual * scale / STANDARD_GRAVITY_M_S2
         if least_g < g < most_g and constant > IMU_UNITS.constant * usual:
             report.count("imu_accel_scaled", len(accel))
-            report.derive(f"accelerometer was in {unit} (median length {usual:.3g}), now in m/s²")
+            report.derive(DerivedKind.FORCES_UNIT, unit=unit, usual=usual)
             return replace(imu, accel_m_s2=imu.accel_m_s2 * scale)
     report.warn(FindingKind.ACCELEROMETER_UNIT, usual=usual)
     return replace(imu, accel_m_s2=np.full_like(imu.accel_m_s2, np.nan))
@@ -94,8 +91,9 @@ def in_degrees(gnss: GnssSamples, report: ImportReport) -> GnssSamples:
     if not len(lat) or not inside.all() or np.median(np.hypot(lat, lon)) < GNSS_UNITS.near_zero_deg:
         return gnss
     report.derive(
-        f"positions were in radians (latitude {np.median(lat):.6f}, longitude "
-        f"{np.median(lon):.6f}), now in degrees"
+        DerivedKind.POSITIONS_UNIT,
+        lat_rad=float(np.median(lat)),
+        lon_rad=float(np.median(lon)),
     )
     return replace(gnss, lat_rad=lat, lon_rad=lon)
 

@@ -17,7 +17,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, spin
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 SETTINGS = IngestSettings(min_range_m=0.5)
 
@@ -53,7 +53,7 @@ def test_one_revolution_becomes_one_frame():
     assert [frame.frame_id for frame in frames] == list(range(10))
     assert [frame.t_ns - T0_NS for frame in frames] == [k * 100_000_000 for k in range(10)]
     assert assembler.rotation_hz["lidar"] == pytest.approx(10.0, abs=0.02)
-    assert any("10 Hz" in text for text in report.derived)
+    assert any("10 Hz" in text for text in derivations(report))
 
 
 def test_no_point_is_lost_or_changed():

@@ -19,7 +19,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud, room_packets, storage_file, write_room_bag
 from tests.builders import Bag as BagFile
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 KINDS = ("bag1", "db3", "mcap")
 
@@ -77,7 +77,7 @@ def test_a_folder_without_its_description_is_read_file_by_file(rooms, tmp_path):
     report = ImportReport()
 
     assert len(messages(folder, report)) == len(messages(rooms["db3"]))
-    assert any("no metadata.yaml" in text for text in report.derived)
+    assert any("no metadata.yaml" in text for text in derivations(report))
     assert not report.findings
 
 
@@ -260,7 +260,7 @@ def test_raw_packets_win_over_clouds(tmp_path):
     _, report, recording = read(path)
 
     assert recording.rig.sensors[0].topic == "/velodyne_packets"
-    assert any("not /velodyne_points" in text for text in report.derived)
+    assert any("not /velodyne_points" in text for text in derivations(report))
     assert {t.type for t in recording.topics} == {"velodyne_msgs/msg/VelodyneScan", CLOUD}
 
 
@@ -274,7 +274,7 @@ def test_topics_named_like_the_preset_get_its_mounting(tmp_path):
 
     assert recording.rig.name == "4RECON"
     assert [s.topic for s in recording.rig.sensors] == list(topics)
-    assert any("match the preset" in text for text in report.derived)
+    assert any("match the preset" in text for text in derivations(report))
 
 
 def test_two_unknown_sensors_need_a_rig(tmp_path):
@@ -285,7 +285,7 @@ def test_two_unknown_sensors_need_a_rig(tmp_path):
 
     _, report, recording = read(path, load_rig("4recon"))
     assert [s.topic for s in recording.rig.sensors] == ["/a", "/b"]
-    assert any("horizontal is topic /a" in text for text in report.derived)
+    assert any("horizontal is topic /a" in text for text in derivations(report))
 
 
 def test_a_missing_second_sensor_is_said(tmp_path):

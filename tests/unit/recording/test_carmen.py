@@ -16,7 +16,7 @@ from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.report import ImportReport
 from tests.laser_rows import angles_of, rows_of
 from tests.planar_walks import carmen_lines, furnished_room, scanned, write_carmen
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 HEAD = "PARAM robot_frontlaser_offset 0.0 nohost 0\n"
 
@@ -157,7 +157,7 @@ def test_the_repeated_largest_range_is_no_return(tmp_path):
 
     assert np.isnan(rows_of(scans)[:, 2:]).all()
     assert np.isfinite(rows_of(scans)[:, :2]).all()
-    assert "no return" in report.derived[0]
+    assert "no return" in derivations(report)[0]
 
 
 def test_numbers_that_are_no_ranges_are_counted(tmp_path):
@@ -192,7 +192,7 @@ def test_corrected_poses_of_the_laser_are_not_taken_as_odometry(tmp_path):
     scans, report = read(tmp_path / "log", text)
 
     np.testing.assert_allclose(scans.odometry[:, 0], np.arange(20.0))
-    assert "corrected" in " ".join(report.derived)
+    assert "corrected" in " ".join(derivations(report))
 
 
 def test_the_pose_of_the_laser_is_used_where_it_is_mounted_off_the_center(tmp_path):
@@ -210,7 +210,7 @@ def test_odometry_that_never_changes_is_not_used(tmp_path):
     scans, report = read(tmp_path / "log", flaser([2.0] * 4, 1.0) + flaser([2.5] * 4, 2.0))
 
     assert scans.odometry is None
-    assert "never changes" in " ".join(report.derived)
+    assert "never changes" in " ".join(derivations(report))
 
 
 def test_each_scan_of_a_log_has_its_own_beams(tmp_path):
@@ -259,7 +259,7 @@ def test_rawlaser_has_no_odometry(tmp_path):
     assert scans.odometry is None
     assert scans.angle_min_rad.tolist() == [-1.5, -1.5]
     np.testing.assert_array_equal(scans.ranges(0), [1.0, 2.0, 3.0, np.nan])
-    assert "no odometry" in " ".join(report.derived)
+    assert "No odometry" in " ".join(derivations(report))
 
 
 def test_a_log_without_scans_is_refused(tmp_path):
@@ -319,7 +319,7 @@ def test_a_log_of_the_rear_laser_alone_is_read_and_looks_backward(tmp_path, walk
     assert scans.beams.tolist() == walk.scans.beams.tolist()
     turn = scans.odometry[:, 2] - walk.scans.odometry[:, 2]
     np.testing.assert_allclose(turn, np.pi, atol=1e-6)
-    assert any("looks backward" in note for note in report.derived) is not turned
+    assert any("looks backward" in note for note in derivations(report)) is not turned
 
 
 def test_the_front_laser_goes_before_the_rear_one(tmp_path, walk):

@@ -14,6 +14,7 @@ from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud, write_pcd
 from tests.unit.recording.ingested import run
 from tests.unit.recording.test_mandeye import RIG, imu_of, joined, read, room_of_mid360, write_walk
+from tests.warned import derivations
 
 RATE, LATE_NS = 250e-6, 3_000_000_000
 SECOND = replace(RIG.sensors[1], time_offset_s=LATE_NS / 1e9, clock_rate_ppm=1e6 * RATE)
@@ -38,7 +39,7 @@ def test_points_and_imu_of_a_slow_lidar_are_put_right(tmp_path):
     t_ns = np.concatenate([first.t_ns, rest.t_ns])
     assert np.abs(t_ns - truth.t_ns).max() <= 2
     assert np.abs(samples.t_ns + LATE_NS - imu.t_ns).max() <= 2
-    assert "corrected by +250.0 µs a second" in report.derived[0]
+    assert "corrected by +250.0 µs a second" in derivations(report)[0]
 
 
 def test_a_walk_of_two_lidars_has_one_time(tmp_path):

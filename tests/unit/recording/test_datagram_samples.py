@@ -8,6 +8,7 @@ import pytest
 
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
+from tests.warned import derivations
 
 NOON_NS = 1_790_000_000_000_000_000 // 86_400_000_000_000 * 86_400_000_000_000 + 43_200 * 10**9
 _GGA = b"GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001"
@@ -37,7 +38,7 @@ def test_where_gps_drives_a_lidar_samples_are_on_utc_whatever_the_laptop_says(wr
     assert imu.t_ns.tolist() == [NOON_NS + 50_000_000]
     assert gnss.t_ns.tolist() == [NOON_NS]
     assert gnss.quality.tolist() == [4]
-    assert not report.derived
+    assert not derivations(report)
 
 
 def test_an_absolute_time_is_left_alone():

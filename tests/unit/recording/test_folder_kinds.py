@@ -22,6 +22,7 @@ from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from tests.builders import room_cloud, write_pcd
 from tests.unit.recording.ingested import frame_folder, imu_csv, run
+from tests.warned import derivations
 
 
 def test_a_folder_with_recordings_of_two_kinds_is_refused_and_both_are_named(tmp_path, pcap):
@@ -42,7 +43,7 @@ def test_a_mesh_beside_a_recording_is_passed_over_and_said(tmp_path, pcap):
     recording = open_recording(OpenRequest((folder,), None, IngestSettings(), report))
 
     assert recording.kind == RecordingKind.PCAP
-    assert "model.ply is a mesh, not a recording: passed over" in report.derived
+    assert "model.ply is a mesh, not a recording: passed over." in derivations(report)
 
 
 def test_a_mesh_alone_is_no_recording(tmp_path, pcap):

@@ -17,6 +17,7 @@ from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.report import ImportReport
 from tests import gnss_logs as logs
 from tests.gnss_logs import BEGIN_NS, PLACE
+from tests.warned import derivations
 
 LAT, LON, HEIGHT = PLACE
 QUARTER_NS = 250_000_000
@@ -181,7 +182,9 @@ def test_what_of_a_novatel_log_is_not_read_is_said(tmp_path):
 
     assert found.what == "GNSS positions (NovAtel INSPVAX)"
     assert np.isnan(found.samples.rpy_ned_rad).any(axis=1).tolist() == [False, True]
-    assert report.derived == ["positions are those of INSPVAX; not read beside them: 1 BESTPOS"]
+    assert derivations(report) == [
+        "Positions are those of INSPVAX; not read beside them: BESTPOS (1)."
+    ]
     assert report.counts["gnss_no_fix"] == 1
     with pytest.raises(EmptyRecording, match=r"no fix in this log.*gnss_no_fix=2"):
         read(tmp_path, logs.bestpos(kind=0) * 2)
@@ -222,7 +225,7 @@ def test_an_sbet_is_of_the_week_of_the_points_with_the_accuracies_beside_it(tmp_
     assert np.rad2deg(samples.rpy_ned_rad[0]) == pytest.approx([1, 2, 30])
     assert samples.sd_enu_m[0] == pytest.approx([0.01, 0.02, 0.03])
     assert set(samples.quality) == {GnssQuality.RTK_FIXED}
-    assert report.derived == ["accuracies of sbet_walk.out are those of smrmsg_walk.out"]
+    assert derivations(report) == ["Accuracies of sbet_walk.out are those of smrmsg_walk.out."]
 
 
 def test_an_sbet_without_accuracies_is_no_fixed_solution(tmp_path):
@@ -230,7 +233,7 @@ def test_an_sbet_without_accuracies_is_no_fixed_solution(tmp_path):
     found = read(tmp_path, logs.sbet(), "walk.sbet", report).samples
     assert set(found.quality) == {GnssQuality.SINGLE}
     assert np.isnan(found.sd_enu_m).all()
-    assert "no smrmsg file" in report.derived[0]
+    assert "no smrmsg file" in derivations(report)[0]
 
 
 def test_what_is_no_file_of_a_receiver_is_said_as_such(tmp_path):
@@ -296,7 +299,9 @@ def test_utc_of_a_solution_is_that_of_the_receivers_own_messages(data):
     assert np.array_equal(solution.quality, own.quality)
     # That solution has heights above sea level, and does not say so.
     assert np.median(solution.height_m - own.height_m) == pytest.approx(21.39, abs=0.01)
-    assert report.derived == ["gnss_1730.ubx: positions are those of UBX; not read: 536 of NMEA"]
+    assert derivations(report) == [
+        "gnss_1730.ubx: positions are those of UBX; not read: NMEA (536)."
+    ]
 
 
 def test_an_aircraft_flies_where_its_sbet_heads(data):

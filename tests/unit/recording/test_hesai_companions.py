@@ -19,7 +19,7 @@ from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.unit.recording.hesai_mirrors import mirror_table
 from tests.unit.recording.hesai_packets import WIDE, packet_sensor, table_of
 from tests.unit.recording.test_hesai_packets import decoded_with, spin
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 XT32 = MODELS["XT32"]
 
@@ -45,7 +45,7 @@ def test_the_table_with_as_many_rows_beside_the_recording_is_used():
     elevation, report = height_of_lowest(other, imu, table_of(moved(XT32.angles, 0.2)))
 
     assert elevation == pytest.approx(-15.8, abs=1e-3)
-    assert report.derived == ["lidar: angles of its beams from correction.csv"]
+    assert derivations(report) == ["lidar: angles of its beams from correction.csv."]
     assert not report.findings
 
 
@@ -173,4 +173,4 @@ def test_a_table_beside_a_capture_is_found(tmp_path):
     capture = PacketCapture(paths, rig_to_complete, settings=WIDE, report=report)
 
     assert capture.rig.sensors[0].model == "XT32"
-    assert any("angles of its beams from correction.csv" in text for text in report.derived)
+    assert any("angles of its beams from correction.csv" in text for text in derivations(report))

@@ -26,6 +26,7 @@ from recon4.simulation.families.families import family_of
 from recon4.simulation.packets import Packets, pack, pack_imu, put_imu, stamped, write_packets
 from recon4.simulation.setup import imu_samples, prepare, rig_of_lidars
 from recon4.store.frames import FrameStore
+from tests.warned import derivations
 
 OFFSET_S, SECONDS = 0.25, 0.4
 
@@ -108,7 +109,7 @@ def test_an_imu_beside_the_one_that_the_rig_names_is_not_mixed_with_it(walks, tm
 
     assert len(store.imu) == len(walk.imu)
     assert store.report["counts"]["imu_samples_not_read"] == len(walk.imu)
-    assert any("as the rig says, not" in text for text in store.report["derived"])
+    assert any("as the rig says, not" in text for text in derivations(store.report))
 
 
 def test_a_calibration_moves_lidar_and_imu_by_what_it_found():
@@ -141,7 +142,7 @@ def test_samples_of_packets_and_of_a_topic_are_not_mixed(walks, tmp_path):
 
     assert 0 < len(in_packets) < len(walk.imu) + 2
     assert (np.diff(in_packets.t_ns) > 0).all()
-    assert any("is read, as the rig says, not /imu/data" in text for text in report.derived)
+    assert any("is read, as the rig says, not /imu/data" in text for text in derivations(report))
     assert len(of_topic) == len(unnamed) == len(walk.imu)
     np.testing.assert_array_equal(of_topic.gyro_rad_s, unnamed.gyro_rad_s)
 

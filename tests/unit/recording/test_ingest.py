@@ -15,7 +15,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from tests.builders import T0_NS, room_cloud, write_pcd, write_room_bag, write_room_pcap
 from tests.unit.recording.ingested import frame_folder, imu_csv, run
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 # -- from recording to frame store
 
@@ -28,8 +28,8 @@ def test_a_pcap_becomes_frames_of_one_revolution(pcap, tmp_path):
     assert store.report["rig"] == "single VLP-16"
     assert store.report["sensors"][0]["rotation_hz"] == pytest.approx(10.0, abs=0.02)
     assert store.report["points"] == store.points == store.report["sensors"][0]["points"]
-    assert any("no rig given" in text for text in store.report["derived"])
-    assert any("no IMU" in text for text in store.report["derived"])
+    assert any("No rig given" in text for text in derivations(store.report))
+    assert any("No IMU" in text for text in derivations(store.report))
 
 
 def test_points_lie_on_the_walls_of_the_room(pcap, tmp_path):
@@ -63,7 +63,7 @@ def test_a_given_imu_replaces_the_recordings(tmp_path):
     store = run(bag, out=tmp_path / "o", imu=imu_csv(tmp_path / "imu.csv", count=50))
 
     assert len(store.imu) == 50
-    assert any("those of the CSV file" in text for text in store.report["derived"])
+    assert any("those of the CSV file" in text for text in derivations(store.report))
 
 
 def test_two_sensors_in_one_file_are_told_apart_by_port(tmp_path):
@@ -73,7 +73,7 @@ def test_two_sensors_in_one_file_are_told_apart_by_port(tmp_path):
 
     assert store.rig.name == "4RECON"
     assert np.bincount(store[1].sensor).tolist()[0] == np.bincount(store[1].sensor).tolist()[1]
-    assert any("match the preset 4RECON" in text for text in store.report["derived"])
+    assert any("match the preset 4RECON" in text for text in derivations(store.report))
 
 
 def test_two_sensors_in_two_files_are_one_recording(tmp_path):

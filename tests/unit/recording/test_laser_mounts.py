@@ -23,7 +23,7 @@ from recon4.slam2d.stage import import_scans
 from tests.builders import T0_NS, bag_path
 from tests.planar_walks import cast, furnished_room
 from tests.robot_bags import RobotBag, mount
-from tests.warned import K, kinds, warned, words
+from tests.warned import K, derivations, kinds, warned, words
 
 ANGLES = np.deg2rad(np.linspace(-130.0, 140.0, 181))
 STEP_NS = 100_000_000
@@ -65,7 +65,7 @@ def mounted(path, by_rig=None):
 
 
 def said(report):
-    return " | ".join([*report.derived, words(report)])
+    return " | ".join([*derivations(report), words(report)])
 
 
 def assert_on_walls(scans, lasers):
@@ -104,7 +104,7 @@ def test_info_says_how_the_laser_is_mounted(tmp_path):
 
     text = "\n".join(describe(path).lines())
 
-    assert "the laser is upside down" in text
+    assert "The laser is upside down" in text
     assert "/tf_static: base_link -> laser xyz 0.200 0.100 0.300 m, roll 180.0" in text
 
 
@@ -154,7 +154,7 @@ def test_a_mount_that_only_tf_repeats_is_read(tmp_path, kind):
     found, report = mounted(path)
 
     assert found.mount is not None and found.mount.is_upside_down
-    assert "the laser is upside down" in said(report)
+    assert "The laser is upside down" in said(report)
     assert MOUNT_DOUBTS.isdisjoint(kinds(report))
 
 

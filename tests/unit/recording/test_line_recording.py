@@ -22,7 +22,7 @@ from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
 from tests.laser_rows import rows_of, with_times
 from tests.robot_bags import mount
-from tests.warned import K, findings_of, kinds, warned
+from tests.warned import K, derivations, findings_of, kinds, warned
 
 START_NS = 1_700_000_000_000_000_000
 LINE_NS = 10_000_000
@@ -75,7 +75,7 @@ def test_a_shot_lies_where_the_head_pointed_at_its_time(tmp_path):
     assert len(lines) == 300
     assert np.allclose(lines.head_rad, np.deg2rad(50.0) * 0.01 * np.arange(300), atol=1e-6)
     assert np.all(lines.points == SHOTS)
-    assert any("preset wuerzburg" in text for text in store.report["derived"])
+    assert any("preset wuerzburg" in text for text in derivations(store.report))
 
 
 def test_a_head_of_constant_rate_needs_no_angles(tmp_path):

@@ -20,6 +20,7 @@ from recon4.recording.packets.livox.recognition import livox_of_points
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, WIDE, sensor
+from tests.warned import derivations
 
 NAMES = [f"SDK{layout.sdk} type {layout.data_type}" for layout in LAYOUTS]
 MID360 = next(one for one in LAYOUTS if (one.sdk, one.data_type) == (2, 1))
@@ -196,7 +197,7 @@ def test_sums_that_are_never_right_are_not_checked_and_wrong_ones_are_announced(
         report = ImportReport()
 
         assert opened(MID360, datagrams(payloads), report=report).sound(payloads).all()
-        assert ["CRC" in text for text in report.derived] == [True] * said
+        assert ["CRC" in text for text in derivations(report)] == [True] * said
 
 
 @pytest.mark.parametrize("sdk", [1, 2])

@@ -18,7 +18,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.lvx_files import lvx
 from tests.unit.recording.test_livox_packets import AVIA, MID360, opened, packets, walls
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 VERSIONS = {(1, 0): AVIA, (1, 1): AVIA, (2, 0): MID360}
 
@@ -169,7 +169,7 @@ def test_a_file_opens_as_a_recording_with_points_and_imu(tmp_path):
     assert sum(map(len, samples)) == 20
     np.testing.assert_array_equal(np.concatenate([s.t_ns for s in samples]), t_ns[::10])
     assert min(s.t_ns[0] for s in shots if len(s)) == t_ns[0]
-    assert not report.findings and "CRC" not in str(report.derived)
+    assert not report.findings and "CRC" not in str(derivations(report))
     assert "Mid-360" in "\n".join(describe(path).lines())
 
 
@@ -185,7 +185,7 @@ def test_several_devices_are_sensors_mounted_as_the_file_says(tmp_path):
 
     assert [sensor.model for sensor in rig.sensors] == ["Mid-360", "Mid-360"]
     np.testing.assert_allclose(rig.sensors[1].T_body_sensor.t, [-0.2, 0.0, 0.1], atol=1e-6)
-    assert "mounted as the file says" in report.derived[0]
+    assert "mounted as the file says" in derivations(report)[0]
     path.write_bytes(lvx(rows, version=(2, 0), extrinsics=(None, None)))
     with pytest.raises(ConfigError, match="2 LiDARs and no rig"):
         open_recording(OpenRequest((path,), None, IngestSettings(), ImportReport()))

@@ -28,7 +28,7 @@ from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete, 
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, write_pcd, write_room_pcap
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 POINT_NS, PARTS, RATE_HZ = 200_000, 3, 50
 G = 9.80665
@@ -305,7 +305,7 @@ def test_accelerations_in_m_s2_are_kept_and_said(tmp_path):
     report = ImportReport()
 
     assert read_imu(path, report).of(0).accel_m_s2[0, 2] == 9.81
-    assert any("m/s², not g" in text for text in report.derived)
+    assert any("m/s², not g" in text for text in derivations(report))
 
 
 def test_the_imu_of_another_lidar_is_not_read_and_counted(copy):
@@ -327,7 +327,7 @@ def test_an_imu_with_a_number_of_its_own_is_read(tmp_path):
     _, samples, report = read(folder, rig=rig_to_complete([Stream("a", "generic")]))
 
     assert sum(len(s.t_ns) for s in samples) == RATE_HZ
-    assert any("IMU: number 7 is read" in text for text in report.derived)
+    assert any("IMU: number 7 is read" in text for text in derivations(report))
 
 
 def test_a_capture_is_converted_by_the_command(tmp_path, capsys):

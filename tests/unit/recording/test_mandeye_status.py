@@ -9,6 +9,7 @@ from recon4.recording.mandeye.read import walk_streams
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, rig_to_complete
 from tests.unit.recording.test_mandeye import write_walk
+from tests.warned import derivations
 
 DEVICE = {
     "name": "Mandeye",
@@ -49,8 +50,8 @@ def test_models_are_those_that_the_device_states(copy):
     models, report = stated(copy, DEVICE)
 
     assert models == ["Avia", "HAP"]  # which nothing but the status says
-    assert "recorded by Mandeye v0.8 mandeye-pro" in report.derived
-    assert any("no common source of time" in text for text in report.derived)
+    assert "Recorded by Mandeye v0.8 mandeye-pro." in derivations(report)
+    assert any("no common source of time" in text for text in derivations(report))
 
 
 def test_the_model_of_any_make_is_written_and_read_again(tmp_path):
@@ -60,7 +61,7 @@ def test_the_model_of_any_make_is_written_and_read_again(tmp_path):
     models = [stream.model for stream in walk_streams(list_walk(tmp_path / "walk", report))]
 
     assert models == ["XT32", "Mid-360"]  # a generic one is known by its view
-    assert "recorded by recon4" in report.derived
+    assert "Recorded by recon4." in derivations(report)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu
 from tests.builders import T0_NS, Bag, bag_path, noisy, room_packets
 from tests.unit.recording.ingested import run
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 STEP_NS = 5_000_000
 NAN = np.full(3, np.nan)
@@ -217,7 +217,7 @@ def test_positions_in_radians_are_converted_and_said():
 
     np.testing.assert_allclose(kept.lat_rad, right.lat_rad)
     np.testing.assert_allclose(kept.lon_rad, right.lon_rad)
-    assert any("positions were in radians" in text for text in report.derived)
+    assert any("Positions were in radians" in text for text in derivations(report))
 
 
 def test_positions_of_a_simulator_near_zero_stay_where_they_are():
@@ -228,7 +228,7 @@ def test_positions_of_a_simulator_near_zero_stay_where_they_are():
     kept, report = cleaned_fixes(gnss)
 
     np.testing.assert_array_equal(kept.lat_rad, gnss.lat_rad)
-    assert not any("radians" in text for text in report.derived)
+    assert not any("radians" in text for text in derivations(report))
 
 
 def test_positions_at_zero_are_dropped_and_counted():

@@ -15,7 +15,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud
 from tests.robot_bags import RobotBag, mount, write_walk
-from tests.warned import K, kinds, warned, words
+from tests.warned import K, derivations, kinds, warned, words
 
 IMU_MOUNT = mount(0.02, -0.03, 0.05, roll=180, yaw=90)
 OUSTER = (("os_sensor", "os_lidar", mount(z=0.036, yaw=180)), ("os_sensor", "os_imu", IMU_MOUNT))
@@ -27,7 +27,7 @@ def opened(path, rig=None):
 
 
 def said(report):
-    return " | ".join([*report.derived, words(report)])
+    return " | ".join([*derivations(report), words(report)])
 
 
 def assert_mount(found, expected, **tolerance):
@@ -91,7 +91,7 @@ def test_the_mount_of_the_imu_comes_from_the_transforms(tmp_path, kind):
 
     assert_mount(rig.T_body_imu, OUSTER[0][2].inverse() @ IMU_MOUNT)
     assert_mount(rig.sensors[0].T_body_sensor, SE3.identity())
-    assert "mount of the IMU from /tf_static: os_lidar -> os_imu xyz" in said(report)
+    assert "Mount of the IMU from /tf_static: os_lidar -> os_imu xyz" in said(report)
     assert report.findings == []
 
 
@@ -101,7 +101,7 @@ def test_the_lever_arm_of_the_antenna_comes_from_the_transforms(tmp_path):
     rig, report = opened(write_walk(tmp_path, [antenna], gnss="gps"))
 
     np.testing.assert_allclose(rig.p_body_antenna, [-0.1, 0.0, 0.4])
-    assert "mount of the GNSS antenna from /tf_static" in said(report)
+    assert "Mount of the GNSS antenna from /tf_static" in said(report)
 
 
 def test_without_transforms_nothing_is_changed_or_said(tmp_path):
@@ -109,7 +109,7 @@ def test_without_transforms_nothing_is_changed_or_said(tmp_path):
 
     assert_mount(rig.T_body_imu, SE3.identity())
     assert not rig.p_body_antenna.any()
-    assert "tf" not in said(report) and "mount" not in said(report)
+    assert "tf" not in said(report) and "mount" not in said(report).lower()
     assert report.findings == []
 
 
@@ -201,7 +201,7 @@ def test_several_lidars_are_mounted_as_the_transforms_say(tmp_path):
     assert_mount(rig.T_body_imu, IMU_MOUNT)
     assert "the body is the frame base_link" in said(report)
     text = "\n".join(describe(path).lines())
-    assert "mount of the LiDAR /rear/points from /tf_static: base_link -> rear xyz -0.300" in text
+    assert "Mount of the LiDAR /rear/points from /tf_static: base_link -> rear xyz -0.300" in text
     assert "rig:" not in text
     assert "/tf_static: transforms between frames" in text
 

@@ -17,7 +17,7 @@ from recon4.store.line_store import load_lines
 from tests.builders import ROOM_M, T0_NS, bag_path
 from tests.robot_bags import RobotBag, mount
 from tests.unit.recording.ingested import run
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 ANGLES = np.linspace(-2.0, 2.0, 81)
 SCANS, SCAN_NS = 60, 50_000_000
@@ -227,7 +227,7 @@ def test_a_lidar_that_turns_with_its_imu_is_the_body_itself(tmp_path):
 
 
 def report_of(store):
-    return store.report["derived"]
+    return derivations(store.report)
 
 
 def turning_lidar(folder, *, imu_frame):

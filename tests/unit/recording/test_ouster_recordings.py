@@ -24,7 +24,7 @@ from tests.builders import T0_NS
 from tests.security.fuzz.kinds_ouster import packets_of
 from tests.unit.recording.ouster_packets import WIDE, datagrams_of, opened
 from tests.unit.recording.packet_builders import rig
-from tests.warned import K, kinds
+from tests.warned import K, derivations, kinds
 
 
 @pytest.fixture
@@ -123,8 +123,8 @@ def test_a_file_of_the_recordings_name_is_taken_with_a_note(beside):
     report, shots, imu = read(path)
 
     assert (points(shots[0]), sum(map(len, imu))) == (16749, 11)
-    assert any("by its name, not same_ports_legacy.2.json" in text for text in report.derived)
-    assert any("does not tell lidar_origin" in text for text in report.derived)
+    assert any("by its name, not same_ports_legacy.2.json" in text for text in derivations(report))
+    assert any("does not tell lidar_origin" in text for text in derivations(report))
 
 
 def test_without_metadata_the_message_says_which_file_goes_where(beside):

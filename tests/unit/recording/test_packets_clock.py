@@ -9,7 +9,7 @@ from recon4.recording.packets.sensor_clock import SensorClock, nearest_hour
 from recon4.recording.report import ImportReport
 from recon4.units import HOUR_NS, SECOND_NS
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 PACKET_NS = 1_327_104
 
@@ -91,9 +91,9 @@ def test_a_free_running_sensor_is_shifted_to_the_clock_of_the_recorder():
     assert np.abs(out - t_ns - (LATENCY_NS - PACKET_NS)).max() < 50_000
     np.testing.assert_array_equal(np.diff(out), np.diff(stamps) * 1000)
     assert report.findings == []
-    assert report.derived == [
+    assert derivations(report) == [
         "lidar: its clock is -1430.579 s off the recorder's and no GPS drives it: its times are "
-        "shifted to the recorder's clock"
+        "shifted to the recorder's clock."
     ]
 
 
@@ -130,7 +130,7 @@ def test_gps_tells_the_hour_when_the_recorder_is_hours_off():
     assert kept.all()
     np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
     assert clock.is_utc
-    assert "+7323.002 s off UTC" in report.derived[0]
+    assert "+7323.002 s off UTC" in derivations(report)[0]
 
 
 @pytest.mark.parametrize("jump_s", [-7200.0, -1234.5, -3.0, 3.0, 3600.0, 5000.0])

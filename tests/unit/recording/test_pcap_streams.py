@@ -13,7 +13,7 @@ from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import rig_to_complete
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, rig, sensor, spin
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 FIRST, SECOND = "192.168.1.201", "192.168.1.202"
 
@@ -163,7 +163,7 @@ def test_two_files_of_the_same_time_are_two_sensors(tmp_path):
     _, points, _, report = read([one, other], rig(sensor("a"), sensor("b", port=2369)))
 
     assert points == {0: 300 * 384, 1: 310 * 384}
-    assert any(text.startswith("b: taken from") for text in report.derived)
+    assert any(text.startswith("b: taken from") for text in derivations(report))
 
 
 def test_files_that_follow_each_other_are_one_sensor(tmp_path):
@@ -268,7 +268,7 @@ def test_a_sensor_that_wakes_up_late_is_read_from_then_on(tmp_path):
     _, points, _, report = read([path], rig(sensor("a"), sensor("b", port=2369)))
 
     assert points == {0: 5500 * 384, 1: 300 * 384}
-    assert any("b: sends only later" in text for text in report.derived)
+    assert any("b: sends only later" in text for text in derivations(report))
 
 
 def test_lidars_switched_on_after_the_imu_are_found(tmp_path):

@@ -14,7 +14,7 @@ from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, Bag, bag_path
 from tests.unit.recording.point_bags import header, read, register
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 CUSTOM = "livox_ros_driver/msg/CustomMsg"
 CUSTOM2 = "livox_ros_driver2/msg/CustomMsg"
@@ -179,7 +179,7 @@ def test_a_timebase_since_power_on_is_moved_to_the_stamps(tmp_path):
     _, shots, report = read(livox_bag(tmp_path, "bag1", bases=bases))
 
     assert [int(one.t_ns[0]) - T0_NS for one in shots] == [0, 100_000_000, 200_000_000]
-    assert any("the points' clock is not the stamps' clock" in text for text in report.derived)
+    assert any("the points' clock is not the stamps' clock" in text for text in derivations(report))
 
 
 def test_equal_times_of_a_whole_frame_are_spread_and_counted(tmp_path):

@@ -10,7 +10,7 @@ from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud
 from tests.unit.recording.packet_builders import sensor
 from tests.unit.recording.test_cloud_points import PERIOD_NS, REL_NS, decode, with_field
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 HOUR_NS = 3_600_000_000_000
 BOOT_NS = 5_321_200_000_000
@@ -75,7 +75,7 @@ def test_times_since_power_on_are_those_of_stamps_since_power_on(values):
 
     np.testing.assert_allclose(shots.t_ns - BOOT_NS, REL_NS, atol=3000)
     assert not report.lost() and not report.findings
-    assert not any("clock" in text for text in report.derived)
+    assert not any("clock" in text for text in derivations(report))
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_a_constant_offset_of_the_clocks_is_said_with_its_number(offset_s, name)
     shots, report = decode(with_field("t", REL_NS + T0_NS + ahead_ns))
 
     np.testing.assert_array_equal(shots.t_ns - T0_NS, REL_NS)
-    found = next(text for text in report.derived if "not the stamps' clock" in text)
+    found = next(text for text in derivations(report) if "not the stamps' clock" in text)
     assert f"ahead by {offset_s:+.3f} s" in found and name in found
     assert not report.lost()
 
@@ -97,7 +97,7 @@ def test_times_since_power_on_with_stamps_in_utc_start_at_the_stamp():
     shots, report = decode(with_field("timestamp", (REL_NS + BOOT_NS) * 1e-9))
 
     np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=2000)
-    assert any("not the stamps' clock" in text for text in report.derived)
+    assert any("not the stamps' clock" in text for text in derivations(report))
 
 
 def test_dates_of_points_go_on_while_a_driver_repeats_its_stamps():
@@ -115,7 +115,7 @@ def test_dates_of_points_go_on_while_a_driver_repeats_its_stamps():
     ]
 
     np.testing.assert_allclose([t[0] for t in found], starts, atol=500)
-    assert not report.findings and not any("clock" in text for text in report.derived)
+    assert not report.findings and not any("clock" in text for text in derivations(report))
 
 
 @pytest.mark.parametrize("period_ns", [PERIOD_NS, PERIOD_NS // 2])
@@ -128,7 +128,7 @@ def test_times_from_0_to_1_are_parts_of_the_time_to_the_next_cloud(period_ns):
 
     expected = REL_NS * period_ns // PERIOD_NS
     np.testing.assert_allclose(shots.t_ns - T0_NS, expected, atol=100)
-    assert any("from 0 to 1" in text for text in report.derived)
+    assert any("from 0 to 1" in text for text in derivations(report))
     assert not report.lost()
 
 
@@ -140,7 +140,7 @@ def test_times_within_the_hour_take_the_hour_of_the_stamp(start_ns):
     shots, report = decode(with_field("time", values), t_ns=stamp_ns)
 
     np.testing.assert_allclose(shots.t_ns - stamp_ns, REL_NS, atol=2000)
-    assert any("begin again every 3600 s" in text for text in report.derived)
+    assert any("begin again every 3600 s" in text for text in derivations(report))
     assert not report.lost()
 
 
@@ -150,7 +150,7 @@ def test_a_counter_of_32_bits_that_wrapped_before_is_continued_by_the_stamps():
     shots, report = decode(with_field("t", values), t_ns=BOOT_NS)
 
     np.testing.assert_allclose(shots.t_ns - BOOT_NS, REL_NS, atol=2000)
-    assert any("begin again every 4294.97 s" in text for text in report.derived)
+    assert any("begin again every 4294.97 s" in text for text in derivations(report))
 
 
 @pytest.mark.parametrize("unit", [1, 1000])

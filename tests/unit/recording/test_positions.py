@@ -13,6 +13,7 @@ from recon4.recording.packets.velodyne.position_packets import (
 )
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, sensor
+from tests.warned import derivations
 
 GGA = "GPGGA,221320.50,4912.0000,N,01636.0000,E,4,12,0.8,250.000,M,44.500,M,1.0,0000"
 
@@ -109,7 +110,7 @@ def test_without_gps_on_the_clock_a_position_is_timed_by_its_packet():
     gnss = decoder(report).push(np.array([T0_NS]), packet(T0_NS, sentence)[None]).gnss
 
     assert gnss.t_ns.tolist() == [T0_NS]
-    assert any("GPS does not drive its clock" in text for text in report.derived)
+    assert any("GPS does not drive its clock" in text for text in derivations(report))
 
 
 @pytest.mark.parametrize(

@@ -21,7 +21,7 @@ def test_info_of_a_bag_names_topics_rates_and_what_is_derived(tmp_path, kind):
     assert "/imu: IMU, 110" in text
     assert "/fix: GNSS positions, 6" in text
     assert "2023-11-14 22:13:20.000 UTC" in text
-    assert "derived   no rig given" in text
+    assert "derived   No rig given" in text
 
 
 def test_info_of_a_pcap_says_what_is_missing(pcap):
@@ -131,8 +131,8 @@ def test_info_says_that_no_position_can_be_used(tmp_path, fix, status, said):
 def test_positions_without_heights_are_said_to_place_nothing(tmp_path):
     text = _bag_with_imu(tmp_path, fix=(50.0, 14.0, np.nan))
 
-    assert "no GNSS position has a height: they cannot place the map" in text
-    assert "no GNSS position has a height" not in _bag_with_imu(tmp_path / "b", fix=(50, 14.0, 0.5))
+    assert "No GNSS position has a height: they cannot place the map" in text
+    assert "No GNSS position has a height" not in _bag_with_imu(tmp_path / "b", fix=(50, 14.0, 0.5))
 
 
 def test_samples_without_stamps_are_counted_as_repaired(tmp_path):

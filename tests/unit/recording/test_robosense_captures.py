@@ -14,6 +14,7 @@ from recon4.recording.rig_choice import rig_to_complete
 from recon4.recording.sources import Sources
 from tests.unit.recording.packet_builders import WIDE
 from tests.unit.recording.test_robosense_packets import angles_of, device_of, spin
+from tests.warned import derivations
 
 
 def test_a_capture_reads_angles_from_the_device_packets_at_another_port(tmp_path):
@@ -29,7 +30,7 @@ def test_a_capture_reads_angles_from_the_device_packets_at_another_port(tmp_path
 
     assert [s.model for s in capture.rig.sensors] == ["Ruby Plus"]
     assert sum(map(len, shots)) == 400 * 3 * 128
-    assert any("device packets (DIFOP)" in text for text in report.derived)
+    assert any("device packets (DIFOP)" in text for text in derivations(report))
     assert not report.findings
 
 
@@ -51,7 +52,7 @@ def test_a_capture_reads_angles_from_a_file_beside_it(tmp_path):
     capture = PacketCapture(paths, rig_to_complete, settings=WIDE, report=report)
 
     assert sum(len(part) for part in capture.read() if isinstance(part, Shots)) == 200 * 8 * 48
-    assert any("from airy.csv" in text for text in report.derived)
+    assert any("from airy.csv" in text for text in derivations(report))
 
 
 def test_a_clock_that_is_years_off_is_no_quarter_of_an_hour_off(tmp_path):
@@ -66,4 +67,6 @@ def test_a_clock_that_is_years_off_is_no_quarter_of_an_hour_off(tmp_path):
     points = sum(len(part) for part in capture.read() if isinstance(part, Shots))
 
     assert points == 200 * 12 * 32
-    assert any("-882.480 s and whole hours off the recorder" in text for text in report.derived)
+    assert any(
+        "-882.480 s and whole hours off the recorder" in text for text in derivations(report)
+    )

@@ -20,7 +20,7 @@ from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, read_gnss_csv, read_imu_csv
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 T0 = 1_700_000_000_123_456_789
 HEADER = ",".join(IMU_HEADER)
@@ -202,7 +202,7 @@ def test_an_accelerometer_in_g_is_scaled_and_said():
 
     assert imu.accel_m_s2[0, 2] == pytest.approx(9.80665)
     assert report.counts["imu_accel_scaled"] == 5
-    assert any("in g" in text for text in report.derived)
+    assert any("in g" in text for text in derivations(report))
 
 
 def test_the_offset_is_added():

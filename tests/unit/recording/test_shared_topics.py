@@ -12,6 +12,7 @@ from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
 from tests.builders import T0_NS, bag_path, room_cloud
 from tests.robot_bags import RobotBag
 from tests.unit.recording.point_bags import STEP_NS, read
+from tests.warned import derivations
 
 CLOUD = room_cloud(columns_per_turn=90)
 SHARED = ["/points#left", "/points#right"]
@@ -40,7 +41,7 @@ def test_the_clouds_of_each_frame_are_those_of_one_sensor(kind, tmp_path):
         own = [one for one in shots if one.sensor == row]
         assert [len(one) for one in own] == [len(CLOUD["x"])] * 8
         assert np.isclose(np.median(own[0].xyz[:, 2]), np.median(CLOUD["z"]) + row, atol=1e-3)
-    assert "/points is of 2 LiDARs: left, right" in report.derived
+    assert "/points is of 2 LiDARs: left, right." in derivations(report)
 
 
 def test_without_a_rig_each_is_named_and_info_writes_both(tmp_path):
@@ -72,4 +73,4 @@ def test_a_topic_whose_frame_changes_once_is_of_one_sensor(tmp_path):
     recording, shots, report = read(path)
 
     assert [s.topic for s in recording.rig.sensors] == ["/points"] and len(shots) == 6
-    assert not any("LiDARs" in text for text in report.derived)
+    assert not any("LiDARs" in text for text in derivations(report))

@@ -22,7 +22,7 @@ from tests.unit.recording.topic_bags import (
     scan,
     write,
 )
-from tests.warned import K, warned
+from tests.warned import K, derivations, warned
 
 
 def opened(path, rig=None, **settings):
@@ -47,13 +47,15 @@ def test_an_imu_is_preferred_to_the_faster_gyroscope_of_a_camera(tmp_path, kind)
     found, report = opened(path)
 
     assert found.imu_topic == "/imu/data"
-    assert any("/camera/gyro/sample (no accelerometer)" in text for text in report.derived)
+    assert any(
+        "not /camera/gyro/sample. It has no accelerometer." in text for text in derivations(report)
+    )
     assert report.findings == []
 
 
 LESSER = {
     "no gyroscope": {"turns": False},
-    "accelerations of": {"gravity": 0.2},
+    "accelerations are": {"gravity": 0.2},
     "20 samples a second": {"rate_hz": 20},
     "of the recording": {"until": 5},
 }
@@ -67,7 +69,7 @@ def test_an_imu_with_a_fault_is_not_chosen_and_the_fault_is_said(tmp_path, why):
     found, report = opened(path)
 
     assert found.imu_topic == "/b"
-    assert any(text.startswith("IMU: /b") and why in text for text in report.derived)
+    assert any(text.startswith("IMU: /b") and why in text for text in derivations(report))
 
 
 def test_the_imu_of_the_lidar_is_preferred_to_a_faster_one(tmp_path):
@@ -82,7 +84,7 @@ def test_the_imu_of_the_lidar_is_preferred_to_a_faster_one(tmp_path):
 
     assert found.imu_topic == "/ouster/imu"
     assert report.findings == []
-    assert any("/zed/imu (by frame and name not the IMU of" in text for text in report.derived)
+    assert any("not /zed/imu. By frame and name" in text for text in derivations(report))
 
 
 def test_a_choice_between_equals_is_a_warning_that_names_the_setting(tmp_path):
@@ -103,7 +105,7 @@ def test_raw_and_filtered_samples_of_one_imu_are_no_warning(tmp_path):
 
     assert found.imu_topic == "/imu/data"
     assert report.findings == []
-    assert any("not /imu/data_raw" in text for text in report.derived)
+    assert any("not /imu/data_raw" in text for text in derivations(report))
 
 
 def test_gyroscope_and_accelerometer_of_two_topics_are_one_imu(tmp_path):
@@ -116,7 +118,7 @@ def test_gyroscope_and_accelerometer_of_two_topics_are_one_imu(tmp_path):
 
     store = run(path, out=tmp_path / "o")
 
-    assert any("/camera/accel/sample are joined" in text for text in store.report["derived"])
+    assert any("/camera/accel/sample are joined" in text for text in derivations(store.report))
     assert len(store.imu) >= 395
     assert np.isfinite(store.imu.accel_m_s2).all()
     assert store.imu.accel_m_s2[:, 2] == pytest.approx(9.81, abs=0.01)
@@ -182,10 +184,10 @@ def test_a_receiver_with_fixes_is_preferred_to_one_without(tmp_path):
     found, report = opened(path)
 
     assert found.fix_topic == "/c/fix"
-    (text,) = (text for text in report.derived if text.startswith("GNSS"))
-    assert "/a/fix (no fix in 20 messages)" in text
-    assert "/b/fix (a position that never changes)" in text
-    assert "/gps/filtered (by its name the output of a filter)" in text
+    text = " ".join(text for text in derivations(report) if text.startswith("GNSS"))
+    assert "not /a/fix. It has no fix in 20 messages." in text
+    assert "not /b/fix. Its position never changes." in text
+    assert "not /gps/filtered. By its name it is the output of a filter." in text
 
 
 def test_the_receiver_with_the_better_fixes_is_read(tmp_path):
@@ -227,10 +229,9 @@ def test_a_laser_is_preferred_to_the_scans_of_a_depth_camera(tmp_path):
     found = read_laser2d([path], report)
 
     assert np.rad2deg(90 * found.angle_step_rad) == pytest.approx(270.0)
-    (text,) = (text for text in report.derived if text.startswith("2-D laser"))
-    assert "/scan (frame laser) is read" in text
-    assert "/camera/scan (a view of 58°)" in text
-    assert "/silent (no returns)" in text
+    text = " ".join(text for text in derivations(report) if text.startswith("2-D laser"))
+    assert "/scan (frame laser) is read, not /camera/scan. Its view has 58°." in text
+    assert "not /silent. It has no returns." in text
     named = read_laser2d(
         [path], ImportReport(), settings=IngestSettings(laser_topic="/camera/scan")
     )
@@ -259,15 +260,16 @@ def test_the_only_cloud_as_measured_is_the_lidar_and_the_others_are_named(tmp_pa
     found, report = opened(robot(tmp_path))
 
     assert [s.topic for s in found.rig.sensors] == ["/velodyne_points"]
-    (text,) = (text for text in report.derived if text.startswith("LiDAR: /velodyne_points is"))
+    said = [text for text in derivations(report) if text.startswith("LiDAR: /velodyne_points is")]
+    assert len(said) == 5
     for words in (
-        "/cloud_registered (in the fixed frame camera_init",
-        "/lio_sam/mapping/map_local (in the fixed frame odom",
-        "/camera/depth/color/points (of a depth camera",
-        "/velodyne_points_filtered (a copy of /velodyne_points",
-        "/cloud_registered_body (in the frame of the robot, body",
+        "/cloud_registered. It is in the fixed frame camera_init",
+        "/lio_sam/mapping/map_local. It is in the fixed frame odom",
+        "/camera/depth/color/points. It is of a depth camera",
+        "/velodyne_points_filtered. It is a copy of /velodyne_points",
+        "/cloud_registered_body. It is in the frame of the robot, body",
     ):
-        assert words in text
+        assert words in " ".join(said)
     assert report.findings == []
 
 
@@ -275,7 +277,7 @@ def test_info_says_the_same(tmp_path):
     info = describe(robot(tmp_path))
 
     assert [sensor.label for sensor in info.sensors] == ["/velodyne_points"]
-    assert any("/cloud_registered (in the fixed frame" in text for text in info.derived)
+    assert any("/cloud_registered. It is in the fixed frame" in text for text in derivations(info))
     assert not any("rig" in text for text in info.missing)
 
 
@@ -293,7 +295,7 @@ def test_a_registered_cloud_alone_is_read_and_said(tmp_path):
     found, report = opened(write(tmp_path, cloud("/cloud_registered", "odom", plain())))
 
     assert [s.topic for s in found.rig.sensors] == ["/cloud_registered"]
-    assert any("placed them already" in text for text in report.derived)
+    assert any("placed them already" in text for text in derivations(report))
 
 
 def test_two_lidars_of_unknown_mounts_end_with_what_to_paste(tmp_path):

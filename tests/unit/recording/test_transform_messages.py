@@ -14,6 +14,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.transform_messages import read_frames
 from tests.builders import T0_NS, bag_path
 from tests.robot_bags import TF1, TF2, RobotBag, mount
+from tests.warned import derivations
 
 KINDS = ("bag1", "db3", "mcap")
 URDF = """<?xml version="1.0"?>
@@ -51,7 +52,7 @@ def test_static_transforms_of_every_kind_of_bag_are_read(tmp_path, kind):
     frames, report = frames_of(path)
 
     assert_mount(frames.T_a_b("base_link", "lidar"), mount(0.1, roll=180))
-    assert report.findings == [] and report.derived == []
+    assert report.findings == [] and derivations(report) == []
 
 
 def test_transforms_of_early_ros_1_and_slashes_before_names_are_read(tmp_path):
@@ -143,7 +144,7 @@ def test_a_description_that_is_not_plain_and_sound_is_refused(tmp_path, broken):
 
     assert len(frames) == 0
     assert report.counts["robot_descriptions_refused"] == 1
-    assert "robot description is not read" in report.derived[0]
+    assert "robot description is not read" in derivations(report)[0]
 
 
 def arm_at(folder, positions, *, urdf=URDF, more=()):
@@ -190,7 +191,7 @@ def test_a_joint_without_an_axis_or_positions_is_no_mount(tmp_path):
     no_axis = URDF.replace('<child link="arm"/>', '<child link="arm"/><axis xyz="0 0 0"/>')
     frames, report = arm_at(tmp_path / "axis", [0.0, 1.0], urdf=no_axis)
     assert frames.joints_above("arm") == [] and report.counts["transforms_invalid"] == 1
-    assert "expected a name, an axis" in report.derived[0]
+    assert "expected a name, an axis" in derivations(report)[0]
 
 
 NONSENSE = {
@@ -214,7 +215,7 @@ def test_transforms_that_make_no_sense_are_left_out_and_counted(tmp_path, what):
     assert frames.T_a_b("base_link", "lidar") is None
     assert_mount(frames.T_a_b("base_link", "imu"), mount(0.3))
     assert report.counts["transforms_invalid"] == 1
-    assert "left out" in report.derived[0]
+    assert "left out" in derivations(report)[0]
 
 
 def test_a_quaternion_that_is_rounded_is_used(tmp_path):
@@ -251,4 +252,4 @@ def test_a_flood_of_repeated_transforms_ends(tmp_path, monkeypatch):
     frames, report = frames_of(path)
 
     assert_mount(frames.T_a_b("base_link", "lidar"), mount(0.49))
-    assert "its first 100 transforms are read" in report.derived[0]
+    assert "its first 100 transforms are read" in derivations(report)[0]

@@ -7,7 +7,7 @@ from recon4.geometry.se3 import so3_exp
 from recon4.model.samples import ImuSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_imu
-from tests.warned import K, kinds, warned, words
+from tests.warned import K, derivations, kinds, warned, words
 
 RATE_HZ = 100
 GRAVITY = np.array([0.0, 0.0, 9.81])
@@ -41,7 +41,7 @@ def test_rates_in_degrees_are_recognized_converted_and_said(fastest_deg_s):
 
     np.testing.assert_allclose(found.gyro_rad_s, imu.gyro_rad_s)
     assert report.counts["imu_gyro_scaled"] == len(imu)
-    assert "are in deg/s, stored in rad/s" in report.derived[0]
+    assert "are in deg/s, stored in rad/s" in derivations(report)[0]
     assert report.findings == []
 
 
@@ -52,14 +52,14 @@ def test_rates_in_radians_are_left_and_not_accused(fastest_rad_s):
     found, report = cleaned(imu)
 
     np.testing.assert_array_equal(found.gyro_rad_s, imu.gyro_rad_s)
-    assert (report.findings, report.derived) == ([], [])
+    assert (report.findings, derivations(report)) == ([], [])
 
 
 def test_where_nothing_decides_the_unit_is_assumed_and_counted():
     found, report = cleaned(swaying(6.0, axis=(0.0, 0.0, 1.0)))
 
     assert report.counts["imu_gyro_assumed"] == len(found)
-    assert "taken as rad/s" in report.derived[0] and not report.findings
+    assert "taken as rad/s" in derivations(report)[0] and not report.findings
     assert float(np.abs(found.gyro_rad_s).max()) > 5.0
 
 
@@ -89,7 +89,7 @@ def test_accelerations_in_other_units_are_converted_and_said(unit, scale):
 
     np.testing.assert_allclose(found.accel_m_s2, imu.accel_m_s2)
     assert report.counts["imu_accel_scaled"] == len(imu)
-    assert f"was in {unit} " in report.derived[0]
+    assert f"was in {unit} " in derivations(report)[0]
 
 
 def test_accelerations_without_a_gyroscope_are_said_not_to_level():

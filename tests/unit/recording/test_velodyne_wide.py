@@ -23,6 +23,7 @@ from recon4.recording.packets.velodyne.wide_models import VLS128, hdl64_model
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import sensor
+from tests.warned import derivations
 
 ENTRY = np.dtype([("sec", "<i4"), ("ns", "<u4"), ("data", "u1", DATA_SIZE), ("pad", "u1", 2)])
 FAR = IngestSettings(min_range_m=0.0, max_range_m=262.0)
@@ -143,7 +144,7 @@ def test_velodyne_decoder_gives_the_same_points_of_an_hdl64(kind, name, dual):
         payloads, getattr(velodyne_decoder.Model, f"HDL64E_{kind}"), path, t_us
     )
 
-    assert f"an HDL-64E {kind}" in report.derived[0]
+    assert f"an HDL-64E {kind}" in derivations(report)[0]
     assert layout.packet_s == pytest.approx(model.packet_s(dual=dual))
     assert len(shots) == len(theirs) == 40 * 12 * 32
     assert np.all(np.diff(shots.t_ns) >= 0)

@@ -28,6 +28,7 @@ from recon4.settings import override, preset
 from recon4.store.arrays import save_trajectory
 
 EVIL = "<script>alert('x')</script><img src=http://evil.example/a onerror=alert(1)>\"'{{ 7 * 7 }}"
+DERIVED = ["earlier ring", {"kind": "INTENSITY-SCALED", "values": {"where": "front"}}]
 STEP_NS = 100_000_000
 
 
@@ -115,7 +116,7 @@ def made_facts(folder: Path) -> ReportFacts:
         lost=np.zeros(200, dtype=bool),
     )
     counts = {"points": 5_000_000}
-    imported = {"outcome": "lossy", "warnings": [EVIL], "derived": ["ring"], "counts": counts}
+    imported = {"outcome": "lossy", "warnings": [EVIL], "derived": DERIVED, "counts": counts}
     (folders["frames"] / "report.json").write_text(json.dumps(imported))
     placed = {
         "georeferenced": True,
@@ -179,6 +180,8 @@ def test_the_report_says_what_was_found(page: tuple[ReportFacts, str]) -> None:
         "Residuals of the 9 fixes used as GNSS priors; 0 were not used.",
         "deviation was 11.91 and is 0.00",
         "deviation falls from 11.9 % to 0.0 %",
+        "earlier ring",
+        "front: intensity 0..1 is stored times 255.",
     ):
         assert words in text, words
 

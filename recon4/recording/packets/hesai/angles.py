@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.hesai.tuning import HESAI_ANGLES
@@ -110,7 +111,7 @@ def angles_of(sensor: PacketSensor, channels: int, typical: Angles | None) -> An
     }
     chosen = _choose(fitting, (name, sensor.sensor.model))
     if chosen is not None:
-        report.derive(f"{name}: angles of its beams from {chosen}")
+        report.derive(DerivedKind.ANGLES_FOUND, sensor=name, of="beams", source=chosen)
         return fitting[chosen]
     if typical is not None:
         report.warn(

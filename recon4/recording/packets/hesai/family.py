@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.datagrams import Datagrams
@@ -209,7 +210,7 @@ def _directions(model: HesaiModel, sensor: PacketSensor) -> Angles | MirrorTable
                 f"{name}: an AT128 needs its angle correction file (.dat, version 1.5) beside the "
                 "recording; a table of text (.csv) has no positions of its mirrors"
             )
-        sensor.report.derive(f"{name}: angles of its mirrors and beams from {found[0]}")
+        sensor.report.derive(DerivedKind.ANGLES_FOUND, sensor=name, of="mirrors", source=found[0])
         return found[1]
     angles = angles_of(sensor, model.channels, model.angles)
     if angles is None:

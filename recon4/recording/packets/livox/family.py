@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
@@ -116,9 +117,7 @@ class LivoxFormat:
             return False  # files of the maker keep no sums
         right = has_crc(payloads)
         if 2 * np.count_nonzero(right) <= len(right):
-            self._report.derive(
-                f"{self._name}: the CRC of its packets is not that of the protocol: not checked"
-            )
+            self._report.derive(DerivedKind.CHECKSUM_FOREIGN, sensor=self._name)
         return bool(2 * np.count_nonzero(right) > len(right))
 
 

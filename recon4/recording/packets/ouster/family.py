@@ -11,6 +11,7 @@ from msgspec.structs import replace as replace_fields
 
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.datagrams import Datagrams
@@ -198,11 +199,15 @@ def _say(sensor: PacketSensor, fit: ChosenMetadata, found: MetadataFiles, *, col
             product=metadata.product,
         )
     if fit.passed_over:
-        report.derive(f"{name}: {metadata.name} is its metadata by its name, not {fit.passed_over}")
+        report.derive(
+            DerivedKind.METADATA_BY_NAME, sensor=name, name=metadata.name, others=fit.passed_over
+        )
     if metadata.assumed:
         report.derive(
-            f"{name}: {metadata.name} does not tell {' and '.join(metadata.assumed)}: "
-            "those of most sensors are taken"
+            DerivedKind.METADATA_ASSUMED,
+            sensor=name,
+            name=metadata.name,
+            fields=", ".join(metadata.assumed),
         )
 
 

@@ -31,7 +31,7 @@ class LaserAngles:
     cdeg: NDArray[np.float64]
     """Elevation and azimuth of each [0.01°], (lasers, 2)."""
     source: str
-    """Where they are from, in words."""
+    """Where they are from: ``device-packets``, ``factory`` (of another sensor), or a file."""
     measured: bool
     """Whether they are of this very sensor."""
 
@@ -80,7 +80,7 @@ def laser_angles(
         ConfigError: If there are none of any kind.
     """
     if device is not None and len(device.angles_cdeg) >= model.lasers:
-        return LaserAngles(device.angles_cdeg[: model.lasers], "its device packets (DIFOP)", True)
+        return LaserAngles(device.angles_cdeg[: model.lasers], "device-packets", True)
     found = [(one, table) for one in companions if (table := fitting_table(one, model)) is not None]
     named = [pair for pair in found if _names(pair[0].name, model)]
     if named or found:
@@ -92,9 +92,7 @@ def laser_angles(
             "device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and "
             "azimuth [°] per laser beside the recording, or into the rig as its description"
         )
-    return LaserAngles(
-        model.factory_cdeg.astype(np.float64), "another sensor's factory table", False
-    )
+    return LaserAngles(model.factory_cdeg.astype(np.float64), "factory", False)
 
 
 def _names(file: str, model: RoboSenseModel) -> bool:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -165,7 +166,9 @@ class SpinningFormat:
         self._layout = HELIOS_16P_DUAL if halves else self._model
         angles = laser_angles(self._model, self._device, self._of.companions)
         name = self._of.sensor.name
-        self._report.derive(f"{name}: angles of its lasers from {angles.source}")
+        self._report.derive(
+            DerivedKind.ANGLES_FOUND, sensor=name, of="lasers", source=angles.source
+        )
         if not angles.measured:
             self._report.warn(
                 FindingKind.ANGLES_TYPICAL, sensor=name, model=self._model.name, difop=True

@@ -81,7 +81,7 @@ class LaserCalibration:
     focal: Array
     """Focal distance [m], slope, least and largest intensity, (L, 4)."""
     source: str
-    """Where it is from, in words."""
+    """Where it is from: ``status-bytes`` (of the packets), or a file."""
 
 
 def calibration_of(companions: Sequence[Companion]) -> LaserCalibration | None:
@@ -201,7 +201,7 @@ def _of_status(block: bytes) -> LaserCalibration | None:
         "max_intensity": rows["max"].astype(np.float64),
     }
     table = {k: {name: float(column[k]) for name, column in columns.items()} for k in range(LASERS)}
-    return _calibration(table, "the status bytes of its packets")
+    return _calibration(table, "status-bytes")
 
 
 def correction_table(calibration: LaserCalibration) -> NDArray[np.float32]:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.rig import Sensor
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
@@ -202,10 +203,7 @@ class PositionDecoder:
         x, y = value[:, :, 2], value[:, :, 3]
         accel = np.column_stack([-y[:, 1] - y[:, 2], y[:, 0] - x[:, 2], x[:, 0] + x[:, 1]]) / 2
         self._report.count("imu_samples", int(kept.sum()))
-        self._report.derive(
-            f"{self._name}: gyroscope and accelerometer from its position packets, in its own "
-            "frame; the zero of these gyroscopes is not calibrated (tens of degrees a second)"
-        )
+        self._report.derive(DerivedKind.IMU_UNCALIBRATED, sensor=self._name)
         return ImuSamples(
             t_ns=t_ns[kept],
             gyro_rad_s=value[:, :, 0] * GYRO_UNIT_RAD_S,
@@ -230,10 +228,7 @@ class PositionDecoder:
             return None
         self._report.count("gnss_samples", len(fixes))
         if not self._clock.is_utc:
-            self._report.derive(
-                f"{self._name}: positions are timed by when their packet came (up to 1 s late): "
-                "GPS does not drive its clock"
-            )
+            self._report.derive(DerivedKind.POSITIONS_BY_ARRIVAL, sensor=self._name)
         return _samples(fixes)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
 from recon4.kernels.laser_corrections import correct
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
@@ -201,7 +202,9 @@ def _hdl64(of: PacketSensor, head: Payloads) -> WideModel:
     )
     s3 = step_us * (2 if dual else 1) > WIDE_PACKETS.s3_least_us
     kind = "S3" if s3 else "S2"
-    of.report.derive(f"{name}: an HDL-64E {kind}, calibration from {calibration.source}")
+    of.report.derive(
+        DerivedKind.HDL64_CALIBRATION, sensor=name, model=kind, source=calibration.source
+    )
     return hdl64_model(calibration, s3=s3)
 
 
