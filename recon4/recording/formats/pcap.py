@@ -79,6 +79,7 @@ def read_pcap(
         EmptyRecording: If it holds no packet at all.
     """
     found, damaged, unread = 0, report.counts["files_cut"], UnreadRecords(report)
+    untimed = report.counts["records_without_time"]
     fragments = IpFragments()
     with open_file(path) as file:
         for records in _records(file, path.name, report):
@@ -90,6 +91,8 @@ def read_pcap(
         unread.add_fragments(fragments.lost())
     if not found:
         why = f" ({report.said()[-1]})" if report.counts["files_cut"] > damaged else ""
+        if untimed := report.counts["records_without_time"] - untimed:
+            why += f" that has a time; {untimed} have none (simple packet blocks)"
         raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
 
 

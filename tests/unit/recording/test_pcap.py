@@ -191,6 +191,17 @@ def test_a_pcapng_file_is_read_and_salvaged(tmp_path):
     assert (len(cut), cut_report.outcome) == (4, "lossy")
 
 
+def test_a_pcapng_file_of_packets_without_times_says_so(tmp_path):
+    content = next_generation([])
+    packet = ethernet(udp())
+    body = struct.pack("<I", len(packet)) + packet + bytes(-len(packet) % 4)
+    size = struct.pack("<I", len(body) + 12)
+    content += struct.pack("<I", 3) + size + body + size
+
+    with pytest.raises(EmptyRecording, match="packet that has a time; 1 have none"):
+        read(written(tmp_path, content))
+
+
 def test_what_the_writer_writes_is_what_the_reader_reads(tmp_path):
     t_ns, payloads = spin(4000)
     path = tmp_path / "walk.pcap"
