@@ -63,8 +63,8 @@ def test_a_brush_paints_along_its_path_but_not_from_one_surface_to_another():
 
 
 def test_a_brush_on_a_slice_is_as_deep_as_it():
-    brush = Brush(path_m=((1.0, 2.0, 1.5),), radius_m=0.3, across=(0.0, 0.0, 1.0), thick_m=0.1)
-    p = np.array([[1.29, 2.0, 1.549], [1.0, 2.0, 1.551], [1.31, 2.0, 1.5], [1.0, 1.71, 1.451]])
+    brush = Brush(path_m=((1.0, 2.0, 1.5),), radius_m=0.3, across=(0.0, 0.0, 1.0), thick_m=0.5)
+    p = np.array([[1.29, 2.0, 1.74], [1.0, 2.0, 1.76], [1.31, 2.0, 1.5], [1.0, 1.71, 1.26]])
 
     assert contains(brush, p).tolist() == [True, False, False, True]
 
