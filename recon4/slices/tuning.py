@@ -251,3 +251,37 @@ class SignedDistanceTuning(Struct, frozen=True, kw_only=True):
 
 
 SIGNED = SignedDistanceTuning()
+
+
+class BlackWhiteTuning(Struct, frozen=True, kw_only=True):
+    """Search for the center of a black-white target near a pick."""
+
+    radius_m: float = 0.09
+    """Around the center that is compared with the pattern: boards of 20 cm and more have it all."""
+    reach_m: float = 0.1
+    """Farthest that the center lies from the pick."""
+    beam_m: float = 0.005
+    """Half width of the blur at an edge: a beam at 3 m."""
+    search_m: float = 0.02
+    turns: int = 12
+    """Steps of the coarse search, within half a turn."""
+    search_points: int = 1500
+    """Points that the coarse search looks at."""
+    plane_rounds: int = 3
+    least_off_m: float = 0.01
+    off_sd: float = 3.0
+    """Points farther from the plane are of something else."""
+    most_rough_m: float = 0.02
+    """A board scatters less about its plane."""
+    least_points: int = 40
+    least_sector: int = 5
+    """Points in each sector: a board that is hidden in part has no known center."""
+    least_agreement: float = 0.8
+    """Simulated boards have 0.84 and more, stripes and posters up to 0.73."""
+    contrast_sd: float = 2.0
+    """White is brighter than black by this many deviations within a sector."""
+    most_sd_m: float = 0.005
+    tiny: float = 1e-9
+
+
+BLACK_WHITE = BlackWhiteTuning()

@@ -567,6 +567,13 @@ export interface FolderEntry {
   bytes: number;
 }
 
+export interface FoundTarget {
+  p_map: [number, number, number];
+  sd_m: number;
+  sd_across_m: number;
+  off_m: number;
+}
+
 export interface FreeRequest {
   what: Array<Freeable>;
 }
@@ -1163,6 +1170,7 @@ export interface PickView {
   uv: [number, number];
   about: Record<string, number>;
   along: Array<[number, number, number]>;
+  target: FoundTarget | null;
 }
 
 export interface PointPairs {

@@ -50,10 +50,10 @@ export function imageText({ source, color, points, surface }, sources) {
 
 /**
  * Coordinates and attributes of a picked point.
- * @param {Pick<PickView, "p_map" | "p_crs" | "about">} given
+ * @param {Pick<PickView, "p_map" | "p_crs" | "about"> & Partial<Pick<PickView, "target">>} given
  * @param {Pick<SliceFacts, "crs" | "sensors">} given1
  */
-export function pointText({ p_map, p_crs, about }, { crs, sensors }) {
+export function pointText({ p_map, p_crs, about, target }, { crs, sensors }) {
   const parts = [`x y z  ${fixed(p_map)} m`];
   if (p_crs) parts.push(`${crs}  E N H  ${fixed(p_crs)} m`);
   if (about.intensity !== undefined)
@@ -61,6 +61,10 @@ export function pointText({ p_map, p_crs, about }, { crs, sensors }) {
   if (sensors.length) parts.push(sensors[about.sensor] ?? t("sensor-of", { number: about.sensor }));
   if (about.time_s !== undefined)
     parts.push(t("time-of", { s: about.time_s, frame: String(about.frame_id) }));
+  if (target) {
+    const mm = (/** @type {number} */ m) => decimal(1000 * m, 1);
+    parts.push(t("target-near", { off: mm(target.off_m), sd: mm(target.sd_m) }));
+  }
   return parts.join(" · ");
 }
 

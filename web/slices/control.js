@@ -24,7 +24,7 @@ import { askFirst } from "../shared/download.js";
 import { decimal, t } from "../shared/texts.js";
 import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
-import { combined } from "./measured.js";
+import { AXES, combined } from "./measured.js";
 import { figures, residualCells, roleText } from "./residual_table.js";
 import { siteSection } from "./site.js";
 
@@ -273,7 +273,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
             t("here"),
             t("is-picked", { name: one.id }),
             () => pick(one),
-          )}${act(t("surface"), t("on-surface", { name: one.id }), () => surface(one))}${
+          )}${act(t("target"), t("is-target", { name: one.id }), () => target(one))}${act(t("surface"), t("on-surface", { name: one.id }), () => surface(one))}${
             residual || earlier
               ? act(t("clear"), t("clear-point", { name: one.id }), () => drop(one.id))
               : nothing
@@ -293,6 +293,12 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
     const picked = measured();
     if (!picked) throw new Error(t("pick-first", { name: one.id }));
     await put({ [one.id]: { p: picked.p_map, along: picked.along } });
+  }
+
+  async function target(/** @type {ControlSpec} */ one) {
+    const found = measured()?.target;
+    if (!found) throw new Error(t("no-target", { name: one.id }));
+    await put({ [one.id]: { p: found.p_map, along: AXES } });
   }
 
   async function surface(/** @type {ControlSpec} */ one) {

@@ -38,6 +38,13 @@ function extended(known, directions) {
   return rows;
 }
 
+/** All directions are measured. @type {Array<[number, number, number]>} */
+export const AXES = [
+  [1, 0, 0],
+  [0, 1, 0],
+  [0, 0, 1],
+];
+
 /**
  * A measurement {p, along} and an earlier one of the same point: the new one counts in its own
  * directions, the earlier one in those that the new one leaves open.

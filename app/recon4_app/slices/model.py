@@ -153,6 +153,20 @@ class PickRequest(Strict):
     surface: Surface = "fitted"
 
 
+class FoundTarget(BaseModel):
+    """The center of a black-white target near a pick: a proposal, which a person confirms."""
+
+    p_map: Xyz
+    """[m]"""
+    sd_m: float
+    """Standard deviation (1 σ) in the plane of the board by the intensities, without the errors of
+    the poses [m]."""
+    sd_across_m: float
+    """Across the board, of a single point [m]."""
+    off_m: float
+    """From the pick [m]."""
+
+
 class PickView(BaseModel):
     """The nearest point of the map."""
 
@@ -164,6 +178,8 @@ class PickView(BaseModel):
     along: list[Xyz] = []
     """Directions in which it is measured, in the map: the two of the slice, and the normal of a
     surface."""
+    target: FoundTarget | None = None
+    """The black-white target within 10 cm; None = there is none."""
 
 
 class CompareRequest(Strict):

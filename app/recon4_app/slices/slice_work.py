@@ -13,12 +13,14 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.findings.walk import final_trajectory, positions_along
+from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import TILES
 from recon4.model.plain import to_plain
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
+from recon4.slices.black_white import find_black_white
 from recon4.slices.colors import ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
@@ -43,6 +45,7 @@ from recon4.store.checked import CheckedArtifact
 from recon4.untrusted.names import visible
 from recon4_app.slices.model import (
     CompareRequest,
+    FoundTarget,
     ListedReference,
     OtherMap,
     PickRequest,
@@ -210,6 +213,18 @@ def pick_point(artifacts: Artifacts, ask: PickRequest) -> PickView:
         uv=found.uv,
         about=found.about,
         along=[_xyz(row) for row in measured_directions(tiles, plane, np.array(found.p_map))],
+        target=_target_at(tiles, np.array(found.p_map)),
+    )
+
+
+def _target_at(tiles: TileSet, p_map: Array) -> FoundTarget | None:
+    """The black-white target around a pick."""
+    found = find_black_white(tiles, p_map)
+    if found is None:
+        return None
+    off_m = float(np.linalg.norm(found.p_map - p_map))
+    return FoundTarget(
+        p_map=_xyz(found.p_map), sd_m=found.sd_m, sd_across_m=found.sd_across_m, off_m=off_m
     )
 
 
