@@ -114,6 +114,7 @@ def info(
     fields: FieldsOption = "",
 ) -> None:
     """Say what a recording holds, what will be derived and what is missing."""
+    language = of_terminal()  # confinement leaves no environment
     confine_command(write=[rig_out.parent] if rig_out else [])
     from recon4.recording.info import describe
     from recon4.recording.recipes.given_rig import recipe_given
@@ -124,9 +125,9 @@ def info(
 
         write_first_rig(found.first_rig, rig_out)
     if as_json:
-        _write_json(found.to_json(of_terminal()))
+        _write_json(found.to_json(language))
     else:
-        write("\n".join(found.lines(of_terminal())))
+        write("\n".join(found.lines(language)))
 
 
 @app.command()

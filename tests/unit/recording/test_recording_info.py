@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from recon4.cli import main as commands
 from recon4.errors import UnknownFormat
+from recon4.locales.languages import ENVIRONMENT
 from recon4.recording.info import describe
 from recon4.recording.kinds import RecordingKind, recognize
 from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud, write_room_bag
@@ -153,3 +155,11 @@ def test_samples_without_stamps_are_counted_as_repaired(tmp_path):
 
     assert "100 of 100 IMU samples: without a stamp, the time of recording is used" in repaired
     assert "10 of 10 GNSS positions: without a stamp, the time of recording is used" in repaired
+
+
+def test_the_command_speaks_the_language_that_its_confinement_forgets(pcap, monkeypatch, capsys):
+    monkeypatch.setenv(ENVIRONMENT, "de")
+    monkeypatch.setattr(commands, "confine_command", lambda **_: monkeypatch.delenv(ENVIRONMENT))
+
+    assert commands.main(["info", str(pcap)]) == 0
+    assert "derived   Kein Rig angegeben: ein VLP-16" in capsys.readouterr().out
