@@ -9,6 +9,7 @@ from fastapi.responses import RedirectResponse
 from pydantic import BaseModel, ConfigDict
 
 from recon4.export.options import ExportOptions
+from recon4.locales.coded import CodedText
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
@@ -60,11 +61,8 @@ def map_file(
     options = ExportOptions(**query.model_dump())
     job = equal_order(server, project_id, ExportOrder(file=f"map.{ending}", options=options))
     if job is None:
-        raise NotFound(
-            f"map.{ending} with these options was not made of this map yet: order it with "
-            f"POST /api/projects/{project_id}/exports",
-            remedy=project_page(project_id),
-        )
+        missing = CodedText("export-not-ordered", file=f"map.{ending}", project=project_id)
+        raise NotFound(missing, remedy=project_page(project_id))
     if not job.over:
-        raise Conflict(f"map.{ending} is being made: ask again when it is finished")
+        raise Conflict(CodedText("export-being-made", file=f"map.{ending}"))
     return RedirectResponse(f"exports/{job.id}/file", status_code=307)

@@ -101,7 +101,8 @@ async def order(
     """
     wanted = ExportOrder(file=new.file, options=new.options)
     if same := await run_in_threadpool(equal_order, server, project_id, wanted):
-        row = _view(server, same, latest_map_key(server, project_id))
+        map_key = latest_map_key(server, project_id)
+        row = _view(server, same, map_key, language=language_of(request))
         return JSONResponse(jsonable_encoder(row))
     found = await _estimate(project_id, new, server=server, caller=caller)
     return await run_in_threadpool(_add, project_id, new, server, request=request, size=found.bytes)

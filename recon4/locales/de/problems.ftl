@@ -92,6 +92,8 @@ restore-taken = { WORDS($kind, of: "trash") } { $name } gibt es inzwischen; erst
 
 comparison-no-map = die Karte nennen, mit der verglichen wird
 comparison-gone = dieser Vergleich wurde entfernt oder ist noch nicht fertig: erneut anfordern
+export-not-ordered = { $file } wurde mit diesen Angaben noch nicht aus dieser Karte erstellt: mit POST /api/projects/{ $project }/exports bestellen
+export-being-made = { $file } wird gerade erstellt: nachfragen, wenn es fertig ist
 export-gone = diese Datei wurde entfernt oder ist noch nicht fertig: erneut anfordern
 export-not-over = dieser Export ist nicht zu Ende: erst abbrechen
 export-no-room = dieser Export braucht während der Herstellung etwa { DECIMAL($needed_gb, digits: 1) } GB, frei sind { DECIMAL($free_gb, digits: 1) } GB

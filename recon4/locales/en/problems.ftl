@@ -92,6 +92,8 @@ restore-taken = another { $kind } { $name } exists now; delete or rename it firs
 
 comparison-no-map = name the map to compare with
 comparison-gone = this comparison was removed, or is not made yet: order it again
+export-not-ordered = { $file } with these options was not made of this map yet: order it with POST /api/projects/{ $project }/exports
+export-being-made = { $file } is being made: ask again when it is finished
 export-gone = this file was removed, or is not made yet: order it again
 export-not-over = this export is not over: cancel it first
 export-no-room = this export needs about { DECIMAL($needed_gb, digits: 1) } GB while it is made, { DECIMAL($free_gb, digits: 1) } GB are free
