@@ -97,5 +97,6 @@ def drag(page, start, end):
 def counted(page):
     """Count the points that were painted."""
     panel = page.locator("class-corrections")
+    panel.get_by_label("New class").select_option("moving")
     panel.get_by_role("button", name="Count the points").click()
     expect(panel.get_by_role("status")).to_have_text(re.compile(r"\d+ points, now: "))
