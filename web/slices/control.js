@@ -25,7 +25,7 @@ import { decimal, t } from "../shared/texts.js";
 import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { AXES, combined } from "./measured.js";
-import { figures, residualCells, roleText } from "./residual_table.js";
+import { figures, HEADS, residualCells, roleText } from "./residual_table.js";
 import { siteSection } from "./site.js";
 
 /**
@@ -47,10 +47,6 @@ const MAX_NAMED = 10;
 const MOST_BYTES = 600_000;
 /** @type {Record<string, Columns[number]>} */
 const SWAPPED = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
-const HEADS = [
-  ...[t("point"), t("role"), "dE", "dN", "dU", "2D", "3D", t("across")],
-  ...[t("stated"), t("residual-sigma"), ""],
-];
 
 /**
  * A record without one of its fields.
@@ -273,7 +269,10 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
             t("here"),
             t("is-picked", { name: one.id }),
             () => pick(one),
-          )}${act(t("target"), t("is-target", { name: one.id }), () => target(one))}${act(t("surface"), t("on-surface", { name: one.id }), () => surface(one))}${
+          )}
+          ${act(t("target"), t("is-target", { name: one.id }), () => target(one))}
+          ${act(t("surface"), t("on-surface", { name: one.id }), () => surface(one))}
+          ${
             residual || earlier
               ? act(t("clear"), t("clear-point", { name: one.id }), () => drop(one.id))
               : nothing

@@ -7,6 +7,11 @@ import { html } from "../shared/dom.js";
 
 const UNKNOWN = "–"; // not measured
 const COLUMNS = 8;
+/** Heads of the table of points. */
+export const HEADS = [
+  ...[t("point"), t("role"), "dE", "dN", "dU", "2D", "3D", t("across")],
+  ...[t("stated"), t("residual-sigma"), ""],
+];
 
 const cm = (/** @type {number | null} */ m) => (m === null ? UNKNOWN : decimal(m * 100, 1));
 const cell = (/** @type {string} */ text, className = "") =>
