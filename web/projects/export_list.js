@@ -59,8 +59,7 @@ function exportRow(project, row, known, actions) {
     <p class="quiet">
       ${[made?.text, row.person, when(row.finished || row.created)].filter(Boolean).join(" · ")}
     </p>
-    ${made ? details(row) : nothing}
-    ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
+    ${made ? details(row) : nothing} ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
     <div class="buttons">
       ${open && known.mine(row) ? button(t("cancel"), () => actions.cancel(row)) : nothing}
       ${row.kept && known.mine(row) ? button(t("remove-file"), () => actions.remove(row)) : nothing}
