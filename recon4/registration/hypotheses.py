@@ -23,6 +23,7 @@ from recon4.registration.choose import Trial, Trials, choose
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.hypothesis_table import row_of
 from recon4.registration.imu_choice import choose_imu, start_and_fastest_turn
+from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.moving import find_moving, hide_moving
 from recon4.registration.tuning_motion import HYPOTHESES
 from recon4.registration.walk import TrackedWalk, WalkInputs, positions_m, track_walk
@@ -179,18 +180,25 @@ def is_settled(trials: Trials[TrackedWalk]) -> bool:
 def _with_corrected_imu(trials: Trials[TrackedWalk]) -> Iterator[Hypothesis]:
     """The best one again, with what it found wrong with the IMU corrected from the start.
 
-    Until the scale, the axes and the clock of an IMU are known the trajectory errs by them.
+    Until the scale, the axes and the clock of an IMU are known the trajectory errs by them, and
+    what it finds is a part of a large error: the next walk finds the rest.
     """
-    best = trials.best
-    imu = _as_found(best)
-    if imu is not best.hypothesis.imu:
+    while True:
+        best = trials.best
+        imu = _as_found(best)
+        if imu is best.hypothesis.imu:
+            return
         yield best.hypothesis.with_imu(imu)
+        if trials.best is best:
+            return
 
 
 def _as_found(trial: Trial[TrackedWalk]) -> ImuAssumption:
-    """The IMU of a walk, corrected by what the walk found wrong with it."""
+    """The IMU of a walk, corrected by what the walk found wrong with it beyond what it knew."""
     tracked, imu = trial.tracked, trial.hypothesis.imu
-    if imu.known is not None or tracked.estimate is None or not tracked.estimate.faults:
+    if tracked.estimate is None or not tracked.estimate.faults:
+        return imu
+    if imu.known is not None and tracked.estimate.confirms(ImuEstimate.of(imu.known)):
         return imu
     return replace(imu, known=tracked.imu_state)
 

@@ -55,6 +55,15 @@ class ImuEstimate:
         """What is far from right; none if all is in order."""
         return (*self._scale(), *self._axes(), *self._clock())
 
+    def confirms(self, known: ImuEstimate) -> bool:
+        """Whether it differs from what was known before the walk by less than a fault."""
+        further = self.gain - known.gain
+        return bool(
+            abs(self.clock_s - known.clock_s) <= IMU_ERRORS.most_clock_s
+            and np.abs(further[::4]).max() <= IMU_ERRORS.most_gain
+            and np.linalg.norm(_TURN @ further) <= IMU_ERRORS.most_angle_rad
+        )
+
     def _scale(self) -> tuple[ImuFault, ...]:
         scale, sd = self.gain[::4], np.sqrt(np.diag(self.gain_cov)[::4])
         far = (np.abs(scale) > IMU_ERRORS.most_gain) & (np.abs(scale) > IMU_ERRORS.sigmas * sd)

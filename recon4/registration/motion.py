@@ -114,9 +114,17 @@ class ImuMotion:
         self._is_estimated = np.diag(self._unit_cov) > 0.0
 
     def remember(self, state: MotionState) -> None:
-        """Begin later initial states with what this one knows of gain and clock."""
-        self._unit = state.vector[VECTOR.unit]
+        """Begin later initial states with what this one knows of gain and clock.
+
+        What is far beyond the expected was found with a trajectory that it had bent: some of it is
+        left.
+        """
+        found = state.vector[VECTOR.unit]
         less = np.repeat([PREDICTION.less_sure_gain, PREDICTION.less_sure_clock_s], [9, 1])
+        beyond = np.abs(found - self._unit)
+        beyond[beyond < PREDICTION.beyond_sd * np.sqrt(np.diag(self._unit_cov))] = 0.0
+        less = np.maximum(less, PREDICTION.left_ratio * beyond)
+        self._unit = found
         self._unit_cov = state.P[STATE.unit, STATE.unit] + np.diag(self._is_estimated * less**2)
 
     def extend(self, imu: ImuSamples) -> None:

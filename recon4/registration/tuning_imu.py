@@ -130,6 +130,11 @@ class PredictionTuning(Struct, frozen=True, kw_only=True):
     less_sure_clock_s: float = 5e-4
     """Standard deviations that are added to both when a new map is begun: what was found before may
     have come from the map that was lost."""
+    beyond_sd: float = 6.0
+    """A gain or clock is beyond the expected at this many standard deviations of its prior …"""
+    left_ratio: float = 0.25
+    """… and this part of it may be left (one standard deviation). With all of it a clock 100 ms
+    off settled at 250 ms: steps of a walk repeat."""
 
 
 PREDICTION = PredictionTuning()

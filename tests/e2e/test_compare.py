@@ -16,7 +16,7 @@ from tests.served import served
 pytestmark = pytest.mark.e2e
 
 TOP = "camera=8,5,1.5,0,-90,14,1"
-MOVED_M, FAR_M = 0.05, 2.0
+MOVED_M, FAR_M = 0.045, 2.0
 
 
 def projects(root):

@@ -31,13 +31,18 @@ def estimate(gain=None, *, clock_s=0.0, sd=SD):
 def walked(office_frames):
     """An office walk with a wrong IMU -> what is found of it, and the steps."""
 
-    def run(scale=1.0, late_ns=0, settings=SETTINGS):
+    def run(scale=1.0, late_ns=0, settings=SETTINGS, known=None):
         imu = office_frames.imu
         wrong = ImuSamples(imu.t_ns + late_ns, scale * imu.gyro_rad_s, imu.accel_m_s2)
         odometry = Odometry(office_frames.rig, settings, wrong)
+        if known is not None:
+            odometry.remember_imu(known)
         steps = [odometry.push(frame) for frame in office_frames]
+        states.append(odometry.imu_state)
         return ImuEstimate.of(odometry.imu_state), steps
 
+    states = []
+    run.states = states
     return run
 
 
@@ -64,6 +69,26 @@ def test_a_wrong_clock_is_measured_and_named(walked, late_ns, words):
 
     assert found.clock_s == pytest.approx(1e-9 * late_ns, abs=5e-4)
     assert f"{words} that of the LiDARs" in " ".join(said(found))
+
+
+@pytest.mark.parametrize("late_ns", [100_000_000, -100_000_000])
+def test_a_clock_far_off_is_found_by_the_second_walk(walked, late_ns):
+    walked(late_ns=late_ns)
+
+    found, _ = walked(late_ns=late_ns, known=walked.states[-1])
+
+    assert found.clock_s == pytest.approx(1e-9 * late_ns, abs=3e-3)
+
+
+def test_a_walk_confirms_what_differs_by_less_than_a_fault():
+    known = estimate(clock_s=0.060)
+
+    assert estimate(clock_s=0.063).confirms(known)
+    assert not estimate(clock_s=0.065).confirms(known)
+    assert not estimate(np.diag([0.0, 0.02, 0.0]), clock_s=0.060).confirms(known)
+    assert not estimate(so3_exp(np.array([0.0, 0.013, 0.0])) - np.eye(3), clock_s=0.06).confirms(
+        known
+    )
 
 
 @pytest.mark.study
