@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Query
+from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import RedirectResponse
 from pydantic import BaseModel, ConfigDict
 
@@ -16,6 +16,7 @@ from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict, NotFound, project_page
 from recon4_app.exports.equal_orders import equal_order
 from recon4_app.jobs.model import ExportOrder
+from recon4_app.network.behind import public_path
 
 router = APIRouter(
     prefix="/api/projects/{project_id}",
@@ -52,6 +53,7 @@ def map_file(
     ending: MapEnding,
     query: Annotated[MapFileQuery, Query()],
     *,
+    request: Request,
     server: Server,
 ) -> RedirectResponse:
     """Lead to the newest export of the present map with these options.
@@ -65,4 +67,5 @@ def map_file(
         raise NotFound(missing, remedy=project_page(project_id))
     if not job.over:
         raise Conflict(CodedText("export-being-made", file=f"map.{ending}"))
-    return RedirectResponse(f"exports/{job.id}/file", status_code=307)
+    path = f"/api/projects/{project_id}/exports/{job.id}/file"
+    return RedirectResponse(public_path(request.scope, path), status_code=307)
