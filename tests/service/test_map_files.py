@@ -64,7 +64,7 @@ def followed(server, name, **how):
     led = server.get(f"{BASE}/{name}", **how)
     if led.status_code != 307:
         return led
-    return server.get(f"{BASE}/{led.headers['location']}", headers=how.get("headers"))
+    return server.get(led.headers["location"], headers=how.get("headers"))
 
 
 def test_an_interrupted_download_continues_with_the_same_file(server, files):
