@@ -17,7 +17,7 @@ const NEAREST_M = 1; // nearer points of a tile are drawn as those at this dista
 const FINEST_PX = 0.9; // neighbors nearer to each other than this do not show
 const COARSEST_PX = 1000;
 const ENOUGH = 12_000; // points of a response, to which parts of further tiles are added before
-export const MOST_PARTS = 64; // of a response
+const MOST_PARTS = 64; // of a response
 
 /**
  * Whether a box is outside of one of the planes (n, d): n · p + d < 0 in all of it.
@@ -117,20 +117,17 @@ export function nextPart(have, wanted, points, most = 120_000, least = 12_000) {
 }
 
 /**
- * The parts of the next response, taken from the front of a reading order.
- * @param {number[]} order
- * @param {{tiles: Box[], counts: number[], have: number[]}} shown
+ * Takes the parts of the next response from the front of a queue.
+ * @template {{start: number, stop: number}} Part
+ * @param {Part[]} queue
  */
-export function nextParts(order, { tiles, counts, have }) {
-  const parts = [];
-  let points = 0;
-  while (order.length && parts.length < MOST_PARTS && points < ENOUGH) {
-    const tile = /** @type {number} */ (order.shift());
-    const part = nextPart(have[tile], counts[tile], tiles[tile].points);
-    if (part) parts.push({ tile, ...part });
-    points += part ? part.stop - part.start : 0;
+export function takeParts(queue) {
+  let [count, points] = [0, 0];
+  while (count < Math.min(queue.length, MOST_PARTS) && points < ENOUGH) {
+    points += queue[count].stop - queue[count].start;
+    count++;
   }
-  return parts;
+  return queue.splice(0, count);
 }
 
 /**

@@ -2,7 +2,7 @@
 
 import { dot, minus } from "./camera.js";
 import { apartOf } from "./density.js";
-import { isOutside, MOST_PARTS, nextParts, readingOrder } from "./lod.js";
+import { isOutside, nextPart, readingOrder, takeParts } from "./lod.js";
 import {
   BufferAttribute,
   BufferGeometry,
@@ -32,7 +32,6 @@ import {
 
 const MOST_POINTS = 6_000_000; // kept; of more, those that are not shown go
 const AT_ONCE = 3;
-const MOST_VALUES = 120_000; // of a response
 
 export class MapTiles {
   #index;
@@ -211,9 +210,13 @@ export class MapTiles {
     const { tiles } = this.#index;
     const have = this.have;
     const order = readingOrder(tiles, { counts, have }, camera);
-    const free = order.filter((k) => !this.#reading.has(k));
-    while (free.length && this.#requests < AT_ONCE)
-      this.#readParts(nextParts(free, { tiles, counts, have }));
+    const queue = order
+      .filter((k) => !this.#reading.has(k))
+      .flatMap((tile) => {
+        const part = nextPart(have[tile], counts[tile], tiles[tile].points);
+        return part ? [{ tile, ...part }] : [];
+      });
+    while (queue.length && this.#requests < AT_ONCE) this.#readParts(takeParts(queue));
     if (!order.length && !this.#reading.size) this.#readValues();
   }
 
@@ -247,17 +250,8 @@ export class MapTiles {
       const chunk = chunks.find((one) => one.valuesOf !== values);
       return chunk ? [{ tile, chunk, start: chunk.start, stop: chunk.stop }] : [];
     });
-    while (missing.length && this.#requests < AT_ONCE) {
-      const parts = [missing.splice(0, 1)[0]];
-      let points = parts[0].stop - parts[0].start;
-      while (missing.length && parts.length < MOST_PARTS) {
-        const count = missing[0].stop - missing[0].start;
-        if (points + count > MOST_VALUES) break;
-        points += count;
-        parts.push(missing.splice(0, 1)[0]);
-      }
-      this.#readValuesOf(values, parts);
-    }
+    while (missing.length && this.#requests < AT_ONCE)
+      this.#readValuesOf(values, takeParts(missing));
   }
 
   /**
