@@ -1,5 +1,6 @@
 // The brush: a drag paints what is seen under the pointer, to give it another class.
 
+import { MOST_PLACES } from "../shared/brush_limits.js";
 import { t } from "../shared/texts.js";
 import { page } from "./page.js";
 
@@ -9,7 +10,6 @@ import { page } from "./page.js";
  * @typedef {(at: Pixel) => number[] | null} Under the point of the map under a pixel
  */
 
-const MOST_PLACES = 2000; // that the server takes
 const CLOSE = 0.3; // nearer places, in radii, add nothing
 const FAR = 1.2; // between places farther apart, in radii, others are looked for
 const FINEST_PX = 4;

@@ -1,13 +1,12 @@
 // The brush in the panel of the map: its radius, and what was painted.
 
+import { RADII_M } from "../shared/brush_limits.js";
 import { html } from "../shared/dom.js";
 import { t } from "../shared/texts.js";
 import { numberField } from "./number_field.js";
 import { page } from "./page.js";
 
 /** @import {Act} from "./bar.js" */
-
-const RADII_M = { least: 0.005, most: 5 };
 
 /** The buttons of the brush in the panel. */
 export function brushFields(/** @type {Act} */ act) {

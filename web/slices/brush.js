@@ -1,5 +1,6 @@
 // The brush on a slice: a drag paints its points, as deep as the slice, to get another class.
 
+import { MOST_PLACES } from "../shared/brush_limits.js";
 import { axesOf, normalOf } from "./state.js";
 
 /**
@@ -12,9 +13,7 @@ import { axesOf, normalOf } from "./state.js";
  * @property {Array<Array<[number, number]>>} strokes u, v [m]
  */
 
-const MOST_PLACES = 2000; // that the server takes
 const CLOSE = 0.25; // nearer places, in radii, add nothing
-export const RADII_M = { least: 0.005, most: 5 };
 
 export const noBrush = () => /** @type {Brush} */ ({ on: false, radius: 0.1, strokes: [] });
 

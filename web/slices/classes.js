@@ -4,7 +4,8 @@
 import { html, nothing, render, targetOf } from "../shared/dom.js";
 import "../shared/class_corrections.js";
 import { t } from "../shared/texts.js";
-import { RADII_M, brushVolume } from "./brush.js";
+import { RADII_M } from "../shared/brush_limits.js";
+import { brushVolume } from "./brush.js";
 import { axesOf } from "./state.js";
 
 /**
