@@ -14,13 +14,10 @@ from typing import Any
 import numpy as np
 
 from recon4.mapping.columns import BLOCKS, PATHS, index_dtype
-from recon4.progress import Silent
-from recon4.settings import Settings
-from recon4.settings.reads import ReadsNothing
 from recon4.store.arrays import load_array
-from recon4.store.project import Project, read_artifacts
-from recon4.store.stage import Input, Stage, StageContext, StageRunner
-from tests.project_builder import _level, _odometry, _verification, loop_walk
+from recon4.store.project import read_artifacts
+from recon4.store.stage import Input, StageContext
+from tests.benchmarks.large_map import build_with_map
 
 BETWEEN_M = 5.0
 """Width of what is between copies, at least; they begin at whole tiles."""
@@ -29,19 +26,7 @@ BETWEEN_M = 5.0
 def build(root: Path, source: Path, *, points: int) -> None:
     """Make a finished project in an empty folder."""
     folder = read_artifacts(source)["map"]
-    with Project.open(root) as project:
-        project.describe(preset="indoor", rig="4RECON")
-        runner = StageRunner(project, Settings(), Silent())
-        walk = Input("walk", loop_walk())
-        for name, function in (
-            ("odometry", _odometry),
-            ("verification", _verification),
-            ("level", _level),
-        ):
-            runner.run(Stage(name, 1, ReadsNothing, function), walk=walk)
-        runner.run(
-            Stage("map", 1, ReadsNothing, _map), what=Input(f"{folder} {points}", (folder, points))
-        )
+    build_with_map(root, _map, what=Input(f"{folder} {points}", (folder, points)))
 
 
 def _map(context: StageContext, *, what: tuple[Path, int]) -> None:

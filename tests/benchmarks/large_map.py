@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -31,6 +32,11 @@ TILE_M = 5.0
 
 def build_large_project(root: Path, *, points: int = 20_000_000) -> None:
     """Make a finished project in an empty folder; needs some 20 bytes a point on disk."""
+    build_with_map(root, _map, points=Input(f"large {points}", points))
+
+
+def build_with_map(root: Path, map_: Callable[..., None], **inputs: Input) -> None:
+    """Make a finished project with a map that the function of its stage writes."""
     with Project.open(root) as project:
         project.describe(preset="indoor", rig="4RECON")
         runner = StageRunner(project, Settings(), Silent())
@@ -41,7 +47,7 @@ def build_large_project(root: Path, *, points: int = 20_000_000) -> None:
             ("level", _level),
         ):
             runner.run(Stage(name, 1, ReadsNothing, function), walk=walk)
-        runner.run(Stage("map", 1, ReadsNothing, _map), points=Input(f"large {points}", points))
+        runner.run(Stage("map", 1, ReadsNothing, map_), **inputs)
 
 
 def write_large_map(out: Path, *, points: int) -> None:
