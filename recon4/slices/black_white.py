@@ -17,6 +17,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
+from recon4.slices.pick import columns_near
 from recon4.slices.tuning import BLACK_WHITE
 
 
@@ -39,18 +40,9 @@ class BlackWhiteTarget:
 
 def find_black_white(tiles: TileSet, p_map: Array) -> BlackWhiteTarget | None:
     """The target around a place in a map [m], (3,); None if there is none."""
-    names = {*tiles.fields}
-    value = "intensity_normalized" if "intensity_normalized" in names else "intensity"
-    reach_m, near = BLACK_WHITE.reach_m + BLACK_WHITE.radius_m, []
-    for tile in tiles:
-        low, high = np.array(tile.low_m) - reach_m, np.array(tile.high_m) + reach_m
-        if np.all((p_map >= low) & (p_map <= high)):
-            found = tile.read(["xyz", value])
-            p = found["xyz"].astype(np.float64) + tile.origin_m
-            rows = np.linalg.norm(p - p_map, axis=1) <= reach_m
-            near.append(np.column_stack([p[rows], found[value][rows].astype(np.float64)]))
-    points = np.concatenate([np.empty((0, 4)), *near])
-    return black_white_at(points[:, :3], points[:, 3], p_map)
+    value = "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
+    near = columns_near(tiles, p_map, BLACK_WHITE.reach_m + BLACK_WHITE.radius_m, value)
+    return black_white_at(near["xyz"], near[value].astype(np.float64), p_map)
 
 
 def black_white_at(points: Array, intensity: Array, p_map: Array) -> BlackWhiteTarget | None:

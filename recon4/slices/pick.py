@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import TileSet
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.slice_plane import SlicePlane, Vector
@@ -96,17 +97,25 @@ def measured_directions(tiles: TileSet, plane: SlicePlane, p_map: Array) -> Arra
 
 def points_near(tiles: TileSet, p_map: Array, radius_m: float) -> Array:
     """Points of the map in a ball [m], (N, 3)."""
+    return columns_near(tiles, p_map, radius_m)["xyz"]
+
+
+def columns_near(tiles: TileSet, p_map: Array, radius_m: float, *names: str) -> Columns:
+    """Points of the map in a ball: ``xyz`` in the map [m], (N, 3) float64, and other fields."""
     low, high = p_map - radius_m, p_map + radius_m
-    near = [np.empty((0, 3))]
+    near: list[Columns] = []
     for tile in tiles:
         if np.any(np.array(tile.low_m) > high) or np.any(np.array(tile.high_m) < low):
             continue
-        xyz = tile.read(["xyz"])["xyz"]
-        box = np.all(np.abs(xyz - (p_map - tile.origin_m)) <= radius_m, axis=1)
-        near.append(xyz[box].astype(np.float64) + tile.origin_m)
-    points = np.concatenate(near)
-    out: Array = points[np.linalg.norm(points - p_map, axis=1) <= radius_m]
-    return out
+        found = tile.read(["xyz", *names])
+        box = np.all(np.abs(found["xyz"] - (p_map - tile.origin_m)) <= radius_m, axis=1)
+        found = {name: values[box] for name, values in found.items()}
+        found["xyz"] = found["xyz"].astype(np.float64) + tile.origin_m
+        ball = np.linalg.norm(found["xyz"] - p_map, axis=1) <= radius_m
+        near.append({name: values[ball] for name, values in found.items()})
+    if not near:
+        return {"xyz": np.empty((0, 3)), **{name: np.empty(0) for name in names}}
+    return {name: np.concatenate([one[name] for one in near]) for name in near[0]}
 
 
 def _plane_at(around: Array) -> tuple[Array, Array] | None:
