@@ -59,7 +59,8 @@ def _spread(facts: dict[str, Any], copies: int) -> dict[str, Any]:
     """The list of tiles of a map in several places of a square grid."""
     low, high = (np.array(one) for one in facts["bounds_m"])
     steps = np.ceil((high - low + BETWEEN_M) / facts["tile_m"]).astype(int)
-    rows = sum(tile["stop"] - tile["start"] + tile["strays"] for tile in facts["tiles"])
+    last = facts["tiles"][-1]
+    rows = last["stop"] + last.get("strays", 0)
     wide = int(np.ceil(np.sqrt(copies * steps[1] / steps[0])))
     tiles = []
     for k in range(copies):
