@@ -272,7 +272,7 @@ def test_what_is_typed_before_the_choices_are_known_is_not_lost(server, page, tm
 def test_a_hostile_link_to_the_viewer_stays_on_this_server(finished, page):
     page.goto(f"{finished.url}/projects/office/viewer/?websocket=ws://127.0.0.1:9")
 
-    expect(page.get_by_text("Connected", exact=True)).to_be_visible()
+    expect(page.get_by_text("Controls", exact=True)).to_be_visible()
 
 
 @looks("desktop light", "phone dark")

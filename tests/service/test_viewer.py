@@ -69,6 +69,17 @@ def test_the_key_for_raw_intensity_sends_colors_only(looking):
     assert looking.widget("Color by")["value"] == "raw intensity"
 
 
+def test_the_viewer_speaks_the_language_that_the_page_left(server):
+    with viewing(server.url, storage={"recon4.language": "de"}) as client:
+        client.send(camera((8.0, 3.0, 1.5)))
+        client.until(lambda c: "Farbe: normierte Intensität" in c.html())
+        client.set("Färben nach", "Höhe")
+        client.until(lambda c: "m über dem Ursprung" in c.html())
+
+        assert client.widget("Kanten nach")["value"] == "Urteil"
+        assert json.loads(client.storage["recon4.view.office"])["color_by"] == "height"
+
+
 def test_a_range_set_by_a_person_is_in_the_legend_until_it_is_taken_back(looking):
     looking.set("Color by", "height")
     looking.until(lambda c: "Points by height" in c.html())

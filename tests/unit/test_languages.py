@@ -22,8 +22,10 @@ MADE = re.compile(
     r"|[A-Z][A-Z0-9-]+$"
 )
 """Names that code puts together, of findings and counts; their own tests compare them."""
-PREFIX = re.compile(r'\bwordOf\(\s*"([a-z-]+)"|\bt\(`([a-z-]+)-\$\{')
-"""Of names that pages put together."""
+PREFIX = re.compile(
+    r'(?:\bword(?:Of|_of)\(\s*"|_choice\("[a-z-]+", ")([a-z-]+)"|(?:\bt\(`|\bf")([a-z-]+)-\$?\{'
+)
+"""Of names that pages and the viewer put together."""
 
 
 def parts(message):

@@ -27,7 +27,7 @@ from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.phone import Phone, state_of
 from recon4_app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
 from recon4_app.names import Name, Note
-from recon4_app.network.close_codes import CloseCode
+from recon4_app.network.close_codes import CloseCode, close_reason
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.pages import language_of, page_response
 from recon4_app.rig_files import check_rig_file
@@ -217,7 +217,7 @@ async def stream(socket: WebSocket) -> None:
         with current_capture.streams.place(socket):
             await Phone(socket, current_capture, language_of(socket)).serve()
     except TooMany as error:
-        await socket.close(CloseCode.TOO_MANY, str(error)[:120])
+        await socket.close(CloseCode.TOO_MANY, close_reason(error, socket))
     except (WebSocketDisconnect, TimeoutError, RuntimeError):
         pass  # disconnected or stalled: it reconnects and reports what it has
 

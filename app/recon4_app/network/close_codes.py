@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from starlette.requests import HTTPConnection
+
+from recon4.locales.coded import said, text_of
+from recon4_app.pages import language_of
+
 
 class CloseCode(IntEnum):
     """Close codes of our own: 4000 and the HTTP status that says the same."""
@@ -12,3 +17,16 @@ class CloseCode(IntEnum):
     """The browser read nothing for too long."""
     TOO_MANY = 4429
     """Beyond the limit of streams; the reason has the message for the user."""
+
+
+MOST_BYTES = 123
+"""Longest reason of a closed WebSocket (RFC 6455, 5.5.1)."""
+
+
+def close_reason(error: BaseException, connection: HTTPConnection) -> str:
+    """The message of an error in the language of a browser, as the reason of a closed WebSocket.
+
+    What is too long ends after a whole character.
+    """
+    text = said(text_of(error), language_of(connection))
+    return text.encode()[:MOST_BYTES].decode(errors="ignore")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import re
 from dataclasses import replace
 from functools import cache
 from importlib.util import find_spec
@@ -11,14 +12,18 @@ from pathlib import Path
 from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
+from recon4.locales.coded import said
+from recon4.locales.texts import Texts
 from recon4_app.deps import Server
 from recon4_app.network.behind import public_path
-from recon4_app.pages import WEB
+from recon4_app.pages import WEB, Language, language_of
 from recon4_app.projects.model import ProjectView
 from recon4_app.viewer.hotkeys import HOTKEYS
+from recon4_app.viewer.words import approval_words, word_of, words
 
 router = APIRouter()
 
+_LANG = re.compile(r'<html(?: lang="[^"]*")?')
 SHIMS = """
 <script>
 // Taps on the scene: viser ignores captured pointers, and browsers capture touch implicitly.
@@ -26,6 +31,8 @@ addEventListener('pointerdown', (event) => {
   if (event.pointerType === 'touch' && event.target.hasPointerCapture?.(event.pointerId))
     event.target.releasePointerCapture(event.pointerId);
 }, true);
+// The viewer reads the language of the page here. viser puts its prefix before the name.
+localStorage.setItem('viser-user:recon4.language', document.documentElement.lang);
 // Reconnecting: viser requires focus, which an iframe that was not tapped never has.
 Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
@@ -57,10 +64,11 @@ addEventListener('hashchange', takeStretch);
 addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   const withText = (text) => [...document.querySelectorAll('#root *')].find((one) =>
     !one.firstElementChild && one.textContent === text);
-  const title = withText('Connected');
-  if (!title || !withText('Edges by')) return;
+  const cover = document.getElementById('cover');
+  const title = withText(cover.dataset.controls);
+  if (!title || !withText(cover.dataset.edgesBy)) return;
   watch.disconnect();
-  document.getElementById('cover').remove();
+  cover.remove();
   pressForStretch();
   if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
@@ -81,11 +89,13 @@ addEventListener('DOMContentLoaded', () => {
   const began = performance.now();
   const timer = setInterval(async () => {
     const words = document.getElementById('cover-words');
+    const { opening, again, silent } = words?.dataset ?? {};
     if (!words) return clearInterval(timer);
     const seconds = Math.round((performance.now() - began) / 1000);
     const problem = await fetch('state').then((response) => response.json())
-      .then((state) => state.problem, () => 'the server does not answer');
-    words.textContent = problem ? `${problem}. Trying again…` : `Opening the map… ${seconds} s`;
+      .then((state) => state.problem, () => silent);
+    words.textContent = (problem ? again : opening)
+      .replace('PROBLEM', () => problem).replace('SECONDS', seconds);
     words.classList.toggle('error', problem !== '');
   }, 3000);
 });
@@ -123,14 +133,16 @@ def viewer_page(project_id: str, request: Request, server: Server) -> Response:
         return RedirectResponse(request.scope["path"], status_code=307)
     policy = {"Content-Security-Policy": policy_for(request.headers["host"])}
     approval = server.checks.known(server.projects.folder(project.id), project.approval)
-    page = with_shims(client(), replace(project, approval=approval))
-    return HTMLResponse(page, headers=policy)
+    language = language_of(request)
+    page = with_shims(client(), replace(project, approval=approval), language)
+    headers = {"Content-Language": language, "Vary": "Accept-Language, Cookie"}
+    return HTMLResponse(page, headers=policy | headers)
 
 
 @router.get("/projects/{project_id}/viewer/state", include_in_schema=False)
-def viewer_state(project_id: str, server: Server) -> dict[str, str]:
+def viewer_state(project_id: str, server: Server, language: Language) -> dict[str, str]:
     """Why the viewer does not start, as ``problem``; empty = it runs or starts."""
-    return {"problem": server.viewers.problem(server.projects.folder(project_id))}
+    return {"problem": said(server.viewers.problem(server.projects.folder(project_id)), language)}
 
 
 @router.get("/projects/{project_id}/viewer", include_in_schema=False)
@@ -156,11 +168,13 @@ def client() -> str:
     return page.read_text("utf-8")
 
 
-def with_shims(page: str, project: ProjectView) -> str:
+def with_shims(page: str, project: ProjectView, language: str) -> str:
     """The page with our fixes, a caption about units and frame, and a cover until it is ready.
 
-    The cover shows the thumbnail of a finished map.
+    The cover shows the thumbnail of a finished map. All words are in one language.
     """
+    say = words(language)
+    page = _LANG.sub(f'<html lang="{language}"', page, count=1)
     head, body = page.find("<head>"), page.rfind("</body>")
     assert 0 <= head < body
     head += len("<head>")
@@ -168,22 +182,40 @@ def with_shims(page: str, project: ProjectView) -> str:
     address = f"../../../api/projects/{project.id}/thumbnail"
     image = f'<img src="{address}" alt="">' if project.has_map else ""
     badge = (
-        f'<div id="cover">{image}<span id="cover-words" role="status">Opening the map…</span></div>'
-        f'<div id="frame-caption">{html.escape(frame_caption(project))}</div>'
-        '<button id="show-keys" type="button" aria-label="Keys">?</button>' + list_of_keys()
+        f'<div id="cover" {_data(say, controls="controls", edges_by="edges-by")}>'
+        f'{image}<span id="cover-words" role="status" {_cover_words(say)}>'
+        f"{html.escape(say('opening-map'))}</span></div>"
+        f'<div id="frame-caption">{html.escape(frame_caption(project, say))}</div>'
+        f'<button id="show-keys" type="button" aria-label="{html.escape(say("list-of-keys"))}">'
+        f"?</button>{list_of_keys(say)}"
     )
     return page[:head] + drawing() + SHIMS + page[head:body] + badge + page[body:]
 
 
-def list_of_keys() -> str:
+def _data(say: Texts, **names: str) -> str:
+    """Texts as attributes that the scripts read."""
+    return " ".join(
+        f'data-{key.replace("_", "-")}="{html.escape(say(name))}"' for key, name in names.items()
+    )
+
+
+def _cover_words(say: Texts) -> str:
+    """What the cover says later, as attributes."""
+    opening = html.escape(say("opening-since", seconds="SECONDS"))
+    again = html.escape(say("trying-again", problem="PROBLEM"))
+    return f'data-opening="{opening}" data-again="{again}" {_data(say, silent="server-silent")}'
+
+
+def list_of_keys(say: Texts) -> str:
     """A dialog with all keys, as HTML."""
-    rows = [*((key.capitalize(), label) for label, key, _ in HOTKEYS), ("?", "This list")]
+    rows = [(word_of("cap", key, say), say(f"hotkey-{name}")) for key, name in HOTKEYS]
+    rows.append(("?", say("hotkey-list")))
     items = "".join(
         f"<li><kbd>{html.escape(key)}</kbd> {html.escape(label)}</li>" for key, label in rows
     )
     return (
-        '<dialog id="keys" aria-label="Keys"><form method="dialog">'
-        f"<ul>{items}</ul><button>Close</button></form></dialog>"
+        f'<dialog id="keys" aria-label="{html.escape(say("list-of-keys"))}"><form method="dialog">'
+        f"<ul>{items}</ul><button>{html.escape(say('close'))}</button></form></dialog>"
     )
 
 
@@ -197,8 +229,9 @@ def policy_for(host: str) -> str:
     )
 
 
-def frame_caption(project: ProjectView) -> str:
+def frame_caption(project: ProjectView, say: Texts) -> str:
     """Caption about the coordinates on screen, frame and units, and whether the map is approved."""
     crs = project.summary.get("crs")
-    place = f"local map frame of {crs}" if isinstance(crs, str) and crs else "map frame"
-    return f"{place} · z up · meters · {project.approval.text}"
+    known = isinstance(crs, str) and crs
+    frame = say("frame-crs", crs=str(crs)) if known else say("frame-map")
+    return say("caption", frame=frame, approval=approval_words(project.approval.text, say))

@@ -22,7 +22,7 @@ from websockets.typing import Subprotocol
 from recon4.locales.coded import CodedText
 from recon4_app.deps import parts
 from recon4_app.errors import AppError, TooMany, ViewerFailed
-from recon4_app.network.close_codes import CloseCode
+from recon4_app.network.close_codes import CloseCode, close_reason
 from recon4_app.viewer.browser_messages import RefusedMessage, checked
 from recon4_app.viewer.pool import ViewerPool
 from recon4_app.viewer.tuning import RELAY
@@ -47,10 +47,10 @@ async def relay(browser: WebSocket, project_id: str) -> None:
                 await viewer.close()
     except TooMany as error:
         await browser.accept(subprotocol=offered[0] if offered else None)
-        await browser.close(CloseCode.TOO_MANY, reason=str(error)[:120])
+        await browser.close(CloseCode.TOO_MANY, reason=close_reason(error, browser))
     except AppError as error:
         log.warning("%s", error)
-        await browser.close(1008, reason=str(error)[:120])
+        await browser.close(1008, reason=close_reason(error, browser))
 
 
 async def _viewer(

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal
 
 import pytest
 from pydantic import BaseModel, Field, ValidationError, model_validator
+from starlette.requests import HTTPConnection
 
 from recon4.errors import ConfigError, WrongSettings
 from recon4.locales.coded import FILES, CodedText, as_coded, coded, codes, said, stored_text
@@ -13,6 +14,8 @@ from recon4.locales.languages import ENGLISH, ROOT, languages
 from recon4.locales.texts import messages_of, texts
 from recon4_app.compute_pool.messages import decode_error, encode_error
 from recon4_app.error_responses import field_message
+from recon4_app.errors import NotFound
+from recon4_app.network.close_codes import close_reason
 
 OTHERS = languages()[1:]
 SAME = {"webhook-url"}
@@ -27,6 +30,15 @@ def test_every_code_is_said_in_each_language(language, file):
 
     assert english.keys() == own.keys()
     assert {name for name in own if own[name].equals(english[name])} <= SAME
+
+
+def test_a_websocket_closes_with_a_reason_in_the_language_that_ends_after_a_whole_character():
+    browser = HTTPConnection({"type": "http", "headers": [(b"accept-language", b"de")]})
+
+    assert close_reason(NotFound(CodedText("project-unknown", name="a")), browser).startswith(
+        "kein"
+    )
+    assert close_reason(ConfigError("x" + "ü" * 99), browser) == "x" + "ü" * 61
 
 
 def test_no_code_is_in_two_files_or_a_text_of_all_pages():

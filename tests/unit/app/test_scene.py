@@ -30,7 +30,10 @@ from recon4_app.viewer.scene.build import (
 from recon4_app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
 from recon4_app.viewer.scene.nodes import LinesNode
 from recon4_app.viewer.scene.source import ProjectSource
+from recon4_app.viewer.words import words
 from tests.project_builder import build_project, loop_walk, verified_graph
+
+ENGLISH = words("en")
 
 
 @pytest.fixture
@@ -153,15 +156,15 @@ def test_positions_of_a_receiver_are_edges_sorted_into_used_and_rejected():
     lines = rejected.position_m + rejected.segments
     np.testing.assert_allclose(lines[:3].mean(axis=1), [marks.p_map[1]] * 3, atol=1e-6)
     np.testing.assert_allclose(lines[3], [marks.p_antenna[1], marks.p_map[1]], atol=1e-6)
-    assert [(layer.label, layer.count) for layer in content.layers[:2]] == [
-        ("GNSS, used", 2),
-        ("GNSS, rejected", 1),
+    assert [layer.label(ENGLISH) for layer in content.layers[:2]] == [
+        "GNSS, used (2)",
+        "GNSS, rejected (1)",
     ]
     assert "/north" in nodes
 
 
 def test_a_position_picked_says_how_far_off_the_walk_it_is():
-    facts = dict(gnss_facts(three_positions(), 1, began_ns=0).rows)
+    facts = dict(gnss_facts(three_positions(), 1, began_ns=0, say=ENGLISH).rows)
 
     assert facts["Time"] == "2.0 s"
     assert facts["Verdict"].startswith("rejected")
@@ -221,7 +224,7 @@ def test_an_edge_picked_leads_to_its_review(content):
     row = next(k for k, e in enumerate(content.edges.graph.edges) if e.verdict == "rejected")
     edge = content.edges.graph.edges[row]
 
-    facts = edge_facts(content.edges, row, "my office")
+    facts = edge_facts(content.edges, row, "my office", say=ENGLISH)
 
     assert facts.link == ("Open in review", f"../../my%20office/review/?edge={edge.i}-{edge.j}")
     assert ("Verdict", "rejected") in facts.rows
@@ -242,7 +245,7 @@ def test_an_edge_picked_says_who_judged_it_in_order(content):
     )
 
     table = EdgeTable.of(graph.with_edges((judged, *graph.edges[1:])))
-    rows = dict(edge_facts(table, 0, "office").rows)
+    rows = dict(edge_facts(table, 0, "office", say=ENGLISH).rows)
 
     assert rows["1. search"] == "accepted, error 0.0123 m of 0.05"
     assert rows["2. verification"] == (
@@ -254,13 +257,13 @@ def test_an_edge_picked_says_who_judged_it_in_order(content):
 def test_a_distance_has_its_components():
     points = ((1.0, 1.0, 1.0), (4.0, 5.0, -11.0))
 
-    rows = dict(measurement_facts(1, points).rows)
+    rows = dict(measurement_facts(1, points, ENGLISH).rows)
     table = measurements_csv([points, ((1.0, 2.0, 3.0),)]).splitlines()
 
     assert rows == {"Distance": "13.0000 m", "Horizontal": "5.0000 m", "Vertical": "-12.0000 m"}
     assert table[1].endswith(",13.00000,5.00000,-12.00000")
     assert table[2] == "2,1.00000,2.00000,3.00000,,,,,,"
-    assert measurement_label(1, points) == "1: 13.000 m"
+    assert measurement_label(1, points, ENGLISH) == "1: 13.000 m"
 
 
 def test_the_source_notices_new_artifacts_once(tmp_path):
@@ -273,3 +276,28 @@ def test_the_source_notices_new_artifacts_once(tmp_path):
     assert not unchanged
     assert source.changed() and not source.changed()
     assert source.content.edges is not None and len(source.content.cloud) == 100
+
+
+def test_every_word_of_a_scene_is_in_the_language_of_the_view(tmp_path, content):
+    german = words("de")
+    content = Content(
+        cloud=cloud_of(tmp_path / "map", np.zeros((9, 3))),
+        trajectory=content.trajectory,
+        edges=content.edges,
+        gnss=three_positions(),
+    )
+    view = all_on(content, language="de", color_by="height", edge_color="chi²")
+
+    shown = {layer.label(german) for layer in content.layers}
+    legend_text = legend_html(legend(content, view))
+    labels = {node.text for node in describe(content, view) if node.path.startswith("/labels/")}
+    row = next(k for k, e in enumerate(content.edges.graph.edges) if e.verdict == "rejected")
+    facts = edge_facts(content.edges, row, "office", say=german)
+
+    assert shown.isdisjoint(layer.label(ENGLISH) for layer in content.layers)
+    assert shown >= {"Trajektorie", "GNSS, verworfen (1)", "Verworfen, Überlappung < t_o (3)"}
+    assert "Farbe: Höhe" in legend_text and "m über dem Ursprung" in legend_text
+    assert "Kanten: chi²" in legend_text
+    assert labels == {"Anfang und Ende", "unten"}
+    assert dict(facts.rows)["Urteil"] == "verworfen" and facts.link[0] == "In der Prüfung öffnen"
+    assert dict(gnss_facts(three_positions(), 1, began_ns=0, say=german).rows)["Zeit"] == "2,0 s"

@@ -7,7 +7,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
-from recon4_app.viewer.client.view import Stretch
+from recon4_app.viewer.client.view import Stretch, ViewState
 from recon4_app.viewer.cloud.multiframes import Multiframes
 from recon4_app.viewer.scene.build import Content
 from recon4_app.viewer.scene.mark import stretch_marks, stretch_nodes, stretch_positions
@@ -16,6 +16,10 @@ from tests.project_builder import add_multiframes, build_project, loop_walk
 
 WALK = loop_walk()
 """600 poses at 10 Hz."""
+
+
+def marking(stretch):
+    return ViewState(stretch=stretch)
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +48,7 @@ def test_the_ends_of_a_stretch_lie_between_two_poses():
 
 
 def test_a_moment_is_one_place_with_its_time():
-    nodes = list(stretch_nodes(Content(trajectory=WALK), Stretch(span_s=(7.0, 7.0))))
+    nodes = list(stretch_nodes(Content(trajectory=WALK), marking(Stretch(span_s=(7.0, 7.0)))))
 
     label = next(node for node in nodes if isinstance(node, LabelNode))
     assert label.text == "7.0 s"
@@ -54,7 +58,7 @@ def test_a_moment_is_one_place_with_its_time():
 def test_places_without_a_time_are_marked_where_they_are():
     stretch = Stretch(places=((1.0, 2.0, 3.0), (4.0, 2.0, 3.0)))
 
-    lines = next(n for n in stretch_nodes(Content(), stretch) if isinstance(n, LinesNode))
+    lines = next(n for n in stretch_nodes(Content(), marking(stretch)) if isinstance(n, LinesNode))
 
     ends = lines.segments.mean(axis=1) + lines.position_m
     assert {tuple(p) for p in ends.round(3).tolist()} == set(stretch.places)
@@ -71,8 +75,8 @@ def test_a_stretch_that_the_walk_does_not_have_is_not_marked():
     content = Content(trajectory=WALK)
 
     assert not len(stretch_positions(content, Stretch(span_s=(60.5, 61.0))))
-    assert list(stretch_nodes(content, Stretch(span_s=(60.5, 61.0)))) == []
-    assert list(stretch_nodes(content, None)) == []
+    assert list(stretch_nodes(content, marking(Stretch(span_s=(60.5, 61.0))))) == []
+    assert list(stretch_nodes(content, marking(None))) == []
 
 
 @pytest.mark.parametrize(
@@ -89,6 +93,6 @@ def test_the_slider_of_the_multiframes_marks_the_ends_of_the_stretch(multiframes
     content = Content(trajectory=WALK, multiframes=multiframes)
     stretch = Stretch(span_s=span_s, places=((0.0, 0.0, 0.0),))
 
-    assert stretch_marks(content, stretch) == expected
-    assert stretch_marks(content, None) == ()
-    assert stretch_marks(Content(), stretch) == ()
+    assert stretch_marks(content, marking(stretch)) == expected
+    assert stretch_marks(content, marking(None)) == ()
+    assert stretch_marks(Content(), marking(stretch)) == ()

@@ -32,6 +32,7 @@ from recon4_app.viewer.scene.mark import stretch_bounds, stretch_nodes, stretch_
 from recon4_app.viewer.scene.nodes import Node, PointsNode
 from recon4_app.viewer.scene.source import ProjectSource
 from recon4_app.viewer.tuning import CLIENTS, POINT_BUDGET
+from recon4_app.viewer.words import known_language, words
 
 log = logging.getLogger(__name__)
 
@@ -65,8 +66,11 @@ class ClientSession:
     def _run(self) -> None:
         kept, answer_s = self._screen.kept_view(CLIENTS.kept_view_timeout_s)
         self._budget.began(answer_s)
-        self._view = self._kept = view_from_json(kept) or ViewState()
-        self._panel = Panel(self._screen.gui, PanelCallbacks(self._change, self._press))
+        language = known_language(self._screen.language(CLIENTS.kept_view_timeout_s))
+        self._kept = view_from_json(kept) or ViewState()
+        self._view = self._kept = replace(self._kept, language=language)
+        callbacks = PanelCallbacks(self._change, self._press)
+        self._panel = Panel(self._screen.gui, callbacks, words(language))
         self._pointer = PointerTools(
             self._source, self._screen, self._panel, project=self._project, change=self._change
         )
@@ -120,7 +124,7 @@ class ClientSession:
             self._screen.follow(bounds(content))
         self._shown, self._content = view, content
         points = [*_preview(content, view), *_window(content, view)]
-        marked = stretch_nodes(content, view.stretch)
+        marked = stretch_nodes(content, view)
         self._screen.show_nodes(
             [*describe(content, view), *marked, *self._pointer.nodes(), *points]
         )
@@ -176,7 +180,10 @@ class ClientSession:
             return
         p_map = stretch_positions(content, stretch)
         if not len(p_map):
-            self._screen.notify("Not in this map", f"The walk has no position: {stretch.text}.")
+            say = self._view.say
+            self._screen.notify(
+                say("not-in-this-map"), say("no-position", stretch=stretch.text(say))
+            )
             return
         frames, moment = content.multiframes, self._view.moment
         if frames is not None and stretch.span_s is not None:

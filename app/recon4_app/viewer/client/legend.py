@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from recon4_app.viewer.client.view import UNITS, ColorBy, EdgeColor, ViewState
+from recon4.locales.languages import ENGLISH
+from recon4_app.viewer.client.view import ColorBy, EdgeColor, ViewState
 from recon4_app.viewer.cloud.palette import Palette, Range, Rgb
 from recon4_app.viewer.cloud.parts import sensor_names
 from recon4_app.viewer.scene.build import CHI2_RANGE, ERROR_RANGE, Content, bounds, grid_cell_m
 from recon4_app.viewer.scene.layers import Layer
+from recon4_app.viewer.words import word_of
+
+UNITLESS: frozenset[ColorBy] = frozenset({"normalized intensity", "sensor"})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,6 +38,7 @@ class Legend:
     """Caption of the multiframes on screen; empty = none."""
     preview: bool = False
     """Whether the points on screen are the preview, by height."""
+    language: str = ENGLISH
 
 
 def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
@@ -49,7 +54,7 @@ def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
         color_by=view.color_by if shown else None,
         palette=view.palette,
         span=span_of(content, view) if shown else Range(0.0, 1.0),
-        unit=UNITS[view.color_by],
+        unit=_unit(view),
         sensors=sensor_names(content.sensors),
         layers=tuple(layer for layer in content.layers if view.shows(layer)),
         points=points,
@@ -60,6 +65,7 @@ def legend(content: Content, view: ViewState, *, points: int = 0) -> Legend:
         edge_span=CHI2_RANGE if view.edge_color == "chi²" else ERROR_RANGE,
         multiframes=multiframe_caption(content, view),
         preview=shows_preview(content, view),
+        language=view.language,
     )
 
 
@@ -67,14 +73,19 @@ def surface_caption(content: Content, view: ViewState) -> str:
     """Where the points on screen lie; empty if the map has no fitted surfaces."""
     if content.cloud is None or content.cloud.tiles.surface == "raw":
         return ""
-    strays = f"{content.cloud.tiles.strays:,}".replace(",", "\u202f")
+    strays = content.cloud.tiles.strays
     match content.cloud.on(view.surface).tiles.surface:
         case "strays":
-            return f"Only the {strays} points left out"
+            return view.say("only-left-out", count=strays)
         case "raw":
-            return f"As measured, {strays} points left out"
+            return view.say("raw-left-out", count=strays)
         case _:
-            return f"On fitted surfaces, {strays} points left out"
+            return view.say("fitted-left-out", count=strays)
+
+
+def _unit(view: ViewState) -> str:
+    """Unit and zero of what the points are colored by; empty = none."""
+    return "" if view.color_by in UNITLESS else word_of("scale", view.color_by, view.say)
 
 
 def shows_preview(content: Content, view: ViewState) -> bool:
@@ -90,8 +101,9 @@ def multiframe_caption(content: Content, view: ViewState) -> str:
         return ""
     rows = frames.window(view.moment, view.window_s)
     begin_s = (frames.t_mid_ns[rows[0]] - frames.t_mid_ns[0]) * 1e-9
-    named = f"Multiframe {rows[0]}" if len(rows) == 1 else f"Multiframes {rows[0]} to {rows[-1]}"
-    return f"{named} of {len(frames)}, at {begin_s:.1f} s"
+    last = int(rows[-1]) if len(rows) > 1 else -1
+    at = {"first": int(rows[0]), "last": last, "count": len(frames), "at": float(begin_s)}
+    return view.say("multiframes-of", **at)
 
 
 def span_of(content: Content, view: ViewState) -> Range:

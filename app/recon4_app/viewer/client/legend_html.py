@@ -5,36 +5,48 @@ from __future__ import annotations
 import html
 from collections.abc import Iterable
 
+from recon4.locales.texts import Texts
 from recon4_app.viewer.client.captions import Facts
 from recon4_app.viewer.client.legend import Legend
 from recon4_app.viewer.client.view import CATEGORIES
 from recon4_app.viewer.cloud.palette import Palette, Range, Rgb, table
 from recon4_app.viewer.cloud.preview import HEIGHTS
-from recon4_app.viewer.scene.layers import Layer
+from recon4_app.viewer.words import word_of, words
 
 BLOCK = "padding:0.6em 1em;font-size:0.85em;line-height:1.5"
 
 
 def legend_html(legend: Legend) -> str:
     """The legend as HTML."""
+    say = words(legend.language)
+    heading = f"<b>{html.escape(say('legend-lines'))}</b>"
+    if legend.edge_color == "verdict":
+        lines = "".join(_swatch(row.label(say), row.rgb, line=True) for row in legend.layers)
+    else:
+        by = word_of("edges", legend.edge_color, say)
+        bar = _bar("turbo", legend.edge_span, "", say=say)
+        lines = f"{_line(say('legend-edges', value=by))}{bar}"
+    cell = _line(say("grid-cell", cell=legend.grid_cell_m))
+    return f'<div style="{BLOCK}">{_points(legend, say)}{heading}{lines}{cell}</div>'
+
+
+def _points(legend: Legend, say: Texts) -> str:
+    """What the points on screen are."""
     points = ""
     if legend.color_by is not None:
-        points = f"<b>Points by {html.escape(legend.color_by)}</b>{_scale(legend)}"
-        points += f"<div>{count(legend.points)} of {count(legend.points_in_map)} points</div>"
-        if legend.surface:
-            points += f"<div>{html.escape(legend.surface)}</div>"
+        title = say("legend-points", value=word_of("paint", legend.color_by, say))
+        points = f"<b>{html.escape(title)}</b>{_scale(legend, say)}"
+        points += _line(say("points-of-map", shown=legend.points, count=legend.points_in_map))
+    if legend.color_by is not None and legend.surface:
+        points += _line(legend.surface)
     if legend.preview:
-        points += f"<b>Preview by height</b>{_bar(legend.palette, HEIGHTS, 'm above the backpack')}"
-        points += "<div>One multiframe per second, until there is a map</div>"
-    if legend.multiframes:
-        points += f"<div>{html.escape(legend.multiframes)}</div>"
-    if legend.edge_color == "verdict":
-        lines = "".join(_swatch(counted(row), row.rgb, line=True) for row in legend.layers)
-    else:
-        bar = _bar("turbo", legend.edge_span, "")
-        lines = f"<div>Edges by {html.escape(legend.edge_color)}, gray = not known</div>{bar}"
-    cell = f"<div>Grid cell {legend.grid_cell_m:g} m, map frame, z up</div>"
-    return f'<div style="{BLOCK}">{points}<b>Lines</b>{lines}{cell}</div>'
+        bar = _bar(legend.palette, HEIGHTS, say("above-backpack"), say=say)
+        points += f"<b>{html.escape(say('legend-preview'))}</b>{bar}{_line(say('one-per-second'))}"
+    return points + (_line(legend.multiframes) if legend.multiframes else "")
+
+
+def _line(text: str) -> str:
+    return f"<div>{html.escape(text)}</div>"
 
 
 def facts_html(facts: Iterable[Facts]) -> str:
@@ -55,21 +67,22 @@ def facts_html(facts: Iterable[Facts]) -> str:
     return f'<div style="{BLOCK}">{"".join(blocks)}</div>' if blocks else ""
 
 
-def _scale(legend: Legend) -> str:
+def _scale(legend: Legend, say: Texts) -> str:
     if legend.color_by == "sensor":
         return "".join(_swatch(name, rgb, line=False) for name, rgb in legend.sensors)
     if legend.color_by in CATEGORIES:
-        return f"<div>{html.escape(legend.unit)}</div>"
-    return _bar(legend.palette, legend.span, legend.unit)
+        return _line(legend.unit)
+    return _bar(legend.palette, legend.span, legend.unit, say=say)
 
 
-def _bar(palette: Palette, span: Range, unit: str) -> str:
+def _bar(palette: Palette, span: Range, unit: str, *, say: Texts) -> str:
     stops = ",".join(_css(tuple(rgb)) for rgb in table(palette)[::15].tolist())
     bar = f"height:10px;border-radius:2px;background:linear-gradient(to right,{stops})"
     ends = "display:flex;justify-content:space-between;gap:1em"
+    low, high = (html.escape(say("figure", value=end)) for end in (span.low, span.high))
     return (
-        f'<div style="{bar}"></div><div style="{ends}"><span>{span.low:.4g}</span>'
-        f"<span>{html.escape(unit)}</span><span>{span.high:.4g}</span></div>"
+        f'<div style="{bar}"></div><div style="{ends}"><span>{low}</span>'
+        f"<span>{html.escape(unit)}</span><span>{high}</span></div>"
     )
 
 
@@ -81,13 +94,3 @@ def _swatch(text: str, rgb: Rgb, *, line: bool) -> str:
 
 def _css(rgb: tuple[int, ...]) -> str:
     return f"rgb({rgb[0]},{rgb[1]},{rgb[2]})"
-
-
-def counted(layer: Layer) -> str:
-    """The label of a layer with its number of objects."""
-    return f"{layer.label} ({count(layer.count)})" if layer.count else layer.label
-
-
-def count(number: int) -> str:
-    """A number with thousands separators."""
-    return f"{number:,}".replace(",", "\u202f")

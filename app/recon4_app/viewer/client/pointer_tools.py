@@ -70,7 +70,9 @@ class PointerTools:
 
     def report(self, view: ViewState) -> None:
         """List the measurements of a view."""
-        facts = [measurement_facts(n, points) for n, points in enumerate(view.measurements, 1)]
+        facts = [
+            measurement_facts(n, points, view.say) for n, points in enumerate(view.measurements, 1)
+        ]
         self._panel.show_measured(facts, measuring=self._measuring)
 
     def click(self, ray: Ray, view: ViewState) -> None:
@@ -122,7 +124,7 @@ class PointerTools:
             self._edge = None
             return False
         self._edge, self._last = table.graph.T_map_body.t[table.ends[row]], None
-        self._show_facts(edge_facts(table, row, self._project))
+        self._show_facts(edge_facts(table, row, self._project, say=view.say))
         return True
 
     def _picked_gnss(self, ray: Ray, view: ViewState) -> bool:
@@ -132,14 +134,14 @@ class PointerTools:
             return False
         self._last = as_position(content.gnss.p_map[row])
         began_ns = 0 if content.trajectory is None else int(content.trajectory.t_ns[0])
-        self._show_facts(gnss_facts(content.gnss, row, began_ns=began_ns))
+        self._show_facts(gnss_facts(content.gnss, row, began_ns=began_ns, say=view.say))
         return True
 
     def _pick_point(self, ray: Ray, view: ViewState) -> Position | None:
         """Pick a point of the map, or a place of a 2-D map; returns where it is."""
         content = self._source.content
         if content.cloud is None and content.plan is not None:
-            return self._pick_cell(ray, content.plan)
+            return self._pick_cell(ray, content.plan, view)
         cloud = content.cloud and content.cloud.on(view.surface)
         point = None if cloud is None else pick_point(cloud, ray)
         self._last = None if point is None else point.p_map
@@ -148,20 +150,20 @@ class PointerTools:
             return None
         facts = point_facts(
             point,
-            sensors=content.sensors,
-            began_ns=content.cloud.began_ns,
+            content,
             crs=self._source.crs_coordinates(np.array([point.p_map])),
+            say=view.say,
         )
         self._show_facts(facts)
         return point.p_map
 
-    def _pick_cell(self, ray: Ray, plan: TrinaryMap) -> Position | None:
+    def _pick_cell(self, ray: Ray, plan: TrinaryMap, view: ViewState) -> Position | None:
         cell = pick_cell(plan, ray)
         self._last = None if cell is None else cell.p_map
         if cell is None:
             self._panel.show_picked(None)
         else:
-            self._show_facts(cell_facts(cell))
+            self._show_facts(cell_facts(cell, view.say))
         return self._last
 
     def _show_facts(self, facts: Facts) -> None:

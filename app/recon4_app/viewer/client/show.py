@@ -37,6 +37,8 @@ STORAGE_PREFIX = "recon4.view."
 """Name under which a browser keeps the view of a project."""
 STRETCH_PREFIX = "recon4.stretch."
 """Name under which the page leaves the stretch of the walk that it was asked to show."""
+LANGUAGE = "recon4.language"
+"""Name under which the page leaves its language."""
 DEFAULT_VIEW_DIRECTION = np.array([0.0, -0.75, 0.75])
 """Camera position relative to a box, in units of its size: south and above."""
 
@@ -185,6 +187,13 @@ class Screen:
         except (TimeoutError, RuntimeError):
             return None, None
         return kept, time.monotonic() - began_s
+
+    def language(self, limit_s: float) -> str | None:
+        """The language of the page, as untrusted text; None if the browser does not answer."""
+        try:
+            return self._client.local_storage.get_item(LANGUAGE, timeout=limit_s)
+        except (TimeoutError, RuntimeError):
+            return None
 
     def take_asked_stretch(self, limit_s: float) -> str | None:
         """The stretch that the page is asked to show, as untrusted text; the page asks until then.

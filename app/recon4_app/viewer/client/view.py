@@ -8,11 +8,14 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
 from urllib.parse import parse_qs
 
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Texts
 from recon4.mapping.tiles import Surface
 from recon4.store.earlier_names import PALETTES
 from recon4_app.viewer.cloud.palette import Palette, Range
 from recon4_app.viewer.scene.layers import Layer
 from recon4_app.viewer.tuning import VIEWS
+from recon4_app.viewer.words import words
 
 ColorBy = Literal[
     "normalized intensity", "raw intensity", "height", "time", "sensor", "ring", "multiframe",
@@ -21,18 +24,6 @@ ColorBy = Literal[
 COLOR_BY: tuple[ColorBy, ...] = get_args(ColorBy)
 CATEGORIES: frozenset[ColorBy] = frozenset({"sensor", "multiframe"})
 """Colored by a list of colors, not along a palette."""
-
-UNITS: dict[ColorBy, str] = {
-    "normalized intensity": "",
-    "raw intensity": "as the sensor gave it",
-    "height": "m above the origin",
-    "time": "s since the start",
-    "sensor": "",
-    "ring": "0 = lowest beam",
-    "multiframe": "neighbors differ",
-    "distance": "m from the sensor",
-    "uncertainty": "m, 1 σ of the position by the pose",
-}
 
 Points = Literal["map", "map and multiframe", "multiframe"]
 EdgeColor = Literal["verdict", "error / limit", "chi²"]
@@ -49,13 +40,14 @@ class Stretch:
     places: tuple[Position, ...] = ()
     """Positions in the map [m], at most two."""
 
-    @property
-    def text(self) -> str:
-        """Its label in the scene."""
+    def text(self, say: Texts) -> str:
+        """Its label in the scene, in the language of texts."""
         if self.span_s is None:
-            return "here"
+            return say("stretch-here")
         start_s, end_s = self.span_s
-        return f"{start_s:.1f} s to {end_s:.1f} s" if end_s > start_s else f"{start_s:.1f} s"
+        if end_s > start_s:
+            return say("stretch-span", **{"from": start_s, "to": end_s})
+        return say("stretch-moment", **{"from": start_s})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -85,6 +77,13 @@ class ViewState:
     """One point each, or two, in the map [m]."""
     stretch: Stretch | None = None
     """What is marked of the walk."""
+    language: str = ENGLISH
+    """Of the page around it; not kept."""
+
+    @property
+    def say(self) -> Texts:
+        """The texts in its language."""
+        return words(self.language)
 
     def shows(self, layer: Layer) -> bool:
         """Whether a layer is on."""
@@ -106,8 +105,10 @@ class ViewState:
         return Range(*self.ranges[color_by]) if color_by in self.ranges else None
 
     def to_json(self) -> str:
-        """The view as JSON text."""
-        return json.dumps(asdict(self))
+        """The view as JSON text, without its language, which is that of the page."""
+        record = asdict(self)
+        del record["language"]
+        return json.dumps(record)
 
 
 def view_from_json(text: str | None) -> ViewState | None:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.texts import Texts
 from recon4.model.trajectory import Times, Trajectory
 from recon4.slam2d.map_files import TrinaryMap
 from recon4_app.viewer.client.view import ColorBy, Position, ViewState
@@ -135,7 +136,7 @@ def describe(content: Content, view: ViewState) -> list[Node]:
         if line is not None and len(line) > 1:
             nodes += _path(layer, line, view.shows(layer))
     if content.trajectory is not None and len(content.trajectory) > 1:
-        nodes += _ends(content.trajectory, view.shows(FINAL))
+        nodes += _ends(content.trajectory, view)
     if content.edges is not None:
         nodes += [*_edges(content.edges, view), _frames(content.edges, view)]
     if content.multiframes is not None and content.trajectory is not None:
@@ -230,17 +231,21 @@ def _lines(
     )
 
 
-def _ends(line: Trajectory, visible: bool) -> Iterator[LabelNode]:
+def _ends(line: Trajectory, view: ViewState) -> Iterator[LabelNode]:
+    visible = view.shows(FINAL)
     first_m, last_m = line.T_a_b.t[0], line.T_a_b.t[-1]
     apart = np.linalg.norm(last_m - first_m) > SCENE.closed_m
-    yield _label("start" if apart else "start and end", first_m, visible)
+    yield _label("start" if apart else "start-and-end", first_m, view, visible=visible)
     if apart:
-        yield _label("end", last_m, visible)
+        yield _label("end", last_m, view, visible=visible)
 
 
-def _label(text: str, p_map: Array, visible: bool, *, key: str = "") -> LabelNode:
-    path = f"/labels/{key or text.replace(' ', '-')}"
-    return LabelNode(path=path, position_m=p_map, text=text, visible=visible)
+def _label(key: str, p_map: Array, view: ViewState, *, visible: bool) -> LabelNode:
+    return _named(key, p_map, view.say(f"label-{key}"), visible=visible)
+
+
+def _named(key: str, p_map: Array, text: str, *, visible: bool) -> LabelNode:
+    return LabelNode(path=f"/labels/{key}", position_m=p_map, text=text, visible=visible)
 
 
 def _edges(table: EdgeTable, view: ViewState) -> Iterator[LinesNode]:
@@ -290,7 +295,7 @@ def _lidars(multiframes: Multiframes, line: Trajectory, view: ViewState) -> Iter
         "/lidars/body", SE3(T_map_body.R[None], T_map_body.t[None]), length_m=0.6, visible=visible
     )
     for name, t in zip(multiframes.sensors, T_map_sensor.t, strict=True):
-        yield _label(name, t, visible, key=f"lidar-{name}")
+        yield _named(f"lidar-{name}", t, name, visible=visible)
 
 
 def _axes(path: str, T: SE3, *, length_m: float, visible: bool) -> AxesNode:
@@ -327,7 +332,7 @@ def _directions(content: Content, box: Bounds, view: ViewState) -> Iterator[Node
     on = view.shows(GRAVITY)
     yield _lines("/gravity", down, GRAVITY.rgb, width_px=3.0, visible=on)
     yield _axes("/map-axes", SE3(np.eye(3)[None], corner[None]), length_m=length_m, visible=on)
-    yield _label("down", down[0, 1], on)
+    yield _label("down", down[0, 1], view, visible=on)
     if not content.crs:
         return
     north = corner + np.array([0.0, 2.0 * length_m, 0.0])
@@ -335,7 +340,7 @@ def _directions(content: Content, box: Bounds, view: ViewState) -> Iterator[Node
     arrow = np.array([[corner, north], *([north, north + wing] for wing in wings)])
     on = view.shows(NORTH)
     yield _lines("/north", arrow, NORTH.rgb, width_px=3.0, visible=on)
-    yield _label("N", north, on, key="north")
+    yield _label("north", north, view, visible=on)
 
 
 def _grid(box: Bounds, visible: bool) -> GridNode:
@@ -363,15 +368,17 @@ def _measurements(view: ViewState) -> Iterator[Node]:
             width_px=2.5,
             visible=True,
         )
-        yield _label(measurement_label(number, points), p.mean(axis=0), True, key=f"m{number}")
+        text = measurement_label(number, points, view.say)
+        yield _named(f"m{number}", p.mean(axis=0), text, visible=True)
 
 
-def measurement_label(number: int, points: tuple[Position, ...]) -> str:
-    """Label of a measurement."""
+def measurement_label(number: int, points: tuple[Position, ...], say: Texts) -> str:
+    """Label of a measurement, in the language of texts."""
     if len(points) == 1:
         x, y, z = points[0]
         return f"{number}: {x:.3f} {y:.3f} {z:.3f}"
-    return f"{number}: {np.linalg.norm(np.subtract(points[0], points[1])):.3f} m"
+    length_m = float(np.linalg.norm(np.subtract(points[0], points[1])))
+    return say("measured-length", number=number, m=length_m)
 
 
 def as_position(p: NDArray[Any]) -> Position:

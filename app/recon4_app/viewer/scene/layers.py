@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.locales.texts import Texts
 from recon4.model.pose_graph import AUTOMATIC, Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4_app.viewer.cloud.palette import Rgb
 from recon4_app.viewer.tuning import EDGE_COLORS
@@ -22,21 +23,24 @@ class Layer:
 
     key: str
     """Key, also part of a path in the scene."""
-    label: str
+    name: str
+    """Name of the text that labels it."""
     rgb: Rgb
     shown: bool = True
     """Whether it is shown by default."""
     count: int = 0
     """Number of objects; 0 = not counted."""
     width_px: float = 1.5
+    of: str = ""
+    """Name of the text that its label quotes."""
+
+    def label(self, say: Texts) -> str:
+        """Its label in the language of texts, with the number of objects."""
+        quoted = say(self.of) if self.of else ""
+        label = say(self.name, reason=quoted, kind=quoted)
+        return say("layer-counted", layer=label, count=self.count) if self.count else label
 
 
-KIND_LABELS = {
-    EdgeKind.ODOMETRY: "odometry",
-    EdgeKind.NEIGHBOR: "neighbor",
-    EdgeKind.LOOP: "loop",
-    EdgeKind.MANUAL: "made by an operator",
-}
 ACCEPTED_COLORS: dict[EdgeKind, Rgb] = {
     EdgeKind.ODOMETRY: (120, 144, 156),
     EdgeKind.NEIGHBOR: (77, 182, 172),
@@ -53,41 +57,52 @@ DECIDED_COLORS: dict[Verdict, Rgb] = {
 HIDDEN_AT_FIRST = {Reason.OVERLAP}
 """Candidates without overlap are many and not informative."""
 
-PLAN = Layer("plan", "2-D map", (236, 239, 241))
-FINAL = Layer("trajectory", "Trajectory", (255, 179, 0))
-ODOMETRY = Layer("odometry", "Odometry trajectory", (128, 110, 200), shown=False)
-FRAMES = Layer("frames", "Multiframes: body frames", (144, 164, 174), shown=False)
-LIDARS = Layer("lidars", "LiDAR frames at the multiframe", (0, 188, 212), shown=False)
-GNSS_USED = Layer("gnss/used", "GNSS, used", (102, 187, 106), shown=False)
-GNSS_REJECTED = Layer("gnss/rejected", "GNSS, rejected", EDGE_COLORS.rejected_color, shown=False)
-GRAVITY = Layer("gravity", "Gravity (down) and axes of the map", (255, 255, 255), shown=False)
-NORTH = Layer("north", "North", (239, 83, 80))
-GRID = Layer("grid", "Grid", (96, 108, 118))
+PLAN = Layer("plan", "layer-plan", (236, 239, 241))
+FINAL = Layer("trajectory", "layer-trajectory", (255, 179, 0))
+ODOMETRY = Layer("odometry", "layer-odometry", (128, 110, 200), shown=False)
+FRAMES = Layer("frames", "layer-frames", (144, 164, 174), shown=False)
+LIDARS = Layer("lidars", "layer-lidars", (0, 188, 212), shown=False)
+GNSS_USED = Layer("gnss/used", "layer-gnss-used", (102, 187, 106), shown=False)
+GNSS_REJECTED = Layer(
+    "gnss/rejected", "layer-gnss-rejected", EDGE_COLORS.rejected_color, shown=False
+)
+GRAVITY = Layer("gravity", "layer-gravity", (255, 255, 255), shown=False)
+NORTH = Layer("north", "layer-north", (239, 83, 80))
+GRID = Layer("grid", "layer-grid", (96, 108, 118))
 
 ORDER = {"decided": 0, "accepted": 1, "unverified": 2, "rejected": 3}
 
 
 def edge_layer(edge: Edge) -> Layer:
     """The layer an edge belongs to."""
-    kind = KIND_LABELS[edge.kind]
     if edge.decided_by != AUTOMATIC:
         verdict = "rejected" if edge.verdict is Verdict.REJECTED else "accepted"
-        label = f"Operator's decisions, {verdict}"
-        return Layer(f"decided/{verdict}", label, DECIDED_COLORS[edge.verdict], width_px=3.0)
+        rgb = DECIDED_COLORS[edge.verdict]
+        return Layer(f"decided/{verdict}", f"layer-decided-{verdict}", rgb, width_px=3.0)
     if edge.verdict is Verdict.REJECTED:
-        reason = str(edge.reason) or "no reason given"
         return Layer(
-            f"rejected/{_path(reason)}",
-            f"Rejected, {reason}",
+            f"rejected/{_path(str(edge.reason) or 'no reason given')}",
+            "layer-rejected",
             EDGE_COLORS.rejected_color,
             shown=edge.reason not in HIDDEN_AT_FIRST,
             width_px=2.5,
+            of=reason_text(edge.reason) or "no-reason",
         )
+    kind, of = str(edge.kind), kind_text(edge.kind)
     if edge.verdict is Verdict.UNVERIFIED:
-        return Layer(
-            f"unverified/{_path(kind)}", f"Unverified, {kind}", EDGE_COLORS.unverified_color
-        )
-    return Layer(f"accepted/{_path(kind)}", f"Accepted, {kind}", ACCEPTED_COLORS[edge.kind])
+        rgb = EDGE_COLORS.unverified_color
+        return Layer(f"unverified/{kind}", "layer-unverified", rgb, of=of)
+    return Layer(f"accepted/{kind}", "layer-accepted", ACCEPTED_COLORS[edge.kind], of=of)
+
+
+def kind_text(kind: EdgeKind) -> str:
+    """Name of the text for a kind of edges."""
+    return f"joint-{kind.name.lower()}"
+
+
+def reason_text(reason: Reason) -> str:
+    """Name of the text for a reason; empty without one."""
+    return f"reason-{_path(reason.name)}" if reason is not Reason.NONE else ""
 
 
 def edge_layers(edges: Sequence[Edge]) -> tuple[Layer, ...]:

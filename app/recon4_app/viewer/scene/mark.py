@@ -8,7 +8,7 @@ import numpy as np
 
 from recon4.findings.walk import positions_along
 from recon4.geometry.se3 import Array
-from recon4_app.viewer.client.view import Stretch
+from recon4_app.viewer.client.view import Stretch, ViewState
 from recon4_app.viewer.scene.build import Bounds, Content, crosses
 from recon4_app.viewer.scene.nodes import LabelNode, LinesNode, Node
 from recon4_app.viewer.tuning import MARK, SCENE
@@ -25,8 +25,9 @@ def stretch_positions(content: Content, stretch: Stretch) -> Array:
     return positions_along(line, stretch.span_s, most=SCENE.max_poses)
 
 
-def stretch_nodes(content: Content, stretch: Stretch | None) -> Iterator[Node]:
+def stretch_nodes(content: Content, view: ViewState) -> Iterator[Node]:
     """A thick line along the stretch, crosses at its ends, and its times."""
+    stretch = view.stretch
     if stretch is None:
         return
     p_map = stretch_positions(content, stretch)
@@ -43,12 +44,12 @@ def stretch_nodes(content: Content, stretch: Stretch | None) -> Iterator[Node]:
         width_px=MARK.mark_width_px,
     )
     middle = p_map[len(p_map) // 2]
-    yield LabelNode(path="/labels/stretch", position_m=middle, text=stretch.text)
+    yield LabelNode(path="/labels/stretch", position_m=middle, text=stretch.text(view.say))
 
 
-def stretch_marks(content: Content, stretch: Stretch | None) -> tuple[tuple[int, str], ...]:
+def stretch_marks(content: Content, view: ViewState) -> tuple[tuple[int, str], ...]:
     """Multiframes at both ends of a stretch, with their captions: the marks of the slider."""
-    frames = content.multiframes
+    stretch, frames = view.stretch, content.multiframes
     if stretch is None or stretch.span_s is None or frames is None:
         return ()
     start_s, end_s = stretch.span_s
@@ -56,7 +57,8 @@ def stretch_marks(content: Content, stretch: Stretch | None) -> tuple[tuple[int,
     if start_s > duration_s:
         return ()
     first, last = (frames.at_time(min(max(s, 0.0), duration_s)) for s in (start_s, end_s))
-    return ((first, stretch.text),) if first == last else ((first, stretch.text), (last, ""))
+    text = stretch.text(view.say)
+    return ((first, text),) if first == last else ((first, text), (last, ""))
 
 
 def stretch_bounds(p_map: Array) -> Bounds:
