@@ -73,10 +73,12 @@ export const KEYS = [
  * @param {string} key
  * @param {() => void} act
  * @param {boolean} [pressed]
+ * @param {string} [name] "first" = before the others where there is little room
  */
-const tool = (text, key, act, pressed) =>
+const tool = (text, key, act, pressed, name = "") =>
   html`<button
     type="button"
+    class=${name}
     title=${`${text} (${key})`}
     aria-keyshortcuts=${key.length === 1 ? key : nothing}
     aria-pressed=${pressed === undefined ? nothing : String(pressed)}
@@ -104,6 +106,13 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
         )}
         ${tool(t("parallel"), "O", act.parallel, state.camera?.parallel ?? false)}
       </div>
+      <div role="toolbar" aria-label=${t("page")}>
+        ${tool(t("link"), "L", act.share)}
+        ${page.mayShare ? tool(t("share"), t("with-guest"), act.invite) : nothing}
+        ${tool(t("full-window"), t("full-screen"), act.whole)}
+        ${tool(t("panel"), "T", act.panel, page.panel, "first")}
+        ${tool("?", t("keys-small"), act.help, undefined, "first")}
+      </div>
       <div role="toolbar" aria-label=${t("tools")}>
         ${kinds.map(([kind, key]) =>
           tool(
@@ -122,12 +131,6 @@ export function drawBar(/** @type {HTMLElement} */ element, /** @type {Act} */ a
         }
         ${tool(t("stand-here"), "G", () => act.tool("stand"), current === "stand")}
         ${tool(t("fly"), "P", act.fly, flight.on)}
-      </div>
-      <div role="toolbar" aria-label=${t("page")}>
-        ${tool(t("link"), "L", act.share)}
-        ${page.mayShare ? tool(t("share"), t("with-guest"), act.invite) : nothing}
-        ${tool(t("full-window"), t("full-screen"), act.whole)}
-        ${tool(t("panel"), "T", act.panel, page.panel)} ${tool("?", t("keys-small"), act.help)}
       </div>`,
     element,
   );
@@ -145,8 +148,8 @@ export function drawStatus(element, { points, rested, scale }) {
   render(
     html`<div role="status">${reading ? html`<p class="reading">${reading}</p>` : nothing}</div>
       <p class="caption">
-        <span class="shown">${shown}</span> · <span>${scale}</span> ·
-        <span>${frameText(index.frame)}</span>
+        <span class="shown">${shown}</span> · <span>${scale}</span
+        ><span class="frame"> · ${frameText(index.frame)}</span>
         ${project ? html` · <span>${approvalWords(project.approval)}</span>` : nothing}
         ${
           flight.on
