@@ -23,7 +23,9 @@ const id = idHere();
 const WIDE_PX = 1200;
 const TALL_PX = [120, 420];
 const MARGIN = { left: 46, bottom: 24, top: 8, right: 12 };
-const TICKS = { across: 8, up: 3 };
+const TICK_PX = { across: 120, up: 60 };
+/** What the plot leaves of half of the window, for its buttons and captions. */
+const AROUND_PX = 215;
 const BEYOND_M = 0.05;
 
 /** The strip of a profile, as the slices take it: u counts from the first point. */
@@ -112,17 +114,29 @@ export function drawProfile(element, act) {
         <button type="button" @click=${act.close}>${t("close")}</button>
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
-      ${image ? plot(image) : problem ? nothing : html`<p class="quiet">${t("drawing")}</p>`}`,
+      ${image ? plot(image, room(element)) : problem ? nothing : html`<p class="quiet">${t("drawing")}</p>`}`,
     element,
   );
 }
 
-/** The image with its axes: distance from the first point, and height. */
-function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
-  const [wide, tall] = [
-    (window.right - window.left) / pixel_m,
-    (window.top - window.bottom) / pixel_m,
+/** Most pixels of a plot across and up: it is drawn in pixels of the screen, with its labels. */
+function room(/** @type {HTMLElement} */ element) {
+  const { left, right } = MARGIN;
+  return [
+    Math.max(200, element.clientWidth - 30 - left - right),
+    Math.min(300, Math.max(TALL_PX[0], innerHeight / 2 - AROUND_PX)),
   ];
+}
+
+/**
+ * The image with its axes: distance from the first point, and height.
+ * @param {SliceImageView} image
+ * @param {number[]} most pixels across and up
+ */
+function plot({ png, window, points }, [across, up]) {
+  const [length, height] = [window.right - window.left, window.top - window.bottom];
+  const pixel_m = Math.max(length / across, height / up);
+  const [wide, tall] = [length / pixel_m, height / pixel_m];
   const { left, right, top, bottom } = MARGIN;
   const x = (/** @type {number} */ u) => left + (u - window.left) / pixel_m;
   const y = (/** @type {number} */ z) => top + (window.top - z) / pixel_m;
@@ -137,17 +151,18 @@ function plot(/** @type {SliceImageView} */ { png, window, points, pixel_m }) {
   };
   const text = (/** @type {number} */ value) => written(String(Number(value.toPrecision(6))));
   return html`<svg
-      viewBox="0 0 ${wide + left + right} ${tall + top + bottom}"
+      width=${wide + left + right}
+      height=${tall + top + bottom}
       role="img"
       aria-label=${t("profile-label", { points: count(points), range: rangeText(window) })}
     >
       <image x=${left} y=${top} width=${wide} height=${tall} href="data:image/png;base64,${png}" />
-      ${ticks(window.left, window.right, TICKS.across).map(
+      ${ticks(window.left, window.right, Math.max(1, wide / TICK_PX.across)).map(
         (u) =>
           svg`<line x1=${x(u)} x2=${x(u)} y1=${top} y2=${top + tall + 5} />
             <text x=${x(u)} y=${top + tall + 19} text-anchor="middle">${text(u)}</text>`,
       )}
-      ${ticks(window.bottom, window.top, TICKS.up).map(
+      ${ticks(window.bottom, window.top, Math.max(1, tall / TICK_PX.up)).map(
         (z) =>
           svg`<line x1=${left - 5} x2=${left + wide} y1=${y(z)} y2=${y(z)} />
             <text x=${left - 8} y=${y(z) + 4} text-anchor="end">${text(z)}</text>`,
