@@ -36,6 +36,14 @@ def opened(page, server, query=""):
     rested(page)
 
 
+def above_the_fold(page):
+    """The legend of the slice and the names of all results are seen without scrolling."""
+    names = page.locator(".findings > details > summary")
+    boxes = [one.bounding_box() for one in [*names.all(), page.locator(".under")]]
+    assert len(boxes) == 6
+    assert max(box["y"] + box["height"] for box in boxes) <= page.viewport_size["height"]
+
+
 def rested(page):
     expect(page.locator("body.drawing")).to_have_count(0)
 
@@ -51,6 +59,8 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     assert page.locator("canvas").evaluate_all(named)
     expect(page.get_by_label("Low end of the colors")).to_be_visible()
     fits(page)
+    if page.viewport_size["width"] > 1000:
+        above_the_fold(page)
     screenshot(page, "slices")
 
 
