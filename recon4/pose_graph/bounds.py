@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from scipy.sparse import csr_array
-from scipy.sparse.csgraph import dijkstra
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import PoseGraph, Rows
+from recon4.pose_graph.best_paths import PathSums, links_of
 
 _YAW = 2
 """Row of the rotation about the vertical among the tangents of an edge in map axes."""
@@ -23,12 +23,23 @@ class RelativeBounds:
     drift that grows evenly. Heights of a leveled walk do not drift like that: variances add up.
     """
 
-    horizontal_m: Array
+    horizontal_m: PathSums
     """[m], (K, K)."""
-    vertical_m: Array
+    vertical_m: PathSums | HeightSums
     """[m], (K, K)."""
-    yaw_rad: Array
+    yaw_rad: PathSums
     """[rad], (K, K)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeightSums:
+    """Standard deviations of which the variances add up."""
+
+    variance: PathSums
+
+    def __getitem__(self, at: tuple[Any, Any]) -> Any:
+        """From some places to others, as of an array (K, K)."""
+        return np.sqrt(self.variance[at])
 
 
 def relative_bounds(graph: PoseGraph, nodes: Rows, *, leveled: bool) -> RelativeBounds:
@@ -53,10 +64,10 @@ def relative_bounds(graph: PoseGraph, nodes: Rows, *, leveled: bool) -> Relative
     vertical = sd[:, 5] ** 2 if leveled else sd[:, 5] + arm_m * tilt
     i, j, count = of.i[used], of.j[used], len(graph)
     far_m, height, turn_rad = (
-        _along(i, j, weight, count=count, nodes=nodes)
+        PathSums.of(links_of(i, j, weight, count=count), nodes)
         for weight in (horizontal, vertical, sd[:, _YAW])
     )
-    return RelativeBounds(far_m, np.sqrt(height) if leveled else height, turn_rad)
+    return RelativeBounds(far_m, HeightSums(height) if leveled else height, turn_rad)
 
 
 def _in_map_axes(T_map_body: SE3, cov: Array, j: Rows) -> Array:
@@ -65,16 +76,3 @@ def _in_map_axes(T_map_body: SE3, cov: Array, j: Rows) -> Array:
     A[:, :3, :3] = A[:, 3:, 3:] = T_map_body.R[j]
     turned: Array = A @ cov @ np.swapaxes(A, 1, 2)
     return turned
-
-
-def _along(i: Rows, j: Rows, weight: Array, *, count: int, nodes: Rows) -> Array:
-    """Sum of the weights along the best path between some nodes, (K, K)."""
-    # Of several edges between two nodes the best counts; a sparse matrix would add them.
-    low, high = np.minimum(i, j), np.maximum(i, j)
-    order = np.lexsort((weight, high, low))
-    key = low[order] * count + high[order]
-    first = np.unique(key, return_index=True)[1]
-    rows = order[first]
-    matrix = csr_array((weight[rows] + 1e-12, (low[rows], high[rows])), shape=(count, count))
-    found: Array = dijkstra(matrix, directed=False, indices=nodes)[:, nodes]
-    return found

@@ -60,9 +60,26 @@ def make_density_image(walls_m: Array, heights_m: Array) -> DensityImage:
     return DensityImage(near, spectrum, _descriptor(image, heights_m))
 
 
-def overlays(
-    target: DensityImage, source: DensityImage, *, yaws: Array, most: int
-) -> list[Overlay]:
+class TurnedImage:
+    """An image to be laid onto others; what is computed of a rotation is kept for all of them."""
+
+    def __init__(self, image: DensityImage) -> None:
+        """Not turned yet."""
+        self._walls_m = image.walls_m
+        self._spectra: dict[float, Spectrum] = {}
+
+    def spectrum(self, yaw: float) -> Spectrum:
+        """Conjugate Fourier transform of the image turned by ``yaw`` [rad]."""
+        if yaw not in self._spectra:
+            c, s = np.cos(yaw), np.sin(yaw)
+            image = _raster(self._walls_m @ np.array([[c, s], [-s, c]]))
+            # The source is not blurred: blurring both would widen the maximum.
+            image /= max(float(np.linalg.norm(ndimage.gaussian_filter(image, 1.0))), 1e-9)
+            self._spectra[yaw] = np.conj(fft.rfft2(image))
+        return self._spectra[yaw]
+
+
+def overlays(target: DensityImage, source: TurnedImage, *, yaws: Array, most: int) -> list[Overlay]:
     """The best overlays of ``source`` onto ``target``, best first, at most ``most``.
 
     Args:
@@ -89,13 +106,10 @@ def yaws_within(bound_rad: float) -> Array:
     return np.asarray(np.arange(-steps, steps + 1) * DENSITY.yaw_step_rad)
 
 
-def _correlate(target: DensityImage, source: DensityImage, yaw: float) -> NDArray[np.float32]:
+def _correlate(target: DensityImage, source: TurnedImage, yaw: float) -> NDArray[np.float32]:
     """Cosine of the images for all shifts of the turned source, (S, S)."""
-    c, s = np.cos(yaw), np.sin(yaw)
-    image = _raster(source.walls_m @ np.array([[c, s], [-s, c]]))
-    # The source is not blurred: blurring both would widen the maximum.
-    image /= max(float(np.linalg.norm(ndimage.gaussian_filter(image, 1.0))), 1e-9)
-    scores = fft.irfft2(target.spectrum * np.conj(fft.rfft2(image)), s=image.shape)
+    shape = (DENSITY.cells, DENSITY.cells)
+    scores = fft.irfft2(target.spectrum * source.spectrum(yaw), s=shape)
     chosen: NDArray[np.float32] = scores[np.ix_(_SHIFTS, _SHIFTS)]
     return chosen
 

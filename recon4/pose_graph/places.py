@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -12,9 +13,10 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
 from recon4.pose_graph.density_images import DensityImage, make_density_image
+from recon4.pose_graph.node_views import NodeRangeImages
+from recon4.pose_graph.stored_images import StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.pose_graph.tuning_places import PLACES
-from recon4.registration.submap import NodeRangeImages
 
 
 class StatedDrift(NamedTuple):
@@ -49,7 +51,7 @@ class Places:
     """Node of each place, in the order of the walk, (K,)."""
     path_m: Array
     """Path length from the start to every node of the graph [m], (N,)."""
-    images: tuple[DensityImage, ...]
+    images: Sequence[DensityImage]
     descriptors: Array
     """Unit vectors, (K, D)."""
     bounds: RelativeBounds
@@ -75,7 +77,11 @@ class Places:
 
 
 def make_places(
-    graph: PoseGraph, views: NodeRangeImages, settings: RecognitionTuning, *, leveled: bool
+    graph: PoseGraph,
+    views: NodeRangeImages,
+    settings: RecognitionTuning,
+    *,
+    leveled: bool,
 ) -> Places:
     """Draw the places of a walk with the current poses of its graph.
 
@@ -85,24 +91,36 @@ def make_places(
         settings: Spacing and extent of the places.
         leveled: The vertical is known by an IMU.
     """
-    t_m = graph.T_map_body.t
-    steps = np.linalg.norm(np.diff(t_m, axis=0), axis=1)
-    path_m = np.concatenate([[0.0], np.cumsum(steps)])
-    part = _unbroken_parts(graph)
+    path_m, part = _path_m(graph), _unbroken_parts(graph)
     nodes = _every(path_m, part, settings.spacing_m)
-    images = []
+    images, drawn = StoredImages(views.scratch), dict[int, _NodeWalls]()
     for node in nodes:
         near = np.abs(path_m - path_m[node]) <= settings.reach_m
-        members = np.flatnonzero(near & (part == part[node]))
-        images.append(_image(graph, views, node, members=members))
+        members = np.flatnonzero(near & (part == part[node])).tolist()
+        # A node belongs to several places in a row.
+        drawn = {k: drawn.get(k) or _walls_of(graph, views, k) for k in members}
+        walls_m = np.concatenate([one.walls_m for one in drawn.values()])
+        heights_m = np.concatenate([one.heights_m for one in drawn.values()])
+        images.append(make_density_image(walls_m - graph.T_map_body.t[node, :2], heights_m))
     return Places(
         graph=graph,
         node=nodes,
         path_m=path_m,
-        images=tuple(images),
-        descriptors=np.stack([image.descriptor for image in images]),
+        images=images,
+        descriptors=images.descriptors,
         bounds=relative_bounds(graph, nodes, leveled=leveled),
     )
+
+
+def place_nodes(graph: PoseGraph, settings: RecognitionTuning) -> Rows:
+    """Node of each place that `make_places` would draw, (K,)."""
+    return _every(_path_m(graph), _unbroken_parts(graph), settings.spacing_m)
+
+
+def _path_m(graph: PoseGraph) -> Array:
+    """Path length from the start to every node [m], (N,)."""
+    steps = np.linalg.norm(np.diff(graph.T_map_body.t, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
 
 
 def _unbroken_parts(graph: PoseGraph) -> NDArray[np.int64]:
@@ -125,17 +143,21 @@ def _every(path_m: Array, part: NDArray[np.int64], spacing_m: float) -> Rows:
     return np.array(chosen, np.intp)
 
 
-def _image(graph: PoseGraph, views: NodeRangeImages, node: int, *, members: Rows) -> DensityImage:
-    """The walls around a node, from the nodes of its sub-map."""
-    center = graph.T_map_body.t[node]
-    walls, heights = [], []
-    for member in members:
-        p_body = views.ends(int(member)).reshape(-1, 3)
-        p_body = p_body[:: max(1, len(p_body) // PLACES.points)]
-        T_map_body = graph.T_map_body[int(member)]
-        p_map = T_map_body @ p_body
-        height = p_map[:, 2] - T_map_body.t[2]
-        is_wall = (height > -PLACES.below_m) & (height < PLACES.above_m)
-        walls.append(p_map[is_wall, :2] - center[:2])
-        heights.append(height)
-    return make_density_image(np.concatenate(walls), np.concatenate(heights))
+class _NodeWalls(NamedTuple):
+    """What a node sees."""
+
+    walls_m: Array
+    """Horizontal positions of the points on walls in the map [m], (N, 2)."""
+    heights_m: Array
+    """Heights of all points relative to the body [m], (M,)."""
+
+
+def _walls_of(graph: PoseGraph, views: NodeRangeImages, node: int) -> _NodeWalls:
+    """The walls that a node sees, thinned."""
+    p_body = views.ends(node).reshape(-1, 3)
+    p_body = p_body[:: max(1, len(p_body) // PLACES.points)]
+    T_map_body = graph.T_map_body[node]
+    p_map = T_map_body @ p_body
+    height = p_map[:, 2] - T_map_body.t[2]
+    is_wall = (height > -PLACES.below_m) & (height < PLACES.above_m)
+    return _NodeWalls(p_map[is_wall, :2], height)

@@ -23,9 +23,9 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
-from recon4.pose_graph.density_images import Overlay, overlays, yaws_within
+from recon4.pose_graph.density_images import Overlay, TurnedImage, overlays, yaws_within
 from recon4.pose_graph.pairs import Pair, PairRegistrar
-from recon4.pose_graph.places import Places, make_places
+from recon4.pose_graph.places import Places, make_places, place_nodes
 from recon4.pose_graph.recognized_chains import (
     ChainFollower,
     loop_pairs,
@@ -78,6 +78,8 @@ def recognize(
         An edge for every registered pair, accepted or rejected with its reason.
     """
     settings = registrar.recognition
+    if _closed_nodes(graph)[place_nodes(graph, settings)].all():
+        return []  # nothing is open: no place has to be drawn
     places = make_places(graph, registrar.views, settings, leveled=leveled)
     hypotheses = [
         one for place in _open_places(places) for one in _hypotheses(places, place, settings)
@@ -132,16 +134,14 @@ def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
 def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list[_PlaceHypothesis]:
     """The best distinct corrections of a place, by laying it onto similar earlier places."""
     T_map_place = places.graph.T_map_body[places.node]
-    found = []
+    found, source = [], TurnedImage(places.images[place])
     for k in _candidates(places, place, settings):
         yaws = yaws_within(
             settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + RECOGNITION.yaw_rad
         )
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
         height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place])
-        for overlay in overlays(
-            places.images[k], places.images[place], yaws=yaws, most=settings.hypotheses
-        ):
+        for overlay in overlays(places.images[k], source, yaws=yaws, most=settings.hypotheses):
             T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)
             move_m = T.t - T_map_place.t[place]
             across = float(np.linalg.norm(move_m[:2])) / (likely_m + settings.bound_m)

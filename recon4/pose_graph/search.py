@@ -21,6 +21,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, accepted_unseen
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
+from recon4.pose_graph.node_views import NodeRangeImages
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.priors import Kernel
@@ -29,10 +30,11 @@ from recon4.pose_graph.solve import Solution, optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.pose_graph.tuning_solve import SEARCH
 from recon4.progress import Progress
-from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames, node_rows
+from recon4.registration.submap import Submaps, TrackedFrames, node_rows
 from recon4.settings.reads import GraphReads
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
+from recon4.store.unfinished import unfinished_file
 
 _KERNELS: tuple[Kernel, ...] = ("none", "cauchy")
 
@@ -137,7 +139,12 @@ def make_registrar(
     """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""
     tracked = TrackedFrames(frames, odometry.trajectory, odometry.lost)
     submaps = Submaps(tracked, rows, scratch=scratch)
-    views = NodeRangeImages(len(rows), graph_tuning(settings.graph), scratch=scratch)
+    views = NodeRangeImages(
+        len(rows),
+        graph_tuning(settings.graph),
+        scratch=scratch,
+        kept=unfinished_file("views"),
+    )
     return PairRegistrar(submaps, views, settings)
 
 

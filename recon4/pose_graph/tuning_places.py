@@ -123,3 +123,15 @@ class CandidatePlaceTuning(Struct, frozen=True, kw_only=True):
 
 
 RECOGNITION = CandidatePlaceTuning()
+
+
+class BoundTuning(Struct, frozen=True, kw_only=True):
+    """How far places may be off relative to each other."""
+
+    anchors: int = 400
+    """Places between which bounds are exact; of more places, some stand for their neighbors."""
+    chunk: int = 64
+    """Places whose paths are followed at a time."""
+
+
+BOUNDS = BoundTuning()

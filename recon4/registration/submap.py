@@ -6,10 +6,8 @@ import os
 import tempfile
 import threading
 import weakref
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +17,7 @@ from recon4.kernels.imu import place_points
 from recon4.kernels.points import transform_points
 from recon4.model.frames import RecordedFrames
 from recon4.model.trajectory import Times, Trajectory
-from recon4.registration.overlap import make_range_image
 from recon4.registration.segments import Segments, sample_segments
-from recon4.registration.tuning import OVERLAP, OverlapTuning
 
 Ends = NDArray[np.float64]
 """Both ends of M segments [m], (M, 2, 3)."""
@@ -36,22 +32,6 @@ class TrackedFrames:
     """``T_odom_body``, dense."""
     lost: NDArray[np.bool_]
     """Multiframes without a pose, which have no segments here, (F,)."""
-
-
-class SubmapReach(Protocol):
-    """Multiframes around a node, and how many of their segments it keeps."""
-
-    @property
-    def source_reach(self) -> int:
-        """Before and after the node, whose segments are registered."""
-
-    @property
-    def source_segments(self) -> int:
-        """Largest number of these segments."""
-
-    @property
-    def target_reach(self) -> int:
-        """Before and after the node, that form the target map."""
 
 
 class Submaps:
@@ -166,64 +146,6 @@ def _covering(trajectory: Trajectory, t_ns: int, duration_ns: int) -> Trajectory
     first, last = np.searchsorted(trajectory.t_ns, [t_ns, t_ns + duration_ns])
     first = min(max(int(first) - 1, 0), len(trajectory) - 2)
     return trajectory[slice(first, max(int(last) + 1, first + 2))]
-
-
-class NodeRangeImages:
-    """Segments and range image of each node, for the registration of pairs; kept on disk.
-
-    Args:
-        count: Number of nodes.
-        reach: Which multiframes belong to a node.
-        overlap: Bins of the range images.
-        scratch: Folder for the unnamed temporary files; a full disk raises OSError.
-    """
-
-    def __init__(
-        self, count: int, reach: SubmapReach, *, scratch: Path, overlap: OverlapTuning = OVERLAP
-    ) -> None:
-        g, o = reach, overlap
-        self._size = np.zeros(count, np.int64)
-        self._ends = _scratch((count, g.source_segments, 2, 3), scratch)
-        self._nearest = _scratch((count, o.azimuth_bins, o.elevation_bins), scratch)
-        self._reach, self._overlap = reach, overlap
-
-    def fill(self, submaps: Submaps, nodes: Sequence[int]) -> None:
-        """Compute segments and range images of some nodes."""
-        g = self._reach
-        for node in nodes:
-            # The segments of one multiframe are too few points to fill the bins of a view volume.
-            wide = (
-                submaps.around(node, g.target_reach).reshape(-1, 3)
-                if g.target_reach
-                else submaps.points_of(node)
-            )
-            near = _thin(submaps.around(node, g.source_reach), g.source_segments)
-            self._size[node] = len(near)
-            self._ends[node, : len(near)] = near
-            view = make_range_image(wide, self._overlap)
-            self._nearest[node] = view.nearest_m
-
-    def ends(self, node: int) -> Ends:
-        """Both ends of the node's segments, thinned evenly [m], (M, 2, 3)."""
-        return self._ends[node, : self._size[node]].astype(np.float64)
-
-    def nearest_m(self, node: int) -> NDArray[np.float32]:
-        """The spherical z-buffer of the node, see `overlap.View`."""
-        return np.asarray(self._nearest[node])
-
-
-def _thin(ends: Ends, limit: int) -> Ends:
-    if len(ends) <= limit:
-        return ends
-    return ends[np.linspace(0, len(ends) - 1, limit).astype(np.intp)]
-
-
-def _scratch(shape: tuple[int, ...], folder: Path) -> NDArray[np.float32]:
-    """An array in an unnamed file that is removed with the array."""
-    with tempfile.TemporaryFile(dir=folder) as file:
-        # Writing a sparse file through a memory map kills the process if the disk is full.
-        os.posix_fallocate(file.fileno(), 0, 4 * int(np.prod(shape)))
-        return np.memmap(file, np.float32, "r+", shape=shape)
 
 
 def median_range_m(ends: Array) -> float:

@@ -319,7 +319,7 @@ CALIBRATION = Stage(
     _calibration,
     CalibrationFigures,
 )
-GRAPH = Stage("graph", 10, GraphReads, _graph, GraphFigures)
+GRAPH = Stage("graph", 11, GraphReads, _graph, GraphFigures)
 VERIFICATION = Stage("verification", 3, VerificationReads, _verification, VerificationFigures)
 REVIEW = Stage("review", 5, VerificationReads, _review, ReviewFigures)
 REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)

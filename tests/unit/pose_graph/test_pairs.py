@@ -7,18 +7,13 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind, Measure, Reason, Verdict
+from recon4.pose_graph.node_views import NodeRangeImages
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.progress import Silent
 from recon4.registration.collar_lines import register_lines
 from recon4.registration.overlap import RangeImage, overlap
-from recon4.registration.submap import (
-    NodeRangeImages,
-    Submaps,
-    TrackedFrames,
-    median_range_m,
-    node_rows,
-)
+from recon4.registration.submap import Submaps, TrackedFrames, median_range_m, node_rows
 from recon4.registration.tuning import OVERLAP, OdometryTuning, OverlapTuning
 from recon4.settings import Settings
 from tests.scanned_room import strolling, walk

@@ -1,6 +1,7 @@
 """Place recognition: images from above, bounds, and which corrections are accepted."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,11 +18,21 @@ from recon4.model.pose_graph import (
     Verdict,
     known_history,
 )
+from recon4.pose_graph import best_paths
 from recon4.pose_graph.bounds import relative_bounds
-from recon4.pose_graph.density_images import make_density_image, overlays, yaws_within
+from recon4.pose_graph.density_images import (
+    TurnedImage,
+    make_density_image,
+    overlays,
+    yaws_within,
+)
 from recon4.pose_graph.places import Places
+from recon4.pose_graph.recognition import recognize
 from recon4.pose_graph.recognized_groups import RecognizedChain, judge_chains
+from recon4.pose_graph.stored_images import StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
+from recon4.pose_graph.tuning_places import BoundTuning
+from recon4.progress import Silent
 
 SETTINGS = RecognitionTuning()
 TWO_CUBES = np.array([[0.0, 0.0], [0.0, 4.0], [6.0, 4.0], [6.0, -1.0]])
@@ -51,7 +62,7 @@ def test_the_best_overlay_is_the_rotation_and_shift_between_two_visits():
     walls = walls_of(TWO_CUBES)
     seen = turned(walls, np.deg2rad(-70.0), np.array([1.0, -2.0]))
 
-    best = overlays(image(walls), image(seen), yaws=yaws_within(np.pi), most=1)[0]
+    best = overlays(image(walls), TurnedImage(image(seen)), yaws=yaws_within(np.pi), most=1)[0]
 
     back = turned(seen, best.yaw_rad, np.array(best.shift_m))
     assert np.linalg.norm(back - walls, axis=1).max() < 0.7
@@ -131,6 +142,44 @@ def test_a_rejected_edge_shortens_nothing():
     bounds = relative_bounds(straight(41, loop), np.array([0, 40]), leveled=True)
 
     assert bounds.horizontal_m[0, 1] == pytest.approx(4.0, rel=0.05)
+
+
+def test_bounds_of_a_long_walk_are_hardly_larger_than_the_best_path(monkeypatch):
+    walk = straight(121, edge(20, 100, kind=EdgeKind.LOOP))
+    nodes = np.arange(121)
+    exact = relative_bounds(walk, nodes, leveled=True)
+    monkeypatch.setattr(best_paths, "BOUNDS", BoundTuning(anchors=12, chunk=5))
+    bounded = relative_bounds(walk, nodes, leveled=True)
+    rows = nodes[:, None], nodes[None, :]
+    for name in ("horizontal_m", "vertical_m", "yaw_rad"):
+        one, other = (getattr(of, name)[rows] for of in (exact, bounded))
+        assert (other >= one - 1e-9).all()
+        assert np.diagonal(other, 1) == pytest.approx(np.diagonal(one, 1))
+    assert (bounded.horizontal_m[rows] - exact.horizontal_m[rows]).max() < 2.2  # 22 m of path
+
+
+def test_images_come_back_from_the_disk_as_they_were(tmp_path):
+    drawn = [image(walls_of(TWO_CUBES, count)) for count in (300, 5, 2000)]
+    stored = StoredImages(tmp_path)
+    for one in drawn:
+        stored.append(one)
+
+    for one, other in zip(drawn, stored, strict=True):
+        for name in ("walls_m", "spectrum", "descriptor"):
+            np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+            assert getattr(one, name).dtype == getattr(other, name).dtype
+    np.testing.assert_array_equal(stored.descriptors[2], drawn[2].descriptor)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_every_place_is_known_none_is_drawn():
+    known = [edge(k - 5, k, kind=EdgeKind.LOOP) for k in range(5, 41)]
+    registrar = SimpleNamespace(recognition=SETTINGS, views=None)
+    start = (edge(0, k, kind=EdgeKind.LOOP) for k in range(2, 5))
+
+    found = recognize(straight(41, *known, *start), registrar, leveled=True, progress=Silent())
+
+    assert found == []
 
 
 # -- which corrections are accepted
