@@ -13,6 +13,8 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import EdgeTried
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Measure, Reason, Verdict
+from recon4.pose_graph.node_views import NodeRangeImages
+from recon4.pose_graph.tried_pairs import TriedPairs
 from recon4.pose_graph.tuning import RecognitionTuning, graph_tuning
 from recon4.pose_graph.tuning_solve import PAIRS
 from recon4.progress import Progress
@@ -21,10 +23,11 @@ from recon4.registration.overlap import RangeImage, overlap, seen_through
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
-from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_range_m
+from recon4.registration.submap import Ends, Submaps, median_range_m
 from recon4.registration.tuning import OVERLAP, OdometryTuning, OverlapTuning
 from recon4.settings.reads import GraphReads
 from recon4.settings.tuning import tuned
+from recon4.store.unfinished import RecordLog, unfinished_file
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +56,7 @@ class PairRegistrar:
         self._submaps = submaps
         self.views, self.settings = views, settings
         self._overlaps = overlap
+        self._tried = TriedPairs(RecordLog(unfinished_file("pairs")))
         self.graph = graph_tuning(settings.graph)
         self.recognition = tuned(RecognitionTuning, settings.recognition)
 
@@ -67,11 +71,15 @@ class PairRegistrar:
 
     def register(self, pairs: Sequence[Pair], progress: Progress) -> list[Edge]:
         """Register pairs; each sends an event. Edges are returned in the order of the pairs."""
-        order = sorted(range(len(pairs)), key=lambda k: (pairs[k].i, pairs[k].j, k))
+        edges = self._tried.known(pairs)
+        rows = (k for k in range(len(pairs)) if k not in edges)
+        order = sorted(rows, key=lambda k: (pairs[k].i, pairs[k].j, k))
         groups = _by_target(order, pairs)
         chunks = [groups[k : k + PAIRS.chunk] for k in range(0, len(groups), PAIRS.chunk)]
-        edges: dict[int, Edge] = {}
         progress.start("pairs", len(pairs), "pair")
+        for edge in edges.values():
+            progress.event(tried_event(edge))
+        progress.advance(len(edges))
         with ThreadPoolExecutor(self.graph.workers) as pool:
             for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
                 edges.update(done)
@@ -92,7 +100,10 @@ class PairRegistrar:
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
         planes = PlaneMap()
         edges = [self._try_group(planes, group, pairs=pairs) for group in groups]
-        return {k: edge for tried in edges for k, edge in tried}
+        found = {k: edge for tried in edges for k, edge in tried}
+        for k, edge in found.items():
+            self._tried.add(pairs[k], edge)
+        return found
 
     def _try_group(
         self, planes: PlaneMap, group: list[int], *, pairs: Sequence[Pair]

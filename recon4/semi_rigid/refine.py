@@ -17,7 +17,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import TRANSLATION, Array
+from recon4.geometry.se3 import Array
 from recon4.model.corrections import apply_corrections
 from recon4.model.events import RoundRefined
 from recon4.model.figures import CarriedFigures, RefineFigures, RefineRound
@@ -31,6 +31,7 @@ from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
+from recon4.semi_rigid.refined_rounds import MatchedFrame, MatchedFrames, RefinedRounds
 from recon4.semi_rigid.tuning import REFINE_RUN, RefineTuning
 from recon4.settings.reads import RefineReads
 from recon4.settings.tuning import tuned
@@ -113,24 +114,32 @@ def refine_trajectory(
     r = tuned(RefineTuning, settings.refine)
     knot_ns = _knots(frames)
     correction = np.zeros((len(knot_ns), 6))
-    trajectory, rounds = start, []
+    trajectory, rounds, finished = start, list[RefineRound](), RefinedRounds()
     neighbor_sd = np.repeat([r.step_sd_rad, r.step_sd_m], 3)
     total_sd = np.repeat([r.total_sd_rad, r.total_sd_m], 3)
-    for _ in range(r.rounds):
-        progress.start("refine", len(frames) // r.map_stride + len(frames), "multiframe")
-        sweep = _Sweep(frames, trajectory, lost, settings=settings, progress=progress)
-        system, mean_m, match_ratio = sweep.match(sweep.build())
-        if match_ratio == 0.0:
-            break
-        step = solve_knots(system, correction, neighbor_sd=neighbor_sd, total_sd=total_sd)
+    for number in range(r.rounds):
+        earlier = finished.get(number)
+        if earlier is not None:
+            step, figures = earlier
+        else:
+            progress.start("refine", len(frames) // r.map_stride + len(frames), "multiframe")
+            sweep = _Sweep(frames, trajectory, lost, settings=settings, progress=progress)
+            system, mean_m, match_ratio = sweep.match(sweep.build(), MatchedFrames(number))
+            if match_ratio == 0.0:
+                break
+            step = solve_knots(system, correction, neighbor_sd=neighbor_sd, total_sd=total_sd)
+            figures = finished.add(step, mean_m=mean_m, match_ratio=match_ratio)
         correction = correction + step
         trajectory = apply_knots(trajectory, knot_ns, step)
-        largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
-        rounds.append(RefineRound(mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m))
+        rounds.append(figures)
         progress.event(
-            RoundRefined(mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
+            RoundRefined(
+                mean_m=figures.mean_m,
+                match_ratio=figures.match_ratio,
+                largest_step_m=figures.largest_step_m,
+            )
         )
-        if largest_m < r.converged_step_m:
+        if figures.largest_step_m < r.converged_step_m:
             break
     return trajectory, rounds
 
@@ -160,11 +169,14 @@ class _Sweep:
         planes.fit()
         return planes
 
-    def match(self, planes: PlaneMap) -> tuple[IntervalEquations, float, float]:
+    def match(
+        self, planes: PlaneMap, matched: MatchedFrames
+    ) -> tuple[IntervalEquations, float, float]:
         """Normal equations of every multiframe, mean distance [m] and match ratio.
 
         With a ``min_gap_s`` multiframes nearer in time than that to those being matched are
-        removed from the map meanwhile. The match ratio is 0 if nothing matches.
+        removed from the map meanwhile. The match ratio is 0 if nothing matches. What an earlier
+        process has ``matched`` is taken from it.
         """
         count = len(self._frames)
         H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
@@ -175,12 +187,15 @@ class _Sweep:
         def forget(chunk: range) -> None:
             absent.move_to(chunk, self._ends, count)
 
-        results = self._in_order(lambda row: self._match_one(planes, row), 1, before=forget)
-        for row, found in enumerate(results):
+        def match(row: int) -> MatchedFrame | None:
+            return matched.get(row) or self._match_one(planes, row)
+
+        for row, found in enumerate(self._in_order(match, 1, before=forget)):
             if found is not None:
-                H[row], g[row], mean_m, match_ratio = found
-                distances.append(mean_m)
-                ratios.append(match_ratio)
+                matched.add(row, found)
+                H[row], g[row] = found.H, found.g
+                distances.append(found.mean_m)
+                ratios.append(found.match_ratio)
         if not ratios:
             return IntervalEquations(H, g), float("nan"), 0.0
         return IntervalEquations(H, g), float(np.mean(distances)), float(np.mean(ratios))
@@ -198,7 +213,7 @@ class _Sweep:
         """Place of the body in the middle of a multiframe [m], (3,)."""
         return self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
 
-    def _match_one(self, planes: PlaneMap, row: int) -> tuple[Array, Array, float, float] | None:
+    def _match_one(self, planes: PlaneMap, row: int) -> MatchedFrame | None:
         if self._lost[row]:
             return None
         frame = self._frames[row]
@@ -215,7 +230,7 @@ class _Sweep:
         if found.matches == 0:
             return None
         scale = tuned(OdometryTuning, self._settings.odometry).information_scale
-        return scale * found.H, scale * found.g, found.mean_m, found.match_ratio
+        return MatchedFrame(scale * found.H, scale * found.g, found.mean_m, found.match_ratio)
 
     def _gap_rows(self) -> int:
         """Number of multiframes within the gap; 0 = a multiframe may match its own points."""

@@ -26,6 +26,7 @@ from recon4.store.ledger import FinishedStage
 from recon4.store.package_versions import versions
 from recon4.store.project import Project
 from recon4.store.seal import changing, check_sealed
+from recon4.store.unfinished import keeping
 from recon4.store.usage import Meter
 
 SAVING = "save"
@@ -257,8 +258,8 @@ class StageRunner:
     ) -> FinishedStage:
         values = {name: None if given is None else given.value for name, given in inputs.items()}
         settings = part_of(self._settings, stage.reads)
-        meter = Meter()
-        with atomic_folder(artifact.folder) as folder:
+        meter, root = Meter(), self._project.root
+        with keeping(root, stage.name, artifact.key), atomic_folder(artifact.folder) as folder:
             figures = stage.function(StageContext(folder, settings, self._progress), **values)
             done = FinishedStage(
                 key=artifact.key,

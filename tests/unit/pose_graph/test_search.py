@@ -12,17 +12,18 @@ from recon4.geometry.se3 import SE3
 from recon4.model.events import EdgeTried
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict, known_history
+from recon4.pose_graph import node_views
 from recon4.pose_graph.candidates import (
     retry_pairs,
 )
 from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.pairs import tried_event
+from recon4.pose_graph.node_views import NodeRangeImages
+from recon4.pose_graph.pairs import PairRegistrar, tried_event
 from recon4.pose_graph.search import OdometryTrack, build_graph, search
 from recon4.pose_graph.tuning import GraphTuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.submap import NodeRangeImages
 from recon4.registration.tuning import OverlapTuning
 from recon4.registration.walk import WalkInputs
 from recon4.semi_rigid.refine import refine
@@ -33,6 +34,7 @@ from recon4.settings import (
     override,
 )
 from recon4.store.arrays import load_trajectory
+from recon4.store.unfinished import keeping
 from tests.scanned_room import strolling, walk, without_points
 from tests.tuned import with_tuning
 from tests.unit.pose_graph.graphs import ends, graph_at
@@ -138,6 +140,60 @@ def test_who_asks_to_stop_is_heard(searched, stroll):
         build_graph(
             stroll, searched[0] / "odometry", searched[0], settings=settings_of(), progress=Stop()
         )
+
+
+class StopsAt(Silent):
+    """Asks to stop after a number of pairs, and counts those that were registered."""
+
+    def __init__(self, pairs):
+        super().__init__()
+        self.left, self.task = pairs, ""
+
+    def start(self, name, total, unit):
+        super().start(name, total, unit)
+        self.task = name
+
+    def advance(self, done=1):
+        if self.task == "pairs":
+            self.left -= done
+            if self.left < 0:
+                raise Cancelled("enough")
+
+
+def test_a_search_that_was_stopped_goes_on_with_the_same_result(
+    searched, stroll, tmp_path, monkeypatch
+):
+    made = {"solve": 0, "view": 0}
+
+    def counted(name, function):
+        def call(*given, **named):
+            made[name] += 1
+            return function(*given, **named)
+
+        return call
+
+    monkeypatch.setattr(PairRegistrar, "_solve", counted("solve", PairRegistrar._solve))
+    monkeypatch.setattr(
+        node_views, "make_range_image", counted("view", node_views.make_range_image)
+    )
+
+    def run(progress):
+        made.update(solve=0, view=0)
+        settings = settings_of("graph.node_stride=3", "graph.workers=1")
+        with keeping(tmp_path, "graph", "key"):
+            odometry = searched[0] / "odometry"
+            build_graph(stroll, odometry, tmp_path, settings=settings, progress=progress)
+        return dict(made)
+
+    with pytest.raises(Cancelled):
+        run(StopsAt(9))
+    again = run(Silent())
+    fresh = run(Silent())
+
+    assert fresh["solve"] >= again["solve"] + 9
+    assert (again["view"], fresh["view"] > 0) == (0, True)
+    for name in ("graph.npz", "edges.json"):
+        assert (tmp_path / name).read_bytes() == (searched[0] / "graph" / name).read_bytes()
 
 
 # -- tried again

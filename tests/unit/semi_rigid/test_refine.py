@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.errors import Cancelled
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import RefineFigures
 from recon4.model.plain import to_plain
@@ -14,9 +15,11 @@ from recon4.registration.plane_map import Match
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.semi_rigid.refine import _Sweep, corrected_by_nodes, refine, refine_trajectory
+from recon4.semi_rigid.refined_rounds import MatchedFrames
 from recon4.semi_rigid.tuning import RefineTuning
 from recon4.settings import Settings, override
 from recon4.store.arrays import load_trajectory, save_trajectory
+from recon4.store.unfinished import keeping
 from tests.scanned_room import strolling, walk, without_points
 
 SETTINGS = replace(
@@ -145,7 +148,7 @@ def matched(stroll, gap_s):
     settings = tuned_by(min_gap_s=gap_s, map_stride=1000)
     frames = lost_none(stroll)
     sweep = _Sweep(stroll, stroll.truth, frames, settings=settings, progress=Silent())
-    system, _, _ = sweep.match(sweep.build())
+    system, _, _ = sweep.match(sweep.build(), MatchedFrames(0))
     return system.H.any(axis=(1, 2))
 
 
@@ -164,7 +167,7 @@ def test_the_map_is_whole_again_after_a_sweep_but_for_the_end(stroll):
     sweep = _Sweep(stroll, stroll.truth, lost_none(stroll), settings=settings, progress=Silent())
     planes, whole = sweep.build(), sweep.build()
 
-    sweep.match(planes)
+    sweep.match(planes, MatchedFrames(0))
 
     frame, early = stroll[2], stroll.truth.at(stroll.t_mid_ns[2:3]).t[0]
     segments = sample_segments(frame, stroll.rig)
@@ -257,3 +260,31 @@ def test_odometry_moves_along_with_the_nodes(stroll):
     expected = SE3.from_rpy(0, 0, 1.0, t=[5.0, 0, 0]) @ stroll.truth.T_a_b
     np.testing.assert_allclose(moved.T_a_b.t, expected.t, atol=1e-9)
     np.testing.assert_allclose(moved.T_a_b.R, expected.R, atol=1e-9)
+
+
+def test_a_refinement_that_was_stopped_matches_only_the_rest(stroll, tmp_path, monkeypatch):
+    start, match, matched = bent(stroll.truth), _Sweep._match_one, []
+    settings = tuned_by(rounds=2)
+    whole, rounds = refined(stroll, start, settings=settings)
+    stop_after = len(stroll) + 11  # in the second round
+
+    def counted(sweep, planes, row):
+        if len(matched) == stop_after:
+            raise Cancelled("enough")
+        matched.append(row)
+        return match(sweep, planes, row)
+
+    def run():
+        with keeping(tmp_path, "refine", "key"):
+            return refined(stroll, start, settings=settings)
+
+    monkeypatch.setattr(_Sweep, "_match_one", counted)
+    with pytest.raises(Cancelled):
+        run()
+    stop_after = -1
+    again, rounds_again = run()
+
+    assert len(matched) == len(rounds) * len(stroll)
+    assert rounds_again == rounds
+    np.testing.assert_array_equal(again.T_a_b.t, whole.T_a_b.t)
+    np.testing.assert_array_equal(again.T_a_b.R, whole.T_a_b.R)
