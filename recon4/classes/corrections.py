@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from recon4.classes.tuning import CORRECTIONS
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.locales.coded import CodedText
 from recon4.mapping.class_corrections import ClassVolume, ClassVolumes
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import Tile, TileSet
@@ -44,20 +45,20 @@ class CountedPoints:
         """How many points change."""
         return sum(self.changed.values())
 
-    def why_none(self, what: Reclassified) -> str:
-        """Why no point changes; empty if one does."""
+    def why_none(self, what: Reclassified) -> CodedText | None:
+        """Why no point changes; None if one does."""
         if self.changed:
-            return ""
+            return None
         if self.away_m > 0.0:
-            return f"there is no point in it: the map ends {self.away_m:.1f} m away"
+            return CodedText("class-no-points-near", away_m=self.away_m)
         if not self.inside:
-            return "there is no point in it"
-        there = ", ".join(
-            f"{CLASSES[PointClass(one)].title} ({count})" for one, count in self.inside.items()
-        )
+            return CodedText("class-no-points")
         if {*self.inside} == {what.to}:
-            return f"all points in it are {CLASSES[PointClass(what.to)].title} already"
-        return f"no point in it has a class that is corrected; it has {there}"
+            return CodedText("class-already", title=CLASSES[PointClass(what.to)].title)
+        there = ";".join(
+            f"{CLASSES[PointClass(one)].title}:{count}" for one, count in self.inside.items()
+        )
+        return CodedText("class-not-corrected", there=there)
 
 
 @dataclass(frozen=True, slots=True)

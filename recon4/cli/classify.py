@@ -99,8 +99,9 @@ def _counted(
     made: list[ClassCorrection] = []
     for one in listed:
         trial = try_correction(artifacts, one.what, [*before, *made])
-        if trial.correction is None:
-            raise ConfigError(f"{one.where}: {trial.refused}; nothing was changed")
+        if trial.refused is not None:
+            raise ConfigError(f"{one.where}: {trial.refused.text}; nothing was changed")
+        assert trial.correction is not None
         now = ", ".join(f"{count} {title}" for title, count in trial.now.items())
         to = titles_of([one.what.to])[0]
         write(f"{one.where}: {trial.points} points, now: {now} -> {to}")

@@ -11,14 +11,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from types import MappingProxyType
 
 from recon4.locales.languages import ENGLISH
+from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
 
-FILES = ("problems", "endings")
-"""Files of the texts with a code: problems of requests, reasons why jobs ended."""
+FILES = ("problems", "endings", "references")
+"""Files of the texts with a code: problems of requests, reasons why jobs ended, references."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
 UNCODED = "message"
@@ -50,6 +52,26 @@ class CodedText(str):
     def said(self, language: str) -> str:
         """The text in a language."""
         return _texts(language)(self.code, **self.values)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredText:
+    """A text as a file keeps it: in English, and with code and values if it has a code."""
+
+    text: str
+    code: str = ""
+    values: dict[str, Shown] = field(default_factory=dict)
+
+    @staticmethod
+    def of(text: str) -> StoredText:
+        """What is stored of a text."""
+        if not isinstance(text, CodedText):
+            return StoredText(text=text)
+        return StoredText(text=str(text), code=text.code, values=dict(text.values))
+
+    def said(self, language: str) -> str:
+        """The text in a language; in English if it has no code that is known."""
+        return said(stored_text(self.code, self.values, self.text), language)
 
 
 def coded(error: BaseException) -> CodedText:
@@ -127,7 +149,21 @@ def _functions(texts: Texts) -> Functions:
         kind = "none" if not what else "stage" if stage else "work"
         return texts(f"word-place-{kind}", stage=stage, what=what)
 
+    def counted(written: str, of: str) -> str:
+        pairs = (one.rpartition(":") for one in written.split(";"))
+        return ", ".join(f"{named(title, of)} ({count})" for title, _, count in pairs)
+
+    def agreeing(walls: float, level: float) -> str:
+        kind = "level" if as_float(walls) < 0.0 else "walls" if as_float(level) < 0.0 else "both"
+        return texts(f"word-agreeing-{kind}", walls=as_float(walls), level=as_float(level))
+
+    def numbers(written: str) -> str:
+        return "; ".join(localized(one, texts.language) for one in written.split())
+
     return {
+        "AGREEING": agreeing,
+        "COUNTED": counted,
+        "NUMBERS": numbers,
         "QUOTED": lambda value: repr(str(value)),
         "WORDS": words,
         "NAMED": named,

@@ -10,6 +10,7 @@ import msgspec
 
 from recon4.classes.corrections import correction_of, count_points, place_correction
 from recon4.errors import StoreError
+from recon4.locales.coded import StoredText
 from recon4.mapping.tiles import TileSet
 from recon4.model.class_corrections import ClassCorrection, Reclassified, titles_of
 from recon4.review.decisions import Decided, StandingCorrection
@@ -42,8 +43,8 @@ class CorrectionTrial:
     """Title of their class now -> how many of them."""
     inside: int
     """Points in the volume, those that the map leaves out as well."""
-    refused: str
-    """Why it is not made; empty = it may be."""
+    refused: StoredText | None
+    """Why it is not made; None = it may be."""
     correction: ClassCorrection | None
     """As the journal keeps it; None = it is refused."""
 
@@ -104,7 +105,7 @@ def try_correction(
         points=counted.points,
         now={titles_of([one])[0]: count for one, count in counted.changed.items()},
         inside=sum(counted.inside.values()),
-        refused=refused,
+        refused=StoredText.of(refused) if refused else None,
         correction=made,
     )
 

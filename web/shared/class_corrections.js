@@ -7,7 +7,7 @@ import {
   remakeMap,
   withdrawCorrection,
 } from "./api.js";
-import { classText, whyText } from "./class_words.js";
+import { classText } from "./class_words.js";
 import { attempt, html, messagePlace, nothing, render, targetOf, within } from "./dom.js";
 import { count, when } from "./format.js";
 import { t } from "./texts.js";
@@ -173,7 +173,7 @@ export class ClassCorrections extends HTMLElement {
   #countText() {
     const counted = this.#counted;
     if (!counted) return "";
-    if (counted.refused) return t("correct-nothing", { why: whyText(counted.refused) });
+    if (counted.refused) return t("correct-nothing", { why: counted.refused });
     const now = Object.entries(counted.now).sort(([, a], [, b]) => b - a);
     const parts = now.map(([title, n]) => {
       const word = classText(title);

@@ -13,6 +13,7 @@ from starlette.requests import Request
 from recon4.locales.coded import CodedText
 from recon4_app.access.people import person
 from recon4_app.errors import ClientLeft
+from recon4_app.pages import language_of
 
 T = TypeVar("T")
 
@@ -23,6 +24,11 @@ class Caller:
 
     name: str
     request: Request
+
+    @property
+    def language(self) -> str:
+        """The language that the person reads."""
+        return language_of(self.request)
 
     async def wait(self, work: Coroutine[Any, Any, T]) -> T:
         """Return the result of ``work``; cancel it as soon as the client disconnects.

@@ -57,7 +57,7 @@ async def count_points(
         points=trial.points,
         now=trial.now,
         inside=trial.inside,
-        refused=trial.refused,
+        refused=trial.refused.said(caller.language) if trial.refused else "",
         seq=len(rows),
     )
 
@@ -73,8 +73,10 @@ async def correct(
     root = server.projects.folder(project_id)
     rows = await run_in_threadpool(read_rows, root)
     trial = await _tried(server, caller, project_id, asked=new, rows=rows)
-    if trial.correction is None:
-        raise Conflict(CodedText("correction-refused", detail=trial.refused))
+    if trial.refused is not None:
+        detail = trial.refused.said(caller.language)
+        raise Conflict(CodedText("correction-refused", detail=detail))
+    assert trial.correction is not None
     decision = Decision(
         kind=DecisionKind.CLASSIFY, who=who.name, why=new.why, correction=trial.correction
     )

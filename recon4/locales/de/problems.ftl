@@ -157,6 +157,10 @@ map-gone = das Projekt { $project } hat die Karte { $map } nicht mehr
 
 findings-differ = die Karte wurde neu gerechnet und ihre Befunde sind andere: noch einmal ansehen
 correction-refused = keine Klasse wird korrigiert: { $detail }
+class-no-points = dort ist kein Punkt
+class-no-points-near = dort ist kein Punkt: die Karte endet { DECIMAL($away_m, digits: 1) } m entfernt
+class-already = alle Punkte darin sind schon { NAMED($title, of: "class") }
+class-not-corrected = kein Punkt darin hat eine Klasse, die korrigiert wird; dort sind { COUNTED($there, of: "class") }
 map-remade-classes = die Karte wurde inzwischen neu gerechnet: die Seite neu laden, um ihre Klassen zu korrigieren
 count-malformed = die Anzahl der Punkte ist fehlerhaft: { $detail }
 approve-while-running = ein Auftrag dieses Projekts wartet oder läuft; danach freigeben

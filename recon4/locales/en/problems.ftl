@@ -157,6 +157,10 @@ map-gone = project { $project } has no map { $map } any more
 
 findings-differ = the map was made again, and its findings differ: look at them again
 correction-refused = no class is corrected: { $detail }
+class-no-points = there is no point in it
+class-no-points-near = there is no point in it: the map ends { DECIMAL($away_m, digits: 1) } m away
+class-already = all points in it are { NAMED($title, of: "class") } already
+class-not-corrected = no point in it has a class that is corrected; it has { COUNTED($there, of: "class") }
 map-remade-classes = the map was made again meanwhile: reload the page to correct its classes
 count-malformed = the count of points is malformed: { $detail }
 approve-while-running = a job of this project is queued or running; approve when it is done

@@ -111,4 +111,6 @@ def test_why_nothing_would_change_is_said(tmp_path):
     assert said[0].startswith("there is no point in it: the map ends 99")
     assert said[1] == "there is no point in it"
     assert said[2].startswith("no point in it has a class that is corrected; it has unclassified")
-    assert said[3] == ""
+    assert said[3] is None
+    assert said[2].said("de").startswith("kein Punkt darin hat eine Klasse, die korrigiert wird")
+    assert "; dort sind nicht klassifiziert (" in said[2].said("de")
