@@ -13,6 +13,7 @@ import typer
 
 from recon4.cli.tables import parse_choice
 from recon4.errors import ConfigError
+from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
@@ -70,5 +71,5 @@ def open_reference(
         out = Path(scratch) / "reference"
         facts = import_reference(path, out, read_as=read_as, place=MapPlace(frame, tiles.bounds_m))
         for note in facts.notes:
-            sys.stderr.write(f"{facts.file}: {note}\n")
+            sys.stderr.write(f"{facts.file}: {note.said(of_terminal())}\n")
         yield load_reference(out)

@@ -9,10 +9,14 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.evaluation.reference_mesh import SurfacePoints, fit_planes
 from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.locales.coded import CodedText, as_coded
 from recon4.mapping.tiles import TileSet
-from recon4.slices.reference import Reference
+from recon4.slices.reference import FAR, MISFIT, Reference
 from recon4.slices.reference_fit import fit_of, sample_reference, sample_tiles
 from recon4.slices.tuning import ALIGNMENT
+
+_REFUSED = {FAR: "align-far", MISFIT: "align-misfit"}
+"""What is said of an alignment after which the reference does not fit."""
 
 
 def align_by_pairs(p_map: Array, p_reference: Array) -> tuple[SE3, Array]:
@@ -94,14 +98,10 @@ def _floor_m(surface: SurfacePoints, near: Array) -> float | None:
 
 def _check_pairs(p_map: Array, p_reference: Array, *, axes: int) -> None:
     if len(p_map) < 3 or len(p_map) != len(p_reference):
-        raise ConfigError(f"alignment: expected three pairs of points or more, got {len(p_map)}")
+        raise ConfigError(CodedText("align-pairs-few", pairs=len(p_map)))
     spread = p_reference[:, :axes] - p_reference[:, :axes].mean(axis=0)
     if np.linalg.matrix_rank(spread, tol=0.05) < axes - 1:
-        raise ConfigError(
-            "alignment: the points lie on a line, so the rotation about it is undetermined"
-            if axes == 3
-            else "alignment: the points lie at one place, so the rotation is undetermined"
-        )
+        raise ConfigError(CodedText("align-pairs-line" if axes == 3 else "align-pairs-place"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,12 +119,10 @@ class IcpFit:
     """Whether the reference fits the map, see `ReferenceFit`."""
 
     @property
-    def description(self) -> str:
+    def description(self) -> CodedText:
         """One line for the list of references."""
-        return (
-            f"ICP, point to plane: {100.0 * self.near_ratio:.0f} % of the map near it, "
-            f"of these {100.0 * self.inlier_ratio:.0f} % on it, "
-            f"{100.0 * self.mean_m:.1f} cm from it on average"
+        return CodedText(
+            "alignment-icp", near=self.near_ratio, on=self.inlier_ratio, mean_m=self.mean_m
         )
 
 
@@ -148,22 +146,19 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
     on = fit.distance_m[fit.distance_m < ALIGNMENT.on_m]
     near_ratio, inlier_ratio = near / max(1, len(p_map)), len(on) / max(1, near)
     if near < ALIGNMENT.min_points or near_ratio < ALIGNMENT.min_near:
-        raise ConfigError(
-            f"ICP: the map and the reference do not overlap: {100.0 * near_ratio:.1f} % of "
-            f"the map is within {100.0 * ALIGNMENT.near_m:.0f} cm of it; use Align by pairs"
-        )
-    if not fit.converged or inlier_ratio < ALIGNMENT.min_on:
-        why = f"inlier ratio (10 cm) {100.0 * inlier_ratio:.0f} %"
-        if not fit.converged:
-            why = f"no convergence after {ALIGNMENT.rounds} iterations"
-        raise ConfigError(
-            f"ICP did not align the reference with the map: {why}; use Align by pairs"
-        )
+        limit_cm = round(100.0 * ALIGNMENT.near_m)
+        raise ConfigError(CodedText("align-apart", near=near_ratio, limit_cm=limit_cm))
+    if not fit.converged:
+        raise ConfigError(CodedText("align-endless", rounds=ALIGNMENT.rounds))
+    if inlier_ratio < ALIGNMENT.min_on:
+        limit_cm = round(100.0 * ALIGNMENT.on_m)
+        raise ConfigError(CodedText("align-off", on=inlier_ratio, limit_cm=limit_cm))
     T = fit.T_model_map.inverse()
     check = fit_of(tiles, replace(reference, T_map_reference=T), rng=rng)
     if check.fits is False:
         # Floors and ceilings lie on each other also where a reference is turned.
-        raise ConfigError(f"ICP: {check.text}; use Align by pairs")
+        why = as_coded(check.text)
+        raise ConfigError(CodedText(_REFUSED[why.code], **why.values))
     return IcpFit(T, near_ratio, inlier_ratio, float(on.mean()), check.text)
 
 

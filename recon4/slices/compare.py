@@ -5,17 +5,19 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.evaluation.slices import DistanceTally, SliceError, merge_slices
 from recon4.evaluation.tuning import RELATIVE_ERROR
+from recon4.locales.coded import said
+from recon4.locales.languages import ENGLISH
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
 from recon4.slices.points import points_in
-from recon4.slices.reference import Method, Reference
+from recon4.slices.reference import Method, Reference, alignment_text
 from recon4.slices.reference_fit import ReferenceFit, fit_of
 from recon4.slices.residual_table import UNKNOWN
 from recon4.slices.signed_distances import SignedFigures, SignedTally, merged
@@ -87,11 +89,13 @@ def compare(
     reference: Reference,
     *,
     rng: np.random.Generator,
+    language: str = ENGLISH,
 ) -> Comparison:
     """Mean distance and ratios within 2 and 5 cm of every slice, from all its points; and signs.
 
     Points farther than 0.5 m from the reference (people, changed objects) are outliers and counted
-    separately. Averages are weighted by points, as in V, and plain over the slices.
+    separately. Averages are weighted by points, as in V, and plain over the slices. What is said
+    of the reference is in the language.
 
     Raises:
         ConfigError: Without slices.
@@ -102,6 +106,7 @@ def compare(
     rows = tuple(row for row, _ in found)
     measured = [row.mean_m for row in rows if row.points]
     all_signed = merged([signed for _, signed in found])
+    fit = fit_of(tiles, reference, rng=rng)
     return Comparison(
         slices=tuple(ComparedSlice.of(row, signed.figures()) for row, signed in found),
         point_weighted=ComparedSlice.of(merge_slices(rows), all_signed.figures()),
@@ -110,11 +115,11 @@ def compare(
         histogram=tuple(all_signed.histogram.tolist()),
         histogram_step_m=SIGNED.histogram_step_m,
         histogram_end_m=SIGNED.histogram_end_m,
-        fit=fit_of(tiles, reference, rng=rng),
+        fit=replace(fit, text=said(fit.text, language)),
         reference=reference.name,
         method=reference.method,
-        alignment=reference.alignment,
-        notes=reference.notes,
+        alignment=alignment_text(reference.alignment, language),
+        notes=tuple(one.said(language) for one in reference.notes),
     )
 
 

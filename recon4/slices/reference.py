@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +14,9 @@ import numpy as np
 from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.reference_mesh import TriangleMesh, scene_of
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText, StoredText
+from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import Shown
 from recon4.mapping.tiles import TileSet
 from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.slices.points import SliceWindow, points_in
@@ -27,6 +30,10 @@ if TYPE_CHECKING:
     from recon4.geometry.raycast import Scene
 
 Method = Literal["plane", "point"]
+FITS, MISFIT, FAR = "reference-fits", "reference-misfit", "reference-far"
+"""Codes of what is said of a reference that fits the map, and of others."""
+Statements = tuple[StoredText, ...]
+"""Texts, one after the other."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,8 +41,8 @@ class EarlierAlignment:
     """An alignment that was replaced."""
 
     T_map_reference: list[list[float]]
-    alignment: str
-    fit: str = ""
+    alignment: Statements
+    fit: Statements = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,10 +56,10 @@ class ReferenceFacts:
     """Frame of the file's coordinates."""
     T_map_reference: list[list[float]]
     """4 x 4, row by row."""
-    alignment: str = "none"
-    """How it was aligned with the map, as text."""
-    fit: str = ""
-    """How well it lies on the map after its last alignment, as text; empty = not compared."""
+    alignment: Statements = ()
+    """How it was aligned with the map, step by step; empty = not at all."""
+    fit: Statements = ()
+    """How well it lies on the map after its last alignment; empty = not compared."""
     earlier: EarlierAlignment | None = None
     """The alignment before the last one, to undo that."""
     kind: Literal["mesh", "cloud"]
@@ -64,8 +71,13 @@ class ReferenceFacts:
     """Meaning of the columns of a text, if a person chose it."""
     unit: Unit | Literal[""] = ""
     """Unit of the file, if a person chose it."""
-    notes: tuple[str, ...] = ()
-    """How its columns, units and CRS were read, as sentences."""
+    notes: Statements = ()
+    """How its columns, units and CRS were read."""
+
+    @property
+    def fits(self) -> bool | None:
+        """Whether it lies on the map since its last alignment; None = not compared or judged."""
+        return next((one.code == FITS for one in self.fit if one.code in (FITS, MISFIT, FAR)), None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,15 +107,16 @@ class Reference:
     method: Method = "plane"
     mesh: TriangleMesh | None = None
     tiles: TileSet | None = None
-    notes: tuple[str, ...] = ()
-    """How its columns, units and CRS were read, as sentences."""
-    alignment: str = "none"
-    """How it was aligned with the map, as text."""
+    notes: Statements = ()
+    """How its columns, units and CRS were read."""
+    alignment: Statements = ()
+    """How it was aligned with the map, step by step; empty = not at all."""
 
     @property
     def caption(self) -> str:
         """Its name and how it was read, for one line of a sheet."""
-        text = ". ".join((self.name, " ".join(self.notes)) if self.notes else (self.name,))
+        notes = " ".join(one.text for one in self.notes)
+        text = f"{self.name}. {notes}" if notes else self.name
         return (
             text
             if len(text) <= REFERENCES.longest_caption
@@ -229,12 +242,55 @@ def read_facts(folder: Path) -> ReferenceFacts:
     """
     record = read_object(folder / "reference.json", max_bytes=REFERENCES.max_facts_bytes)
     try:
-        facts = msgspec.convert(record, ReferenceFacts)
+        facts = msgspec.convert(_with_statements(record), ReferenceFacts)
     except msgspec.ValidationError as error:
         raise StoreError(f"{folder.name}/reference.json: {error}") from error
-    notes = tuple(visible(note, most=REFERENCES.longest_note) for note in facts.notes)
-    alignment = visible(facts.alignment, most=REFERENCES.longest_note)
-    return replace(facts, name=visible(facts.name), alignment=alignment, notes=notes)
+    return replace(
+        facts,
+        name=visible(facts.name),
+        alignment=_visible(facts.alignment),
+        fit=_visible(facts.fit),
+        notes=_visible(facts.notes),
+    )
+
+
+def alignment_text(alignment: Statements, language: str = ENGLISH) -> str:
+    """How a reference is aligned, in a language."""
+    steps = [one.said(language) for one in alignment]
+    return "; ".join(steps) or CodedText("alignment-none").said(language)
+
+
+def _with_statements(record: Mapping[str, object]) -> dict[str, object]:
+    """The record of a file; earlier versions wrote its statements in English only."""
+    out = dict(record)
+    for name in ("alignment", "fit", "notes"):
+        written = out.get(name, [])
+        listed = written if isinstance(written, list) else [written]
+        out[name] = [
+            {"text": one} if isinstance(one, str) else one
+            for one in listed
+            if one not in ("", "none")
+        ]
+    earlier = out.get("earlier")
+    if isinstance(earlier, dict):
+        out["earlier"] = _with_statements(earlier)
+    return out
+
+
+def _visible(statements: Statements) -> Statements:
+    """Statements of a file, fit to be shown."""
+
+    def shown(value: Shown) -> Shown:
+        return visible(value, most=REFERENCES.longest_note) if isinstance(value, str) else value
+
+    return tuple(
+        StoredText(
+            text=visible(one.text, most=REFERENCES.longest_note),
+            code=one.code,
+            values={name: shown(value) for name, value in one.values.items()},
+        )
+        for one in statements
+    )
 
 
 def _mesh(path: Path) -> TriangleMesh:

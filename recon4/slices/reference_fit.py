@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from recon4.evaluation.reference_mesh import SurfacePoints, sample_mesh
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
-from recon4.slices.reference import Reference
+from recon4.slices.reference import FAR, FITS, MISFIT, Reference
 from recon4.slices.tuning import REFERENCE_FIT
 from recon4.slices.tuning_files import REFERENCES
 
-_NOT_JUDGED = "– Not judged whether the reference fits: hardly any flat surface in both"
+_NONE = -1.0
+"""In a text, of a ratio that is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +34,7 @@ class ReferenceFit:
     fits: bool | None
     """None = not judged: map or reference have hardly any flat surface."""
     text: str
+    """The same in words, a `CodedText`."""
 
 
 def reference_fit(
@@ -43,7 +46,7 @@ def reference_fit(
     larger one has surfaces beside it that are not in the smaller one.
     """
     if not len(map_points.p) or not len(surface.p):
-        return ReferenceFit(0.0, None, None, None, _NOT_JUDGED)
+        return ReferenceFit(0.0, None, None, None, CodedText("reference-unjudged"))
     moved = SurfacePoints(T_map_reference @ surface.p, surface.normals @ T_map_reference.R.T)
     ours, theirs = _agreement(map_points, moved), _agreement(moved, map_points)
     return _judged(
@@ -116,23 +119,16 @@ def _ratio(agrees: NDArray[np.bool_], group: NDArray[np.bool_]) -> float | None:
 
 def _judged(near: float, walls: float | None, level: float | None) -> ReferenceFit:
     if near < REFERENCE_FIT.least_near:
-        text = (
-            f"✕ The reference does not fit: {100.0 * near:.1f} % of the map is within "
-            f"{100.0 * REFERENCES.far_m:.0f} cm of it"
-        )
-        return ReferenceFit(near, walls, level, False, text)
-    groups = (("walls", walls), ("floors and ceilings", level))
-    parts = [(name, ratio) for name, ratio in groups if ratio is not None]
-    if not parts:
-        return ReferenceFit(near, walls, level, None, _NOT_JUDGED)
-    fits = all(ratio >= REFERENCE_FIT.least_agreeing for _, ratio in parts)
-    agree = " and ".join(f"{100.0 * ratio:.0f} % of the {name}" for name, ratio in parts)
-    start = "✓ The reference fits" if fits else "✕ The reference does not fit"
-    return ReferenceFit(
-        near,
-        walls,
-        level,
-        fits,
-        f"{start}: where both are, {agree} lie within {100.0 * REFERENCE_FIT.on_m:.0f} cm of a "
-        "surface of the same orientation",
+        far = CodedText(FAR, near=near, limit_cm=round(100.0 * REFERENCES.far_m))
+        return ReferenceFit(near, walls, level, False, far)
+    known = [ratio for ratio in (walls, level) if ratio is not None]
+    if not known:
+        return ReferenceFit(near, walls, level, None, CodedText("reference-unjudged"))
+    fits = all(ratio >= REFERENCE_FIT.least_agreeing for ratio in known)
+    text = CodedText(
+        FITS if fits else MISFIT,
+        walls=_NONE if walls is None else walls,
+        level=_NONE if level is None else level,
+        limit_cm=round(100.0 * REFERENCE_FIT.on_m),
     )
+    return ReferenceFit(near, walls, level, fits, text)

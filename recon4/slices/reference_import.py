@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import chain
 from pathlib import Path
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, CorruptFile, UnknownFormat
 from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText, StoredText
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
@@ -92,6 +93,7 @@ def import_reference(
         mesh = is_mesh(path)
         found = (_mesh if mesh else _cloud)(path, folder, read_as, place=place)
         remarks = check_extent(found.bounds_m, place.bounds_m, certain=found.unit_stated)
+        notes = (found.columns, *found.placement.notes, *remarks)
         facts = ReferenceFacts(
             name=name or visible(path.name),
             file=visible(path.name),
@@ -102,7 +104,7 @@ def import_reference(
             triangles=found.count if mesh else 0,
             columns=read_as.choice.columns,
             unit=read_as.choice.unit or "",
-            notes=tuple(filter(None, (found.columns, *found.placement.notes, *remarks))),
+            notes=tuple(StoredText.of(one) for one in notes if one),
         )
         write_json(folder / "reference.json", asdict(facts))
     return facts
@@ -122,17 +124,24 @@ class _Imported:
 
 
 def set_alignment(
-    folder: Path, T_map_reference: SE3, *, description: str, fit: str = ""
+    folder: Path, T_map_reference: SE3, *, steps: Sequence[str] = (), fit: str = ""
 ) -> ReferenceFacts:
-    """Store the alignment of a reference with the map; the one before it is kept."""
+    """Store the alignment of a reference with the map; the one before it is kept.
+
+    Args:
+        folder: Of the reference.
+        T_map_reference: The alignment.
+        steps: How it was found, one `CodedText` a step.
+        fit: How well the reference lies on the map now; empty = not compared.
+    """
     facts = read_facts(folder)
     return _keep(
         folder,
         replace(
             facts,
             T_map_reference=T_map_reference.matrix().tolist(),
-            alignment=description,
-            fit=fit,
+            alignment=tuple(map(StoredText.of, steps)),
+            fit=(StoredText.of(fit),) if fit else (),
             earlier=_present(facts),
         ),
     )
@@ -146,8 +155,18 @@ def undo_alignment(folder: Path) -> ReferenceFacts:
     """
     facts = read_facts(folder)
     if facts.earlier is None:
-        raise ConfigError("this reference was not aligned yet: there is nothing to undo")
-    return _keep(folder, replace(facts, **asdict(facts.earlier), earlier=_present(facts)))
+        raise ConfigError(CodedText("align-nothing-to-undo"))
+    before = facts.earlier
+    return _keep(
+        folder,
+        replace(
+            facts,
+            T_map_reference=before.T_map_reference,
+            alignment=before.alignment,
+            fit=before.fit,
+            earlier=_present(facts),
+        ),
+    )
 
 
 def _present(facts: ReferenceFacts) -> EarlierAlignment:

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.cloud_crs import (
     StatedCrs,
     horizontal_part,
@@ -35,7 +36,7 @@ class FilePlacement:
     to_map: _Convert
     """Coordinates of the file (N, 3) -> points of the map [m], (N, 3)."""
     frame: Literal["map", "crs"]
-    notes: tuple[str, ...]
+    notes: tuple[CodedText, ...]
     """What was found and what was converted, as sentences."""
 
 
@@ -62,26 +63,26 @@ def place_file(
         return _from_stated(stated, own, units, notes=notes)
     if asked == "auto":
         return _in_map_frame(stated, own, units, notes=notes)
-    notes.append(f"No CRS is known of it: its coordinates are taken as those of {own.crs}.")
+    notes.append(CodedText("note-no-crs", own=own.crs))
     return FilePlacement(lambda p: own.from_crs(p * units), "crs", tuple(notes))
 
 
-def _units_of(stated: StatedCrs, unit: Unit | None) -> tuple[Array, list[str]]:
+def _units_of(stated: StatedCrs, unit: Unit | None) -> tuple[Array, list[CodedText]]:
     """Meters of one unit along x, y, z, and notes."""
-    notes: list[str] = []
+    notes: list[CodedText] = []
     if stated.problem:
-        notes.append(f"It states {stated.problem}: not used.")
+        notes.append(CodedText("note-crs-problem", problem=stated.problem))
     if unit is not None:
-        notes.append(f"Read in {UNIT_NAMES[unit]}, as chosen.")
+        notes.append(CodedText("note-unit-chosen", unit=UNIT_NAMES[unit]))
         return np.full(3, UNITS_M[unit]), notes
     across = stated.unit_m or 1.0
     up = stated.height_unit_m or (1.0 if stated.geographic else across)
     if stated.unit_m not in (None, 1.0):
-        notes.append(f"Coordinates in {_unit_name(across)}, converted to meters.")
+        notes.append(CodedText("note-unit-converted", unit=_unit_name(across)))
     if stated.height_unit_m is None and across != 1.0:
-        notes.append(f"The unit of its heights is not stated: taken as {_unit_name(up)}.")
+        notes.append(CodedText("note-height-unit-unknown", unit=_unit_name(up)))
     elif up != across and not (stated.geographic and up == 1.0):
-        notes.append(f"Heights in {_unit_name(up)}, converted to meters.")
+        notes.append(CodedText("note-height-unit-converted", unit=_unit_name(up)))
     return np.array([across, across, up]), notes
 
 
@@ -93,7 +94,7 @@ def _unit_name(unit_m: float) -> str:
 
 
 def _in_map_frame(
-    stated: StatedCrs, own: MapFrame, units: Array, *, notes: list[str]
+    stated: StatedCrs, own: MapFrame, units: Array, *, notes: list[CodedText]
 ) -> FilePlacement:
     """The coordinates as they are, in meters."""
     if stated.geographic or _is_geocentric(stated):
@@ -104,8 +105,8 @@ def _in_map_frame(
             "expected meters of a map projection; convert the file, or choose its own CRS"
         )
     if stated.crs is not None:
-        why = "the map is local" if own.to_crs is None else "the map's frame was chosen"
-        notes.append(f"It is in {stated.name}; {why}, so that its coordinates are used unchanged.")
+        why = "note-local" if own.to_crs is None else "note-frame-chosen"
+        notes.append(CodedText(why, crs=stated.name))
     return FilePlacement(lambda p: p * units, "map", tuple(notes))
 
 
@@ -114,7 +115,7 @@ def _is_geocentric(stated: StatedCrs) -> bool:
 
 
 def _from_stated(
-    stated: StatedCrs, own: MapFrame, units: Array, *, notes: list[str]
+    stated: StatedCrs, own: MapFrame, units: Array, *, notes: list[CodedText]
 ) -> FilePlacement:
     """From the file's CRS to that of the map."""
     from pyproj import CRS
@@ -127,10 +128,10 @@ def _from_stated(
     height_note = _heights(source, target)
     to_crs = _scaled(units) if same else _transform(stated, target, own, units=units, notes=notes)
     if same:
-        notes.append(f"In {stated.name}, the CRS of the map.")
+        notes.append(CodedText("note-same-crs", crs=stated.name))
     else:
-        notes.append(f"Transformed from {stated.name} to {own.crs}.")
-    if height_note:
+        notes.append(CodedText("note-transformed", crs=stated.name, own=own.crs))
+    if height_note is not None:
         notes.append(height_note)
 
     def to_map(p: Array) -> Array:
@@ -156,27 +157,24 @@ def _check_geocentric(p: Array, stated: StatedCrs) -> None:
         )
 
 
-def _heights(source: Any, target: Any) -> str:
-    """What happens to the heights; empty = nothing that has to be said."""
+def _heights(source: Any, target: Any) -> CodedText | None:
+    """What happens to the heights; None = nothing that has to be said."""
     if source.is_geocentric:
-        return ""
+        return None
     of_file, of_map = vertical_part(source), vertical_part(target)
     map_name = of_map.name if of_map is not None else "above the ellipsoid"
     if of_file is None and len(source.axis_info) == 2:
-        return f"It states no datum of its heights: taken as those of the map ({map_name})."
+        return CodedText("note-height-datum-unknown", of_map=map_name)
     if of_file is None and of_map is None:
-        return ""
+        return None
     if of_file is not None and of_map is not None and of_file.equals(of_map):
-        return ""
+        return None
     file_name = of_file.name if of_file is not None else "above the ellipsoid"
-    return (
-        f"Its heights are {file_name}, those of the map {map_name}: not converted, "
-        "they may differ by tens of meters."
-    )
+    return CodedText("note-height-datums", of_file=file_name, of_map=map_name)
 
 
 def _transform(
-    stated: StatedCrs, target: Any, own: MapFrame, *, units: Array, notes: list[str]
+    stated: StatedCrs, target: Any, own: MapFrame, *, units: Array, notes: list[CodedText]
 ) -> _Convert:
     """Horizontal transformation; heights keep their datum.
 
@@ -189,9 +187,8 @@ def _transform(
     transformer = _transformer(source, goal, own, name=stated.name)
     accuracy = float(transformer.accuracy)
     if accuracy > PLACEMENT.accurate_m:
-        notes.append(
-            f"The transformation is accurate to {accuracy:g} m ({transformer.description})."
-        )
+        operation = str(transformer.description)
+        notes.append(CodedText("note-accuracy", accuracy_m=accuracy, operation=operation))
     sizes = units.copy()
     if stated.geographic:
         sizes[:2] = 1.0
@@ -237,7 +234,7 @@ def _transformer(source: Any, goal: Any, own: MapFrame, *, name: str) -> Any:
 
 def check_extent(
     found: tuple[Array, Array], of_map: tuple[Array, Array] | None, *, certain: bool
-) -> tuple[str, ...]:
+) -> tuple[CodedText, ...]:
     """Compare the extent of a reference with that of the map.
 
     Args:
@@ -258,7 +255,9 @@ def check_extent(
         _ask_unit(size, own)
     gap = np.maximum(found[0] - of_map[1], of_map[0] - found[1]).max()
     if gap > PLACEMENT.beside_m:
-        return (f"It lies {_far(gap)} beside the map: align it, or choose another frame.",)
+        if gap > PLACEMENT.kilometers_m:
+            return (CodedText("note-far-away", away_km=float(gap) / 1000.0),)
+        return (CodedText("note-beside", away_m=float(gap)),)
     return ()
 
 
@@ -273,7 +272,3 @@ def _ask_unit(size: Array, own: Array) -> None:
             f"read in meters it measures {there} m, the map {here} m. It states no unit: "
             "choose one, for example millimeters (command: --unit mm), or meters"
         )
-
-
-def _far(meters: float) -> str:
-    return f"{meters / 1000.0:.0f} km" if meters > 10_000.0 else f"{meters:.0f} m"

@@ -218,6 +218,8 @@ class PlacementTuning(Struct, frozen=True, kw_only=True):
     """A file smaller than this is no building in meters [m]."""
     beside_m: float = 2.0
     """A reference this far beside the map does not overlap it [m]."""
+    kilometers_m: float = 10_000.0
+    """From here on that is said in kilometers [m]."""
 
 
 PLACEMENT = PlacementTuning()

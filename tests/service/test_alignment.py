@@ -59,10 +59,12 @@ def test_three_pairs_and_icp_lay_it_on_the_map_and_can_be_undone(server, referen
     undone = aligned(server, reference, how="undo").json()
 
     assert np.array(found["T_map_reference"]) == pytest.approx(TURNED.inverse().matrix(), abs=0.01)
-    assert "3 pairs, largest residual" in found["alignment"] and "then ICP" in found["alignment"]
+    assert "3 pairs, largest residual" in found["alignment"] and "; ICP" in found["alignment"]
     assert found["fit"].startswith("✓ The reference fits") and found["can_undo"]
     assert table["fit"]["fits"] and table["point_weighted"]["mean_m"] < 0.02
     assert undone["alignment"] == "none" and undone["can_undo"]
+    german = server.get(BASE, headers={"Accept-Language": "de"}).json()["references"]
+    assert [one["alignment"] for one in german] == ["keine"]
     assert compared(server, reference)["fit"]["fits"] is False
 
 
@@ -73,7 +75,7 @@ def test_pairs_that_are_not_refined_say_so(server, reference):
 
     found = aligned(server, reference, how="pairs", level=True, refine=True, **pairs).json()
 
-    assert "not refined: ICP" in found["alignment"] and found["fit"].startswith("✕")
+    assert "not refined; ICP" in found["alignment"] and found["fits"] is False
 
 
 @pytest.mark.study

@@ -6,11 +6,11 @@ import { test } from "node:test";
 import { cutText, distanceText, imageText, pointText } from "../../web/slices/captions.js";
 
 test("a caption names the map, the color and the points", () => {
-  const sources = [{ id: "v1", label: "Version 1" }];
+  const sources = [{ id: "v1", kind: "project", name: "Hall", label: "" }];
   const image = { color: "time", points: "12", surface: "raw" };
   const of = (source) => imageText({ source, ...image }, sources);
   assert.equal(of(""), "This map · Time · 12 points as measured");
-  assert.equal(of("v1"), "Version 1 · Time · 12 points as measured");
+  assert.equal(of("v1"), "Project Hall · Time · 12 points as measured");
   assert.equal(of("gone"), "gone · Time · 12 points as measured");
   assert.equal(cutText("free", "B"), "Free plane B");
 });

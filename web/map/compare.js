@@ -174,10 +174,8 @@ export function drawDivider(element, act) {
 }
 
 /** What another map is called. */
-const nameOf = (/** @type {OtherMap} */ { id: other, label }) =>
-  other.startsWith("map:")
-    ? t("cmp-earlier", { time: label.replace(/^Map of /, "") })
-    : t("cmp-project", { name: label.replace(/^Project /, "") });
+const nameOf = (/** @type {OtherMap} */ { kind, name }) =>
+  kind === "map" ? t("cmp-earlier", { time: name }) : t("cmp-project", { name });
 
 const titleOf = (/** @type {string} */ against) => {
   const other = known.list?.others.find((one) => one.id === against);

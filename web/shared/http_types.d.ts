@@ -718,6 +718,8 @@ export interface Judgment {
   note: string;
 }
 
+export type Kept = "approved" | "being-written" | "unknown";
+
 export interface KeyView {
   fingerprint: string;
   public_key: string;
@@ -754,6 +756,7 @@ export interface ListedReference {
   T_map_reference: Array<Array<number>> | null;
   alignment: string;
   fit: string;
+  fits: boolean | null;
   can_undo: boolean;
   kind: "mesh" | "cloud" | "damaged";
   points: number;
@@ -1099,6 +1102,8 @@ export interface OpinionView {
 
 export interface OtherMap {
   id: string;
+  kind: "map" | "project";
+  name: string;
   label: string;
 }
 
@@ -1701,6 +1706,8 @@ export interface StoredPart {
   bytes: number;
   freeable: Freeable | null;
   why: string;
+  kept: Kept | null;
+  version: number | null;
 }
 
 export interface Storey {

@@ -5,7 +5,6 @@ import { openDialog } from "../shared/dialog.js";
 import { attempt, html, messagePlace, within } from "../shared/dom.js";
 import { t } from "../shared/texts.js";
 import { PairView } from "../review/view.js";
-import { alignmentText, fitText } from "./reference_words.js";
 import { inFrames, poseInMap, unpacked } from "./align_math.js";
 
 /** @import {AlignPoints, AlignRequest, ListedReference} from "../shared/http_types" */
@@ -46,9 +45,7 @@ export async function openAlignment(id, reference, changed) {
         >
       </div>
       ${messagePlace()}
-      <p class="result" role="status">
-        ${t("alignment-is", { alignment: alignmentText(reference.alignment) })}
-      </p>
+      <p class="result" role="status">${t("alignment-is", { alignment: reference.alignment })}</p>
       <form method="dialog"><button>${t("close")}</button></form>`,
   );
   dialog.classList.add("aligning");
@@ -71,10 +68,8 @@ export async function openAlignment(id, reference, changed) {
     const found = await alignReference(id, reference.id, how);
     await show();
     const result = within(dialog, ".result");
-    result.textContent = `${t("alignment-is", {
-      alignment: alignmentText(found.alignment),
-    })}. ${fitText(found.fit)}`;
-    result.classList.toggle("bad", found.fit.startsWith("✕"));
+    result.textContent = `${t("alignment-is", { alignment: found.alignment })}. ${found.fit}`;
+    result.classList.toggle("bad", found.fits === false);
     within(dialog, ".undo", HTMLButtonElement).disabled = !found.can_undo;
     await changed();
   }

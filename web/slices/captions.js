@@ -30,11 +30,8 @@ export function planeText(/** @type {string} */ name) {
 export const cutText = (kind, name) => `${KINDS[kind]} ${planeText(name)}`;
 
 /** The name of another map: an earlier one, or that of another project. */
-export function sourceText(/** @type {string} */ label) {
-  const [, kind, name = ""] = label.match(/^(Map of|Project) (.+)$/) ?? [];
-  if (!kind) return label;
-  return kind === "Project" ? t("source-project", { name }) : t("source-earlier", { time: name });
-}
+export const sourceText = (/** @type {OtherMap} */ { kind, name }) =>
+  kind === "project" ? t("source-project", { name }) : t("source-earlier", { time: name });
 
 /**
  * What a slice image shows.
@@ -43,8 +40,8 @@ export function sourceText(/** @type {string} */ label) {
  * @param {OtherMap[]} sources
  */
 export function imageText({ source, color, points, surface }, sources) {
-  const label = sources.find((one) => one.id === source)?.label ?? source;
-  const name = source ? sourceText(label) : t("this-map");
+  const other = sources.find((one) => one.id === source);
+  const name = other ? sourceText(other) : source || t("this-map");
   return t("image-text", { name, color: COLORS[color], points, surface: SURFACES[surface] });
 }
 

@@ -5,7 +5,6 @@ import { html, nothing, svg } from "../shared/dom.js";
 import { t, written } from "../shared/texts.js";
 import { HEIGHT, bars } from "./bars.js";
 import { planeText } from "./captions.js";
-import { alignmentText, fitText, notesText } from "./reference_words.js";
 
 /** @import {ComparedSlice, Comparison} from "../shared/http_types" */
 
@@ -52,7 +51,7 @@ export function comparison(found, csvUrl) {
   ];
   const tone = found.fit.fits === null ? "" : found.fit.fits ? "good" : "bad";
   return [
-    html`<p class="verdict ${tone}">${fitText(found.fit.text)}</p>`,
+    html`<p class="verdict ${tone}">${found.fit.text}</p>`,
     found.fit.fits === false ? html`<p class="bad">${t("not-one-place")}</p>` : nothing,
     html`<div class="scroll">
       <table class=${found.fit.fits === false ? "unfit" : ""}>
@@ -70,9 +69,9 @@ export function comparison(found, csvUrl) {
       ${t("against", {
         reference: found.reference,
         method: METHODS[found.method],
-        alignment: alignmentText(found.alignment),
+        alignment: found.alignment,
       })}
-      ${notesText(found.notes)} ${t("signed-is")}
+      ${found.notes.join(" ")} ${t("signed-is")}
     </p>`,
     histogram(found),
     html`<a class="button" href=${csvUrl} download="">${t("download-csv")}</a>`,

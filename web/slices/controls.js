@@ -207,7 +207,7 @@ function referenceField({ ref: chosen, color: before }, { references }, change) 
 export function besideFields(state, facts, { change }) {
   /** @type {Array<[string, string]>} */
   const sources = [["", t("this-map")]];
-  for (const one of facts?.sources ?? []) sources.push([one.id, sourceText(one.label)]);
+  for (const one of facts?.sources ?? []) sources.push([one.id, sourceText(one)]);
   /** @type {Array<[string, string]>} */
   const colors = [["", state.beside ? t("same-color") : t("one-slice")]];
   for (const [key, text] of ALL_COLORS)

@@ -16,7 +16,6 @@ import { choice } from "./columns.js";
 import { comparison, METHODS } from "./comparison.js";
 import { ofInput } from "./picking.js";
 import { ReferenceReader } from "./reading.js";
-import { alignmentText, fitText, notesText } from "./reference_words.js";
 import { planeOf, moved } from "./state.js";
 
 /**
@@ -159,15 +158,11 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
       change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true });
     return html`<div class="reference-row">
       <strong>${one.name}</strong
-      ><span class="quiet">
-        ${t("size-alignment", { size, alignment: alignmentText(one.alignment) })}</span
-      >
-      ${one.notes.length ? html`<small class="quiet">${notesText(one.notes)}</small>` : nothing}
+      ><span class="quiet"> ${t("size-alignment", { size, alignment: one.alignment })}</span>
+      ${one.notes.length ? html`<small class="quiet">${one.notes.join(" ")}</small>` : nothing}
       ${
         one.fit
-          ? html`<span class=${one.fit.startsWith("✕") ? "bad" : "quiet"}
-              >${fitText(one.fit)}</span
-            >`
+          ? html`<span class=${one.fits === false ? "bad" : "quiet"}>${one.fit}</span>`
           : nothing
       }
       <span class="buttons"

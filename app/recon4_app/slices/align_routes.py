@@ -13,7 +13,8 @@ from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.slices import align_work
-from recon4_app.slices.model import AlignPoints, AlignRequest, ListedReference
+from recon4_app.slices.listed_reference import ListedReference
+from recon4_app.slices.model import AlignPoints, AlignRequest
 from recon4_app.slices.store import ReferenceFolder
 
 router = APIRouter(
@@ -46,7 +47,7 @@ async def align(
             ask,
         )
     )
-    return ListedReference.of(reference_id, facts)
+    return ListedReference.of(reference_id, facts, caller.language)
 
 
 @router.get("/points", summary="Points of map and reference")

@@ -11,7 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.evaluation.reference_mesh import SurfacePoints
 from recon4.geometry.se3 import SE3, Array
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4.mapping.tiles import TileSet
 from recon4.slices.align import align_by_icp, align_by_pairs, align_level_pairs, floor_offset
 from recon4.slices.reference import Reference, ReferenceFacts
@@ -28,7 +28,7 @@ def align_reference(map_folder: str, reference: str, ask: AlignRequest) -> Refer
     if ask.how == "undo":
         return undo_alignment(folder)
     if ask.how == "none":
-        return set_alignment(folder, SE3.identity(), description="none")
+        return set_alignment(folder, SE3.identity())
     tiles, against = tiles_of(map_folder), reference_of(reference, "plane")
     assert against is not None
     if ask.how == "pairs":
@@ -36,9 +36,9 @@ def align_reference(map_folder: str, reference: str, ask: AlignRequest) -> Refer
     if ask.pose is not None:
         against = replace(against, T_map_reference=_motion(ask.pose))
     fit = align_by_icp(tiles, against, rng=np.random.default_rng(1))
-    moved = "" if ask.pose is None else "moved by hand; "
+    before = () if ask.pose is None else (CodedText("alignment-by-hand"),)
     return set_alignment(
-        folder, fit.T_map_reference, description=moved + fit.description, fit=fit.text
+        folder, fit.T_map_reference, steps=(*before, fit.description), fit=fit.text
     )
 
 
@@ -77,22 +77,26 @@ def _by_pairs(tiles: TileSet, against: Reference, ask: AlignRequest) -> Referenc
         T, left_m = align_level_pairs(p_map, p_reference, up_m=up_m)
     else:
         T, left_m = align_by_pairs(p_map, p_reference)
-    each = ", ".join(f"{100.0 * d:.1f}" for d in left_m[:10])
-    words = f"{len(left_m)} pairs, largest residual {100.0 * left_m.max():.1f} cm ({each} cm)"
+    paired = CodedText(
+        "alignment-pairs",
+        pairs=len(left_m),
+        largest_m=float(left_m.max()),
+        each_cm=" ".join(f"{100.0 * d:.1f}" for d in left_m[:10]),
+    )
     laid = replace(against, T_map_reference=T)
     if not ask.refine:
         fit = fit_of(tiles, laid, rng=rng)
-        return set_alignment(against.folder, T, description=words, fit=fit.text)
+        return set_alignment(against.folder, T, steps=(paired,), fit=fit.text)
     try:
         found = align_by_icp(tiles, laid, rng=rng)
     except ConfigError as error:
         fit = fit_of(tiles, laid, rng=rng)
-        words = f"{words}; not refined: {error}"
-        return set_alignment(against.folder, T, description=words, fit=fit.text)
+        steps = (paired, CodedText("alignment-not-refined"), text_of(error))
+        return set_alignment(against.folder, T, steps=steps, fit=fit.text)
     return set_alignment(
         against.folder,
         found.T_map_reference,
-        description=f"{words}; then {found.description}",
+        steps=(paired, found.description),
         fit=found.text,
     )
 

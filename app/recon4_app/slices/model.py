@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
@@ -17,10 +17,10 @@ from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.control_limits import ControlLimits
 from recon4.slices.measured_points import MeasuredPosition, orthonormal
-from recon4.slices.reference import ReferenceFacts
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import CONTROL_LIMITS, SLICE_PLANES
 from recon4_app.names import Name
+from recon4_app.slices.listed_reference import ListedReference
 from recon4_app.slices.tuning import SLICE_REQUESTS
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
@@ -306,42 +306,17 @@ class ControlState(Strict):
         }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ListedReference:
-    """A reference of a project; `ReferenceFacts` with its id, or the problem with its files."""
-
-    id: str
-    name: str
-    file: str = ""
-    frame: Literal["map", "crs"] = "map"
-    T_map_reference: list[list[float]] | None = None
-    alignment: str = "none"
-    fit: str = ""
-    can_undo: bool = False
-    kind: Literal["mesh", "cloud", "damaged"]
-    points: int = 0
-    triangles: int = 0
-    columns: tuple[Meaning, ...] = ()
-    unit: Unit | Literal[""] = ""
-    notes: tuple[str, ...] = ()
-    problem: str = ""
-    """Why it cannot be used; empty if it can."""
-
-    @staticmethod
-    def of(reference_id: str, facts: ReferenceFacts) -> ListedReference:
-        """A reference whose files are all right."""
-        shown = asdict(facts)
-        can_undo = shown.pop("earlier") is not None
-        return ListedReference(id=reference_id, can_undo=can_undo, **shown)
-
-
 @dataclass(frozen=True, slots=True)
 class OtherMap:
     """A map that the same slice can show."""
 
     id: str
+    kind: Literal["map", "project"]
+    """An earlier map of this project, or that of another one."""
+    name: str
+    """When it was made, or the name of the project."""
     label: str
-    """Label of it."""
+    """Both in words."""
 
 
 class SliceFacts(BaseModel):

@@ -13,7 +13,7 @@ from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.slices import reference_work
-from recon4_app.slices.model import ListedReference
+from recon4_app.slices.listed_reference import ListedReference
 from recon4_app.slices.reference_model import AddReference, ReferenceFile, ReferencePreview
 from recon4_app.slices.store import ReferenceFolder
 
@@ -68,7 +68,7 @@ async def add_reference(
             artifacts=artifacts,
         )
     )
-    return ListedReference.of(out.name, facts)
+    return ListedReference.of(out.name, facts, caller.language)
 
 
 def _reading(path: Path, artifacts: dict[str, str]) -> FileAccess:

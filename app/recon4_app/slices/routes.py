@@ -87,9 +87,9 @@ async def read_facts(
     project_id: str, server: Server, caller: CalledBy, *, who: Who, source: str = ""
 ) -> SliceFacts:
     """Bounds, frame, fields; for people who signed in references and other maps to compare with."""
-    slices, guest = server.slices, bool(who.project)
+    slices, guest, language = server.slices, bool(who.project), caller.language
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    references = [] if guest else await run_in_threadpool(slices.references, project_id)
+    references = [] if guest else await run_in_threadpool(slices.references, project_id, language)
     sources = [] if guest else await run_in_threadpool(slices.sources, project_id)
     approval = await run_in_threadpool(slices.approval, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
@@ -204,7 +204,9 @@ async def compare(
     reference = server.slices.reference(project_id, ask.reference)
     terms = server.slices.terms(project_id, caller.name, ask.source)
     return await caller.wait(
-        server.slices.run_background(terms, slice_work.comparison, artifacts["map"], reference, ask)
+        server.slices.run_background(
+            terms, slice_work.comparison, artifacts["map"], reference, ask, language=caller.language
+        )
     )
 
 

@@ -15,6 +15,7 @@ from recon4.errors import ConfigError, StoreError
 from recon4.findings.walk import final_trajectory, positions_along
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
+from recon4.locales.languages import ENGLISH
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import TILES
 from recon4.model.plain import to_plain
@@ -43,10 +44,10 @@ from recon4.slices.tuning_files import SLICE_COLORS
 from recon4.store.atomic import atomic_file, write_json
 from recon4.store.checked import CheckedArtifact
 from recon4.untrusted.names import visible
+from recon4_app.slices.listed_reference import ListedReference
 from recon4_app.slices.model import (
     CompareRequest,
     FoundTarget,
-    ListedReference,
     OtherMap,
     PickRequest,
     PickView,
@@ -234,18 +235,20 @@ def double_walls(map_folder: str, out: str) -> None:
     write_json(Path(out), to_plain(found))
 
 
-def comparison(map_folder: str, reference: str, ask: CompareRequest) -> Comparison:
+def comparison(
+    map_folder: str, reference: str, ask: CompareRequest, *, language: str
+) -> Comparison:
     """Compare slices with a reference (V Table 3.2)."""
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
     planes = [spec.slice_plane() for spec in ask.planes] or usual_planes(tiles)
-    return compare(tiles, planes, against, rng=np.random.default_rng(1))
+    return compare(tiles, planes, against, rng=np.random.default_rng(1), language=language)
 
 
 def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     """Compare slices with a reference, as CSV."""
-    return to_csv(comparison(map_folder, reference, ask))
+    return to_csv(comparison(map_folder, reference, ask, language=ENGLISH))
 
 
 def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:
@@ -259,20 +262,20 @@ def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:
     return SurfacePoint(_xyz(p), _xyz(found.p_map), _xyz(found.normal))
 
 
-def references_in(folder: Path) -> list[ListedReference]:
+def references_in(folder: Path, language: str) -> list[ListedReference]:
     """The references of a project, by name."""
     entries = sorted(folder.iterdir()) if folder.is_dir() else []
     return [
-        _facts_or_problem(entry)
+        _facts_or_problem(entry, language)
         for entry in entries
         if not entry.name.startswith(".") and (entry / "reference.json").is_file()
     ]
 
 
-def _facts_or_problem(folder: Path) -> ListedReference:
+def _facts_or_problem(folder: Path, language: str) -> ListedReference:
     """Facts of a reference, or the problem if it cannot be read."""
     try:
-        return ListedReference.of(folder.name, read_facts(folder))
+        return ListedReference.of(folder.name, read_facts(folder), language)
     except StoreError as error:
         problem = visible(str(error).replace(f"{folder.parent}/", ""))
         name = f"{folder.name}: {problem}"

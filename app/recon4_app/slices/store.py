@@ -11,13 +11,14 @@ from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
 from recon4.comparison.frames import earlier_map_rows
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
+from recon4.locales.languages import ENGLISH
 from recon4.review.approval_state import ApprovalState, approval_state
 from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
 from recon4.review.evidence import Evidence
@@ -34,7 +35,8 @@ from recon4_app.review.hash_checks import ApprovalChecks
 from recon4_app.settings import ServerSettings
 from recon4_app.slices import slice_work
 from recon4_app.slices.exports import Exports
-from recon4_app.slices.model import ControlState, ListedReference, OtherMap, Xyz
+from recon4_app.slices.listed_reference import ListedReference
+from recon4_app.slices.model import ControlState, OtherMap, Xyz
 from recon4_app.slices.tuning import SLICE_STORE
 
 T = TypeVar("T")
@@ -120,11 +122,11 @@ class Slices:
         root = self._projects.folder(project_id)
         self._latest(project_id)  # raises if there is no map
         earlier = [
-            OtherMap(f"map:{row.key}", f"Map of {row.finished[:16].replace('T', ' ')}")
+            _other(f"map:{row.key}", "map", row.finished[:16].replace("T", " "))
             for row in earlier_map_rows(root)
         ]
         others = [
-            OtherMap(f"project:{card.id}", f"Project {card.name}")
+            _other(f"project:{card.id}", "project", card.name)
             for card in self._projects.all()
             if card.points and card.id != project_id
         ]
@@ -190,9 +192,9 @@ class Slices:
         without = {stage: folder for stage, folder in found.items() if stage != "level"}
         return without | ({"level": str(level)} if "level" in evidence.artifacts else {})
 
-    def references(self, project_id: str) -> list[ListedReference]:
+    def references(self, project_id: str, language: str = ENGLISH) -> list[ListedReference]:
         """References of a project."""
-        return slice_work.references_in(self._folder(project_id) / "references")
+        return slice_work.references_in(self._folder(project_id) / "references", language)
 
     def reference(self, project_id: str, reference_id: str) -> str:
         """Folder of a reference; empty for an empty id.
@@ -387,3 +389,7 @@ def _keys(root: Path) -> dict[str, str]:
 def _name_of(reference: Path) -> str:
     """Path of a reference's folder below its project."""
     return f"slices/references/{reference.name}"
+
+
+def _other(source: str, kind: Literal["map", "project"], name: str) -> OtherMap:
+    return OtherMap(source, kind, name, f"{'Map of' if kind == 'map' else 'Project'} {name}")

@@ -47,6 +47,10 @@ def imported(path, tmp_path, place=None, **what):
     return facts, points[np.lexsort(points.T)]
 
 
+def said(facts):
+    return [one.text for one in facts.notes]
+
+
 EXPECTED = P_MAP[np.lexsort(P_MAP.T)]
 
 
@@ -65,8 +69,8 @@ def test_a_file_in_its_own_crs_lies_on_the_map(tmp_path, crs, step, note):
     facts, points = imported(path, tmp_path)
 
     assert points == pytest.approx(EXPECTED, abs=0.003)
-    assert facts.frame == "crs" and any(note in one for one in facts.notes)
-    assert any("states no datum of its heights" in one for one in facts.notes)
+    assert facts.frame == "crs" and any(note in one for one in said(facts))
+    assert any("states no datum of its heights" in one for one in said(facts))
 
 
 def test_feet_are_converted_heights_too():
@@ -121,7 +125,7 @@ def test_a_projected_crs_and_a_local_map_are_said(tmp_path):
 
     assert points == pytest.approx(EXPECTED, abs=0.001)
     assert any(
-        "the map is local, so that its coordinates are used unchanged" in n for n in facts.notes
+        "the map is local, so that its coordinates are used unchanged" in n for n in said(facts)
     )
 
 
@@ -132,7 +136,7 @@ def test_heights_of_another_datum_are_said_not_converted(tmp_path):
 
     assert points == pytest.approx(EXPECTED, abs=0.002)
     assert any(
-        "Its heights are EVRF2007 height" in one and "tens of meters" in one for one in facts.notes
+        "Its heights are EVRF2007 height" in one and "tens of meters" in one for one in said(facts)
     )
 
 
@@ -146,8 +150,8 @@ def test_a_file_without_a_crs_at_the_place_of_the_map_is_taken_there(tmp_path):
     facts, points = imported(path, tmp_path)
 
     assert points == pytest.approx(EXPECTED, abs=0.001) and facts.frame == "crs"
-    assert facts.notes[0].startswith("columns: x (east) = Rechtswert")
-    assert "No CRS is known of it: its coordinates are taken as those of EPSG:32633." in facts.notes
+    assert said(facts)[0].startswith("columns: x (east) = Rechtswert")
+    assert "No CRS is known of it: its coordinates are taken as those of EPSG:32633." in said(facts)
 
 
 def test_latitude_and_longitude_of_a_table_are_transformed(tmp_path):
@@ -168,7 +172,7 @@ def test_a_chosen_unit_is_used_and_said(tmp_path, unit):
     facts, points = imported(path, tmp_path, choice=ColumnChoice(unit=unit))
 
     assert points == pytest.approx(EXPECTED, abs=0.001)
-    assert facts.unit == unit and any("as chosen" in one for one in facts.notes)
+    assert facts.unit == unit and any("as chosen" in one for one in said(facts))
 
 
 ROOM = (np.zeros(3), np.array([12.0, 8.0, 3.0]))

@@ -215,7 +215,7 @@ def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
     reference_wall(tmp_path)
     T = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[5.0, 0.0, 0.0])
 
-    set_alignment(tmp_path / "reference", T, description="test")
+    set_alignment(tmp_path / "reference", T)
     moved = load_reference(tmp_path / "reference")
     outline = np.concatenate(
         list(moved.outline(SlicePlane.horizontal(1.0), SliceWindow(-9, -9, 9, 9), step_m=0.01))
