@@ -37,6 +37,17 @@ class Freeable(StrEnum):
     """The tiles of the map: needed by viewer, slices, exports and evaluation. Its LAZ stays."""
 
 
+class Kept(StrEnum):
+    """Why an artifact stays."""
+
+    APPROVED = "approved"
+    """An approval needs it."""
+    BEING_WRITTEN = "being-written"
+    """A run writes it now."""
+    UNKNOWN = "unknown"
+    """No stage accounts for it."""
+
+
 @dataclass(frozen=True, slots=True)
 class StoredPart:
     """Some files of a project."""
@@ -51,6 +62,10 @@ class StoredPart:
     """None = it stays."""
     why: str = ""
     """Why an artifact stays; empty = nothing keeps it, or it is small."""
+    kept: Kept | None = None
+    """The same for programs."""
+    version: int | None = None
+    """The newest approved version that needs it."""
 
 
 def stored_parts(root: Path) -> tuple[StoredPart, ...]:
@@ -70,11 +85,13 @@ def stored_parts(root: Path) -> tuple[StoredPart, ...]:
         key, size = path.name, _size(path, seen)
         part = partial(StoredPart, f"{ARTIFACTS}/{key}", stages.get(key, _unknown(key)), size)
         if key in approved:
-            parts.append(part(None, f"approved, version {approved[key]}"))
+            parts.append(
+                part(None, f"approved, version {approved[key]}", Kept.APPROVED, approved[key])
+            )
         elif is_temporary(key):
-            parts.append(part(None, "a run writes it"))
+            parts.append(part(None, "a run writes it", Kept.BEING_WRITTEN))
         elif key not in stages and not _is_damaged(key):
-            parts.append(part(None, "no stage accounts for it"))
+            parts.append(part(None, "no stage accounts for it", Kept.UNKNOWN))
         else:
             parts.append(part(_reason(stages.get(key, ""), key in current)))
     return tuple(sorted(parts, key=lambda part: (-part.bytes, part.name)))

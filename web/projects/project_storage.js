@@ -5,7 +5,7 @@ import { freeSpace, readCurrentUser, readProjectStorage } from "../shared/api.js
 import { closeButton, openDialog } from "../shared/dialog.js";
 import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import { bytes } from "../shared/format.js";
-import { asWritten, t, wordOf } from "../shared/texts.js";
+import { asWritten, t } from "../shared/texts.js";
 import { stageText } from "./steps.js";
 
 /** @import {Freeable, ProjectStorage, StoredPart} from "../shared/http_types" */
@@ -156,17 +156,19 @@ export class ProjectStoragePanel extends HTMLElement {
 const total = (/** @type {StoredPart[]} */ parts) =>
   parts.reduce((sum, { bytes: size }) => sum + size, 0);
 
-/** Why a part stays, which may name a version. */
-function whyText(/** @type {string} */ why) {
-  const version = why.match(/\d+/)?.[0] ?? "";
-  return version ? t("storing-approved", { version }) : wordOf("storing", why);
-}
+/**
+ * Why a part stays.
+ * @param {StoredPart["kept"]} kept
+ * @param {StoredPart["version"]} version
+ */
+const keptText = (kept, version) =>
+  kept ? t(`storing-${kept}`, { version: String(version ?? "") }) : "–";
 
-const partRow = (/** @type {StoredPart} */ { what, bytes: size, freeable: kind, why }) =>
+const partRow = (/** @type {StoredPart} */ { what, bytes: size, freeable: kind, kept, version }) =>
   html`<tr>
     <th scope="row">${stageText(what)}</th>
     <td class="number">${bytes(size)}</td>
-    <td>${kind ? KINDS[kind].label : whyText(why) || "–"}</td>
+    <td>${kind ? KINDS[kind].label : keptText(kept, version)}</td>
   </tr>`;
 
 customElements.define("project-storage", ProjectStoragePanel);

@@ -155,8 +155,8 @@ keep = Behalten
 free = Freigeben
 freed = Freigegeben: { $size }.
 storing-approved = freigegeben, Version { $version }
-storing-a-run-writes-it = ein Lauf schreibt es
-storing-no-stage-accounts-for-it = keine Stufe weist es aus
+storing-being-written = ein Lauf schreibt es
+storing-unknown = keine Stufe weist es aus
 
 ## Werkzeuge eines Projekts
 

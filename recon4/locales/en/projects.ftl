@@ -155,8 +155,8 @@ keep = Keep
 free = Free
 freed = Freed: { $size }.
 storing-approved = approved, version { $version }
-storing-a-run-writes-it = a run writes it
-storing-no-stage-accounts-for-it = no stage accounts for it
+storing-being-written = a run writes it
+storing-unknown = no stage accounts for it
 
 ## Tools of a project
 
