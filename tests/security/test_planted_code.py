@@ -14,6 +14,7 @@ import pytest
 from recon4.sandbox.private_cache import KERNELS, cached_elsewhere, planted, private_cache
 from recon4.sandbox.private_cache import _numba_name as numba_name
 from recon4_app.jobs.supervisor import _spawn
+from tests.source_trees import sources, trees_with
 
 ROOT = Path(__file__).parents[2]
 PLANTED = ("numpy.py", "json.py", "logging.py", "recon4.py", "recon4_app.py", "signal.py")
@@ -57,9 +58,9 @@ def test_the_command_imports_nothing_from_the_working_folder(working_folder, tmp
     assert not ran(tmp_path) and "seccomp" in done.stdout
 
 
-def python_commands(path):
+def python_commands(path, tree):
     """The literal words behind ``sys.executable`` in each list or call of a file."""
-    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for node in ast.walk(tree):
         items = getattr(node, "elts", None) or []
         if items and ast.unparse(items[0]) == "sys.executable":
             words = [one.value for one in items[1:] if isinstance(one, ast.Constant)]
@@ -67,8 +68,8 @@ def python_commands(path):
 
 
 def test_every_child_is_started_without_the_working_folder():
-    sources = [path for top in ("recon4", "app") for path in (ROOT / top).rglob("*.py")]
-    found = [one for path in sources for one in python_commands(path)]
+    starts = trees_with(r"sys\.executable", sources("recon4", "app"))
+    found = [one for path, tree in starts for one in python_commands(path, tree)]
     started = {place: words for place, words in found if {"-m", "-c"} & set(words)}
 
     assert len(started) >= 7, started

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.source_trees import sources, trees_with
+
 ROOT = Path(__file__).parents[2]
 OPTION = re.compile(r"(?<![\w-])--[a-z]")
 OF_COMMANDS = (
@@ -22,9 +24,8 @@ OF_COMMANDS = (
 """Their messages appear in the terminal where a command was given, or the server started."""
 
 
-def texts(path: Path) -> Iterator[tuple[int, str]]:
+def texts(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Line and text of each string of a module, except docstrings; a field of one is ``{}``."""
-    tree = ast.parse(path.read_text("utf-8"))
     alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     within = {
         id(part)
@@ -41,8 +42,11 @@ def texts(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def modules() -> list[Path]:
-    files = [path for part in ("recon4", "app") for path in sorted((ROOT / part).rglob("*.py"))]
-    return [path for path in files if not str(path.relative_to(ROOT)).startswith(OF_COMMANDS)]
+    return [
+        path
+        for path in sources("recon4", "app")
+        if not str(path.relative_to(ROOT)).startswith(OF_COMMANDS)
+    ]
 
 
 def unnamed(text: str) -> bool:
@@ -53,8 +57,8 @@ def unnamed(text: str) -> bool:
 def test_a_message_with_an_option_says_that_it_is_of_a_command():
     found = [
         f"{path.relative_to(ROOT)}:{line}: {text[:100]}"
-        for path in modules()
-        for line, text in texts(path)
+        for path, tree in trees_with("--", modules())
+        for line, text in texts(tree)
         if unnamed(text)
     ]
 

@@ -18,9 +18,9 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import derived_in
 from recon4.recording.info_records import RecordingInfo
 from recon4.recording.report import ImportReport
+from tests.source_trees import sources, trees_with
 
 CODE = Path(__file__).parents[3]
-READERS = sorted((CODE / "recon4").rglob("*.py"))
 FROZEN = Path(__file__).with_name("report_with_sentences.json")
 """``report.json`` of a version that wrote sentences."""
 WORDS = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
@@ -30,8 +30,8 @@ UNIT = Derived(kind=DerivedKind.CLOCK_BY_GPS, values={"sensor": "front", "off_s"
 
 def calls():
     """Each call that states what is derived: its place, its first argument, its values."""
-    for path in READERS:
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for path, tree in trees_with(r"\bderive\(", sources("recon4")):
+        for node in ast.walk(tree):
             if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "derive":
                 yield f"{path.relative_to(CODE)}:{node.lineno}", node.args, node.keywords
 

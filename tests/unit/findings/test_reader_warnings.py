@@ -7,19 +7,20 @@ import pytest
 
 from recon4.findings.wording import catalog
 from recon4.model.finding_kinds import MOUNT_DOUBTS, FindingKind
+from tests.source_trees import sources, trees_with
 
 ROOT = Path(__file__).parents[3]
-READERS = [*(ROOT / "recon4" / "recording").rglob("*.py"), ROOT / "recon4" / "slam2d" / "stage.py"]
+READERS = [*sources("recon4/recording"), ROOT / "recon4" / "slam2d" / "stage.py"]
 OWN = {"sensor", "start_s", "end_s"}
 """Values with a place of their own in a finding; a text need not quote them."""
 
 
 def calls():
     """Each call that warns: its place, its first argument, its values; None = also others."""
-    for path in READERS:
+    for path, tree in trees_with(r"\bwarn(ing)?\(", READERS):
         if path.name == "report.py":
             continue
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in ast.walk(tree):
             if isinstance(node, ast.Call) and _name(node.func) in {"warn", "warning"}:
                 values = {keyword.arg for keyword in node.keywords}
                 yield f"{path.relative_to(ROOT)}:{node.lineno}", node.args[:1], values
@@ -39,7 +40,8 @@ def kinds_of(first):
     return []
 
 
-NAMED = [(place, kind, values) for place, a, values in calls() for kind in kinds_of(a)]
+CALLS = list(calls())
+NAMED = [(place, kind, values) for place, a, values in CALLS for kind in kinds_of(a)]
 
 
 def quoted(kind):
@@ -51,7 +53,7 @@ def quoted(kind):
 
 def test_no_reader_warns_with_a_sentence():
     assert len(NAMED) > 90
-    assert [place for place, first, _ in calls() if not kinds_of(first)] == []
+    assert [place for place, first, _ in CALLS if not kinds_of(first)] == []
 
 
 @pytest.mark.parametrize(("place", "kind", "values"), NAMED, ids=[place for place, _, _ in NAMED])

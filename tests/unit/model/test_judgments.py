@@ -18,6 +18,7 @@ from recon4.model.pose_graph import (
     Verdict,
     known_history,
 )
+from tests.source_trees import sources, trees_with
 
 ROOT = Path(__file__).parents[3]
 FOUND = Judgment(Judge.SEARCH, Verdict.ACCEPTED, Reason.NONE, Measure.ERROR, 0.02, 0.05)
@@ -121,10 +122,10 @@ def test_verdict_reason_and_person_are_stored_in_the_history_alone() -> None:
 
 def test_no_code_but_the_edge_itself_replaces_its_history() -> None:
     found = []
-    for path in sorted([*(ROOT / "recon4").rglob("*.py"), *(ROOT / "app").rglob("*.py")]):
+    for path, tree in trees_with("judgments", sources("recon4", "app")):
         if path == ROOT / "recon4/model/pose_graph.py":
             continue
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in ast.walk(tree):
             made = isinstance(node, ast.Call) and "judgments" in [k.arg for k in node.keywords]
             if made and not (isinstance(node.func, ast.Name) and node.func.id == "Edge"):
                 found.append(f"{path.relative_to(ROOT)}:{node.lineno}")

@@ -1,19 +1,16 @@
 """Every count that a reader keeps has words, and those of lost data reach the operator."""
 
 import ast
-from pathlib import Path
 
 import pytest
 
-import recon4
 from recon4.findings.wording import whole_text
 from recon4.locales.texts import texts
 from recon4.model.count_meanings import COUNT_MEANINGS, CountKind
 from recon4.model.import_counts import count_text, losses, meaning
 from recon4.recording.report import ImportReport
+from tests.source_trees import sources, trees_with
 from tests.warned import K, findings_of, kinds
-
-ROOT = Path(recon4.__file__).parent
 
 
 def is_count(call: ast.Call) -> bool:
@@ -43,8 +40,8 @@ def filled(node: ast.JoinedStr, value: str) -> str:
 def counted() -> set[tuple[str, str]]:
     """File and name of every count in the code."""
     found = set()
-    for path in ROOT.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+    for path, tree in trees_with(r"report\s*\.count\(", sources("recon4")):
+        for node in ast.walk(tree):
             if isinstance(node, ast.Call) and is_count(node):
                 found |= {(path.name, name) for name in names_in(node.args[0])}
     return found
