@@ -55,6 +55,9 @@ def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
             return "–"
         return written(f"{100.0 * value_m:.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m")
 
+    def mount(value: str) -> str:
+        return written(mount_text(value))
+
     def count(number: int) -> str:
         return f"{as_float(number):,.0f}".replace(",", _THIN_SPACE)
 
@@ -70,8 +73,32 @@ def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
         ),
         "SIGNIFICANT": lambda value, digits: written(format(as_float(value), f".{int(digits)}g")),
         "COUNT": count,
+        "MOUNT": mount,
         "BYTE": lambda value: format(int(value), "#04x"),
     }
+
+
+def mount_text(value: str) -> str:
+    """A mount as people write it, with the names that rig files have.
+
+    Args:
+        value: Position [m] and, of what can be turned, roll, pitch and yaw [rad]; a text of an
+            earlier version stays as it is.
+    """
+    try:
+        numbers = [float(one) for one in value.split()]
+    except ValueError:
+        return value
+    assert len(numbers) in (3, 6), value
+    x, y, z = (_rounded(one, 3) for one in numbers[:3])
+    turned = (_rounded(math.degrees(one), 1) for one in numbers[3:])
+    names = ("roll", "pitch", "yaw")
+    angles = " ".join(f"{name} {angle}" for name, angle in zip(names, turned, strict=False))
+    return f"xyz {x} {y} {z} m" + f", {angles}°" * bool(angles)
+
+
+def _rounded(value: float, digits: int) -> str:
+    return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def localized(text: str, language: str) -> str:

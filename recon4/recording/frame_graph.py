@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.locales.numbers import mount_text
 from recon4.recording.driven_joints import DrivenJoint
 from recon4.recording.tuning_mounts import SAME_MOUNT
 
@@ -33,7 +34,8 @@ class StatedTransform:
     @property
     def text(self) -> str:
         """Frames and values."""
-        return f"{self.parent} -> {self.child} {mount_text(self.T_parent_child)} ({self.source})"
+        mount = mount_text(mount_value(self.T_parent_child))
+        return f"{self.parent} -> {self.child} {mount} ({self.source})"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -197,15 +199,9 @@ def last_name(frame: str) -> str:
     return frame.rsplit("/", 1)[-1]
 
 
-def mount_text(T: SE3) -> str:
-    """A mount as people write it: position and angles."""
-    x, y, z = (_rounded(value, 3) for value in T.t)
+def mount_value(T: SE3) -> str:
+    """A mount as a value that texts quote: x, y, z [m], roll, pitch, yaw [rad]."""
     angles = T.rpy()
     if abs(T.R[2, 0]) > SAME_MOUNT.vertical:  # roll and yaw turn about one axis there
         angles = np.array([np.arctan2(-T.R[1, 2], T.R[1, 1]), angles[1], 0.0])
-    roll, pitch, yaw = (_rounded(value, 1) for value in np.rad2deg(angles))
-    return f"xyz {x} {y} {z} m, roll {roll} pitch {pitch} yaw {yaw}°"
-
-
-def _rounded(value: float, digits: int) -> str:
-    return f"{round(float(value), digits) + 0.0:.{digits}f}"
+    return " ".join(f"{value:.6f}" for value in (*T.t, *angles))

@@ -10,13 +10,14 @@ import numpy as np
 
 from recon4.geometry.se2 import compose
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.numbers import mount_text
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import is_upside_down, turned_round
 from recon4.recording.formats.bags import Bag
-from recon4.recording.frame_graph import last_name, mount_text
+from recon4.recording.frame_graph import last_name, mount_value
 from recon4.recording.mounts import Mounts, read_mounts, stated_text, stated_values
 from recon4.recording.report import ImportReport
 from recon4.recording.transform_messages import frame_name
@@ -76,9 +77,9 @@ class MountedScans:
 
 def mount_of_rig(T_body_laser: SE3) -> LaserMount:
     """The mount that a rig file states; its odometry is that of the body."""
-    by_rig = mount_text(T_body_laser)
+    by_rig = mount_value(T_body_laser)
     stated: dict[str, Value] = {"what": "laser", "by_rig": by_rig}
-    return LaserMount(T_body_laser, T_body_laser, f"the rig file: {by_rig}", stated)
+    return LaserMount(T_body_laser, T_body_laser, f"the rig file: {mount_text(by_rig)}", stated)
 
 
 def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -> LaserMount | None:

@@ -11,7 +11,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
-from recon4.recording.frame_graph import difference, mount_text
+from recon4.recording.frame_graph import difference, mount_value
 from recon4.recording.mounts import (
     Mounts,
     SampleTopics,
@@ -139,4 +139,5 @@ def _facts(
 
 
 def _values(T: SE3, part: _Part) -> str:
-    return mount_text(T) if part.turned else mount_text(T).split(",")[0]
+    numbers = mount_value(T).split()
+    return " ".join(numbers if part.turned else numbers[:3])

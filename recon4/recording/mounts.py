@@ -10,6 +10,7 @@ from itertools import combinations, islice
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.locales.numbers import mount_text
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
@@ -21,7 +22,7 @@ from recon4.recording.frame_graph import (
     FrameGraph,
     difference,
     last_name,
-    mount_text,
+    mount_value,
 )
 from recon4.recording.moving_mounts import MovingMount, moving_mount
 from recon4.recording.report import ImportReport
@@ -207,7 +208,8 @@ def why_no_rig(streams: Sequence[Stream], mounts: Mounts) -> str:
         if is_placeholder(T_a_b):
             return f"the transforms of the bag (tf) put {a} and {b} at one place: a placeholder"
         if _is_far(T_a_b):
-            return f"the transforms of the bag (tf) put {a} far from {b}: {mount_text(T_a_b)}"
+            mount = mount_text(mount_value(T_a_b))
+            return f"the transforms of the bag (tf) put {a} far from {b}: {mount}"
     return ""
 
 
@@ -242,7 +244,7 @@ def stated_mount(
         )
         return None
     if _is_far(T_a_b):
-        report.warn(FindingKind.MOUNT_FAR, what=what, parent=a, child=b, mount=mount_text(T_a_b))
+        report.warn(FindingKind.MOUNT_FAR, what=what, parent=a, child=b, mount=mount_value(T_a_b))
         return None
     report.derive(DerivedKind.MOUNT_STATED, **stated_values(mounts, a, b, what=what))
     return T_a_b
@@ -256,7 +258,7 @@ def stated_text(mounts: Mounts, a: str, b: str, *, what: str) -> str:
     values = "not turned, at one place: a placeholder?" * is_placeholder(T_a_b)
     return (
         f"mount of the {what} from {' and '.join(sources)}: {a} -> {b} "
-        f"{values or mount_text(T_a_b)}"
+        f"{values or mount_text(mount_value(T_a_b))}"
     )
 
 
@@ -266,7 +268,7 @@ def stated_values(mounts: Mounts, a: str, b: str, *, what: str) -> dict[str, Val
     assert T_a_b is not None
     sources = sorted({one.source for one in mounts.graph.path(a, b)})
     values: dict[str, Value] = {"what": what, "parent": a, "child": b}
-    values |= {"placeholder": True} if is_placeholder(T_a_b) else {"mount": mount_text(T_a_b)}
+    values |= {"placeholder": True} if is_placeholder(T_a_b) else {"mount": mount_value(T_a_b)}
     return values | {"sources": ", ".join(sources)}
 
 

@@ -107,9 +107,9 @@ COLUMNS-OVERLOOKED =
 ## Einbaulagen
 
 MOUNT-STATED =
-    .text1 = Einbaulage ({ WORD($what, of: "MOUNT-STATED") }) aus { $sources }: { $parent } -> { $child } { $mount }.
+    .text1 = Einbaulage ({ WORD($what, of: "MOUNT-STATED") }) aus { $sources }: { $parent } -> { $child } { MOUNT($mount) }.
     .text2-if-placeholder = Einbaulage ({ WORD($what, of: "MOUNT-STATED") }) aus { $sources }: { $parent } -> { $child } nicht gedreht, an einem Ort: ein Platzhalter?
-    .text3 = Einbaulage ({ WORD($what, of: "MOUNT-STATED") }) aus der Rig-Datei: { $by_rig }.
+    .text3 = Einbaulage ({ WORD($what, of: "MOUNT-STATED") }) aus der Rig-Datei: { MOUNT($by_rig) }.
     .word-laser = Laser
     .word-GNSS-antenna = GNSS-Antenne
 
@@ -118,7 +118,7 @@ MOUNT-UNSTATED =
     .word-no-frame = kein Koordinatensystem
 
 MOUNT-PLACEHOLDER =
-    .text1 = Einbaulage von { $part } relativ zu { $other }: { $by_rig } im Rig, { $by_bag } in { $source } des Bags ({ $parent } -> { $child }): ein Platzhalter?
+    .text1 = Einbaulage von { $part } relativ zu { $other }: { MOUNT($by_rig) } im Rig, { MOUNT($by_bag) } in { $source } des Bags ({ $parent } -> { $child }): ein Platzhalter?
 
 MOUNT-MOVES =
     .text1 = { $sensor }: seine Einbaulage bewegt sich, das Rig hat die von { $base }.

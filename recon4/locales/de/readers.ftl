@@ -451,12 +451,12 @@ MOUNT-LOOP = Transformationen widersprechen einander
     .remedy = Eine Rig-Datei mit der richtigen Einbaulage angeben.
 
 MOUNT-FAR = Einbaulage zu weit entfernt
-    .text1 = Einbaulage ({ $what }): der Bag gibt { $parent } -> { $child } { $mount } an: zu weit, nicht verwendet.
+    .text1 = Einbaulage ({ $what }): der Bag gibt { $parent } -> { $child } { MOUNT($mount) } an: zu weit, nicht verwendet.
     .meaning = Niemand trägt einen Sensor so weit von einem anderen.
     .remedy = Eine Rig-Datei mit der richtigen Einbaulage angeben.
 
 MOUNT-CONTRADICTED = Rig-Datei und Bag widersprechen einander
-    .text1 = Einbaulage von { $part } relativ zu { $other }: { $by_rig } im Rig, { $by_bag } in { $source } des Bags ({ $parent } -> { $child }): sie weichen um { DEGREES($angle_rad, digits: 1) } und { LENGTH($distance_m) } ab.
+    .text1 = Einbaulage von { $part } relativ zu { $other }: { MOUNT($by_rig) } im Rig, { MOUNT($by_bag) } in { $source } des Bags ({ $parent } -> { $child }): sie weichen um { DEGREES($angle_rad, digits: 1) } und { LENGTH($distance_m) } ab.
     .text2 = Das Rig '{ $rig }' wird verwendet.
     .meaning = Eine von beiden Einbaulagen ist falsch.
     .detection = Der Unterschied ist größer, als eine angegebene oder kalibrierte Einbaulage bekannt ist.

@@ -106,16 +106,16 @@ COLUMNS-OVERLOOKED =
 ## Mounts
 
 MOUNT-STATED =
-    .text1 = Mount of the { WORD($what, of: "MOUNT-STATED") } from { $sources }: { $parent } -> { $child } { $mount }.
+    .text1 = Mount of the { WORD($what, of: "MOUNT-STATED") } from { $sources }: { $parent } -> { $child } { MOUNT($mount) }.
     .text2-if-placeholder = Mount of the { WORD($what, of: "MOUNT-STATED") } from { $sources }: { $parent } -> { $child } not turned, at one place: a placeholder?
-    .text3 = Mount of the { WORD($what, of: "MOUNT-STATED") } from the rig file: { $by_rig }.
+    .text3 = Mount of the { WORD($what, of: "MOUNT-STATED") } from the rig file: { MOUNT($by_rig) }.
 
 MOUNT-UNSTATED =
     .text1 = Mount of the { WORD($what, of: "MOUNT-UNSTATED") }: the transforms of the bag (tf) do not connect { WORD($parent, of: "MOUNT-UNSTATED") } and { WORD($child, of: "MOUNT-UNSTATED") }: it is taken as not turned against the LiDAR.
     .word-no-frame = no frame
 
 MOUNT-PLACEHOLDER =
-    .text1 = Mount of { $part } relative to { $other }: { $by_rig } in the rig, { $by_bag } in { $source } of the bag ({ $parent } -> { $child }): a placeholder?
+    .text1 = Mount of { $part } relative to { $other }: { MOUNT($by_rig) } in the rig, { MOUNT($by_bag) } in { $source } of the bag ({ $parent } -> { $child }): a placeholder?
 
 MOUNT-MOVES =
     .text1 = { $sensor }: its mount moves, the rig has that of { $base }.

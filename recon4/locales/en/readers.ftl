@@ -452,12 +452,12 @@ MOUNT-LOOP = Transforms contradict each other
     .meaning = The mount of a sensor may be wrong.
 
 MOUNT-FAR = Mount too far away
-    .text1 = Mount of the { $what }: the bag says { $parent } -> { $child } { $mount }: too far, not used.
+    .text1 = Mount of the { $what }: the bag says { $parent } -> { $child } { MOUNT($mount) }: too far, not used.
     .remedy = Give a rig file with the right mount.
     .meaning = Nobody carries a sensor that far from another.
 
 MOUNT-CONTRADICTED = Rig file and bag contradict each other
-    .text1 = Mount of { $part } relative to { $other }: { $by_rig } in the rig, { $by_bag } in { $source } of the bag ({ $parent } -> { $child }): they differ by { DEGREES($angle_rad, digits: 1) } and { LENGTH($distance_m) }.
+    .text1 = Mount of { $part } relative to { $other }: { MOUNT($by_rig) } in the rig, { MOUNT($by_bag) } in { $source } of the bag ({ $parent } -> { $child }): they differ by { DEGREES($angle_rad, digits: 1) } and { LENGTH($distance_m) }.
     .text2 = The rig '{ $rig }' is used.
     .meaning = One of both mounts is wrong.
     .detection = The difference is larger than what a stated or a calibrated mount is known to.

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.recording.frame_graph import FrameGraph, StatedTransform, mount_text
+from recon4.locales.numbers import mount_text, number_functions
+from recon4.recording.frame_graph import FrameGraph, StatedTransform, mount_value
 from tests.robot_bags import mount
 
 
@@ -77,14 +78,18 @@ def test_ten_thousand_frames_in_a_row_are_connected():
 
 
 def test_a_mount_reads_as_people_write_it():
-    text = mount_text(mount(0.1, -0.0001, 2, roll=180, yaw=-90))
+    value = mount_value(mount(0.1, -0.0001, 2, roll=180, yaw=-90))
+    text = mount_text(value)
 
     assert text == "xyz 0.100 0.000 2.000 m, roll 180.0 pitch 0.0 yaw -90.0°"
+    assert number_functions("de")["MOUNT"](value).startswith("xyz 0,100 0,000 2,000 m, roll 180,0")
+    assert mount_text(" ".join(value.split()[:3])) == "xyz 0.100 0.000 2.000 m"
+    assert mount_text(text) == text, "that of an earlier version"
 
 
 @pytest.mark.parametrize("pitch", [90.0, -90.0])
 def test_the_mount_of_a_vertical_lidar_has_no_yaw(pitch):
-    text = mount_text(mount(pitch=pitch, roll=30, yaw=-10))
+    text = mount_text(mount_value(mount(pitch=pitch, roll=30, yaw=-10)))
     roll = 30 + 10 * np.sign(pitch)
 
     assert text.endswith(f"roll {roll:.1f} pitch {pitch:.1f} yaw 0.0°")
