@@ -19,6 +19,9 @@ class DerivedKind(StrEnum):
     FILES_AS_ONE = "FILES-AS-ONE"
     FOLDERS_PASSED_OVER = "FOLDERS-PASSED-OVER"
     POSES_KEPT = "POSES-KEPT"
+    WALK_LIDAR = "WALK-LIDAR"
+    WALK_PROFILER = "WALK-PROFILER"
+    WALK_PLANAR = "WALK-PLANAR"
 
     # The rig, and what is which sensor
     RIG_CHOSEN = "RIG-CHOSEN"

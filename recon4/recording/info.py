@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError
+from recon4.model.derived import Derived
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe
@@ -227,7 +229,7 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
     )
     return replace(
         info,
-        walk="2-D laser: a plan of what its plane meets, because no LiDAR or profiler is there",
+        walk=Derived(kind=DerivedKind.WALK_PLANAR),
         t_first_ns=first,
         t_last_ns=last,
         sensors=(sensor,),
@@ -372,7 +374,7 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
     return replace(
         info,
         sensors=sensors,
-        walk=kind_of_walk(rig) if rig is not None else "",
+        walk=kind_of_walk(rig) if rig is not None else None,
         gaps=(*info.gaps, *head.jumps),
         samples=tuple(samples),
         missing=tuple(missing),

@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from recon4.model.derived import Derived
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -93,18 +96,16 @@ def read_head(
     return head
 
 
-def kind_of_walk(rig: Rig) -> str:
+def kind_of_walk(rig: Rig) -> Derived:
     """Which workflow a recording with points has, and what decides that."""
     row = rig.row_of("profiler")
     if row is None:
         names = ", ".join(sensor.topic or sensor.name for sensor in rig.sensors)
-        return f"LiDAR: frames of points in space, of {names}"
+        return Derived(kind=DerivedKind.WALK_LIDAR, values={"sensors": names})
     sensor = rig.sensors[row]
-    moved = sensor.head_topic or "a head of constant rate" * bool(sensor.head_rate_rad_s)
-    return (
-        f"profiler: every line of {sensor.topic or sensor.name} lies elsewhere in space, because "
-        f"{moved or 'its head'} moves it"
-    )
+    moved_by = sensor.head_topic or ("constant-head" if sensor.head_rate_rad_s else "head")
+    values: dict[str, Value] = {"sensor": sensor.topic or sensor.name, "moved_by": moved_by}
+    return Derived(kind=DerivedKind.WALK_PROFILER, values=values)
 
 
 def _usable_points(item: object, settings: IngestSettings, report: ImportReport) -> int:

@@ -44,8 +44,8 @@ class RecordingInfo:
     path: str
     kind: str
     bytes: int
-    walk: str = ""
-    """Kind of walk it is mapped as, and why; empty = it cannot be mapped."""
+    walk: Derived | None = None
+    """Kind of walk it is mapped as, and why; None = it cannot be mapped."""
     t_first_ns: int = 0
     t_last_ns: int = 0
     """Both 0 = the recording has no times."""
@@ -76,7 +76,12 @@ class RecordingInfo:
 
     def to_json(self, language: str = ENGLISH) -> dict[str, object]:
         """The contents as a record; what is derived also as text in a language."""
-        return asdict(self) | {"derived": [said_derived(one, language) for one in self.derived]}
+        derived = [said_derived(one, language) for one in self.derived]
+        return asdict(self) | {"derived": derived, "walk": self.walk_text(language)}
+
+    def walk_text(self, language: str = ENGLISH) -> str:
+        """Kind of walk it is mapped as, and why, in words; empty = it cannot be mapped."""
+        return derived_text(self.walk, language) if self.walk is not None else ""
 
     def lines(self, language: str = ENGLISH) -> list[str]:
         """The contents as text; what is derived and warned of in a language."""
@@ -86,7 +91,7 @@ class RecordingInfo:
         if absolute or self.t_last_ns > self.t_first_ns:
             start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
             lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
-        lines += [f"walk      {self.walk}"] if self.walk else []
+        lines += [f"walk      {self.walk_text(language)}"] if self.walk else []
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about, language)
         lines += [f"samples   {text}" for text in self.samples]

@@ -21,6 +21,17 @@ FOLDERS-PASSED-OVER =
 POSES-KEPT =
     .text1 = Posen der Aufzeichnung werden in poses.tum zum Vergleich behalten, nicht verwendet.
 
+WALK-LIDAR =
+    .text1 = LiDAR: Scans von Punkten im Raum, von { $sensors }
+
+WALK-PROFILER =
+    .text1 = Profiler: jede Linie von { $sensor } liegt woanders im Raum, denn { WORD($moved_by, of: "WALK-PROFILER") } bewegt ihn
+    .word-head = sein Kopf
+    .word-constant-head = ein Kopf mit fester Drehrate
+
+WALK-PLANAR =
+    .text1 = 2-D-Laser: ein Plan dessen, was seine Ebene trifft, denn es gibt weder LiDAR noch Profiler
+
 ## Das Rig, und was welcher Sensor ist
 
 RIG-CHOSEN =

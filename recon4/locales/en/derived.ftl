@@ -21,6 +21,17 @@ FOLDERS-PASSED-OVER =
 POSES-KEPT =
     .text1 = Poses of the recording are kept in poses.tum for comparison, not used.
 
+WALK-LIDAR =
+    .text1 = LiDAR: frames of points in space, of { $sensors }
+
+WALK-PROFILER =
+    .text1 = profiler: every line of { $sensor } lies elsewhere in space, because { WORD($moved_by, of: "WALK-PROFILER") } moves it
+    .word-head = its head
+    .word-constant-head = a head of constant rate
+
+WALK-PLANAR =
+    .text1 = 2-D laser: a plan of what its plane meets, because no LiDAR or profiler is there
+
 ## The rig, and what is which sensor
 
 RIG-CHOSEN =

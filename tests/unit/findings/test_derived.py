@@ -21,6 +21,7 @@ from recon4.recording.report import ImportReport
 from tests.source_trees import sources, trees_with
 
 CODE = Path(__file__).parents[3]
+MADE_IN = ("info.py", "info_head.py")
 FROZEN = Path(__file__).with_name("report_with_sentences.json")
 """``report.json`` of a version that wrote sentences."""
 WORDS = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
@@ -30,10 +31,19 @@ UNIT = Derived(kind=DerivedKind.CLOCK_BY_GPS, values={"sensor": "front", "off_s"
 
 def calls():
     """Each call that states what is derived: its place, its first argument, its values."""
-    for path, tree in trees_with(r"\bderive\(", sources("recon4")):
+    for path, tree in trees_with(r"\bderived?\(|\bDerived\(", sources("recon4")):
         for node in ast.walk(tree):
             if isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "derive":
                 yield f"{path.relative_to(CODE)}:{node.lineno}", node.args, node.keywords
+            elif kind := made(node, path):
+                yield f"{path.relative_to(CODE)}:{node.lineno}", [kind], [ast.keyword(None, node)]
+
+
+def made(node, path):
+    """The kind of a record that a reader makes itself, such as `RecordingInfo.walk`."""
+    if isinstance(node, ast.Call) and ast.unparse(node.func) == "Derived" and path.name in MADE_IN:
+        return next(one.value for one in node.keywords if one.arg == "kind")
+    return None
 
 
 CALLS = list(calls())
