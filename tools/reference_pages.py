@@ -1,7 +1,7 @@
 """Pages of the reference that are made from the code: ``python -m tools.reference_pages``.
 
 Commands from the command line itself, the Python interface from its docstrings, routes from the
-server's OpenAPI description.
+server's OpenAPI description, codes of errors from the catalog of texts.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import Any
 from typer.main import get_command
 
 from tools.http_types import described
+from tools.problem_codes import problems_page
 
 FOLDER = Path(__file__).parents[1] / "docs" / "reference"
 MADE = "Made from the code by `make docs`; do not edit."
@@ -146,6 +147,7 @@ PAGES = {
     "cli.md": commands_page,
     "http.md": http_page,
     "lidars.md": lidars_page,
+    "problems.md": lambda: problems_page(MADE),
     "python-api.md": python_page,
 }
 """Name of a page -> what makes it."""

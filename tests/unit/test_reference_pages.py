@@ -7,6 +7,7 @@ from typer.main import get_command
 
 from recon4 import api
 from recon4.cli.main import app
+from recon4.locales.coded import codes
 from recon4_app.access.routes_check import declared
 from recon4_app.main import create_app
 from recon4_app.settings import ServerSettings
@@ -23,6 +24,14 @@ def test_every_command_has_a_section():
 
     assert [one for one in get_command(app).commands if f"\n## recon4 {one}" not in text] == []
     assert "`--out` | required |" in text and "## recon4 users add" in text
+
+
+def test_every_code_of_an_error_is_listed_with_its_status():
+    text = PAGES["problems.md"]()
+
+    assert [code for code in codes() if f"\n| `{code}` |" not in text] == []
+    assert "| `project-unknown` | 404 | no project ‹name› |" in text
+    assert "| `method-not-allowed` | 405 |" in text
 
 
 def test_every_name_of_the_interface_has_its_docstring():
