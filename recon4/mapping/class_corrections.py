@@ -40,11 +40,6 @@ class ClassVolume:
         changes[what.to] = False
         return ClassVolume(what.volume, what.to, low_m, high_m, changes)
 
-    @property
-    def changes_left_out(self) -> bool:
-        """Whether it changes points that the map leaves out."""
-        return any(self.changes[one] for one, facts in CLASSES.items() if not facts.delivered)
-
     def meets(self, low_m: Array, high_m: Array) -> bool:
         """Whether a box in the map may have points of it, (3,) each [m]."""
         return bool(np.all(self.low_m <= high_m) and np.all(self.high_m >= low_m))

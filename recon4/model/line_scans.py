@@ -31,10 +31,6 @@ class LineScans:
     def __len__(self) -> int:
         return len(self.t_ns)
 
-    def line_of(self, t_ns: Times) -> NDArray[np.intp]:
-        """Row of the line that was measured at each time, (N,) -> (N,)."""
-        return np.maximum(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0)
-
     def sweeps(self) -> NDArray[np.intp]:
         """First line of each sweep, and the number of lines at the end, (T + 1,).
 
@@ -55,14 +51,6 @@ class LineScans:
                 ends.append(at)
                 start_rad, heading = self.head_rad[at], way[line] or heading
         return _without_short(np.array([*ends, count], np.intp))
-
-    def usual_sweep_s(self) -> float:
-        """Median duration of the complete sweeps [s]; of all if there are too few."""
-        ends = self.sweeps()
-        starts = self.t_ns[ends[:-1]]
-        if len(starts) < 3:
-            return float(self.t_ns[-1] - self.t_ns[0]) * 1e-9
-        return float(np.median(np.diff(starts)[1:] if len(starts) > 3 else np.diff(starts))) * 1e-9
 
 
 def _without_short(ends: NDArray[np.intp]) -> NDArray[np.intp]:

@@ -35,11 +35,6 @@ def plane_information(information: Array) -> Array:
     return np.asarray(information[..., _PLANE[:, None], _PLANE])
 
 
-def plane_covariance(information: Array) -> Array:
-    """Covariance of yaw, x, y of an edge, (3, 3)."""
-    return np.asarray(np.linalg.inv(information)[np.ix_(_PLANE, _PLANE)])
-
-
 def in_source_axes(H: Array, yaw_rad: float) -> Array:
     """Information for yaw, x, y along the axes of the source, from that along the target's."""
     c, s = np.cos(yaw_rad), np.sin(yaw_rad)

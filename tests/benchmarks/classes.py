@@ -28,13 +28,13 @@ from recon4.model.classes import PointClass
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import read_tum
 from recon4.settings import MapSettings
-from recon4.simulation.causes import Cause, causes
 from recon4.simulation.crowd import ALONE, Crowd
 from recon4.simulation.frames import simulate_frames
 from recon4.simulation.lidar import LidarModel
 from recon4.simulation.setup import Models, SimulationSetup, prepare
 from recon4.store.classes import StoredClasses
 from recon4.store.frames import FrameStore
+from tests.benchmarks.causes import Cause, causes
 
 
 @dataclass(frozen=True, slots=True)

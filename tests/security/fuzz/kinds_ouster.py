@@ -18,11 +18,11 @@ from recon4.recording.packets.ouster.encode import (
 )
 from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.ouster.metadata import OusterMetadata
-from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS
+from tests.ouster_models import nominal_metadata
 from tests.security.fuzz.kind import Kind, Reading
 from tests.unit.recording.packet_builders import sensor
 

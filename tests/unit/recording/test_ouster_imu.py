@@ -9,9 +9,9 @@ from recon4.recording.formats.datagrams import NO_DATAGRAMS
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.ouster.encode import encode_imu, metadata_json
 from recon4.recording.packets.ouster.family import OUSTER
-from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
+from tests.ouster_models import nominal_metadata
 from tests.unit.recording.ouster_packets import companion, datagrams_of, of_port, opened
 
 T0_NS = 5_000_000_000

@@ -13,7 +13,7 @@ from recon4.recording.packets.ouster.encode import encode_packets, metadata_json
 from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.ouster.metadata import read_metadata
 from recon4.recording.packets.ouster.metadata_choice import choose, find_metadata
-from recon4.recording.packets.ouster.models import nominal_metadata
+from tests.ouster_models import nominal_metadata
 from tests.unit.recording.ouster_packets import companion, datagrams_of
 from tests.unit.recording.packet_builders import sensor
 from tests.unit.recording.test_ouster_packets import turn_of

@@ -16,9 +16,9 @@ from recon4.recording.packets.ouster.encode import (
 )
 from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.ouster.layouts import PROFILES, PacketLayout
-from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
+from tests.ouster_models import nominal_metadata
 from tests.unit.recording.ouster_packets import companion, datagrams_of, of_port, opened
 from tests.warned import K, warned
 

@@ -16,11 +16,11 @@ from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.ouster.encode import metadata_json
-from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from tests.builders import T0_NS
+from tests.ouster_models import nominal_metadata
 from tests.security.fuzz.kinds_ouster import packets_of
 from tests.unit.recording.ouster_packets import WIDE, datagrams_of, opened
 from tests.unit.recording.packet_builders import rig

@@ -12,7 +12,7 @@ from recon4.model.rig import format_rig, parse_rig
 from recon4.recording.packets.companions import described_in, with_descriptions
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.ouster.encode import metadata_json
-from recon4.recording.packets.ouster.models import nominal_metadata
+from tests.ouster_models import nominal_metadata
 
 METADATA = metadata_json(nominal_metadata("OS0-32", profile="LEGACY")).decode()
 FILES = {

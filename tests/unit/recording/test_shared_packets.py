@@ -13,11 +13,11 @@ from recon4.recording.packets.hesai.models import MODELS as HESAIS
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.one_sender import require_one_sender
 from recon4.recording.packets.ouster.encode import metadata_json
-from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.packets.robosense.models import MODELS as ROBOSENSES
 from recon4.recording.packets.senders import parts_of
 from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
 from tests.builders import bag_path
+from tests.ouster_models import nominal_metadata
 from tests.robot_bags import RobotBag
 from tests.security.fuzz.kinds_ouster import packets_of
 from tests.unit.recording import test_hesai_packets, test_robosense_packets

@@ -1,4 +1,4 @@
-"""Sensors as they are sold: metadata without a calibration, for encoders and the simulation."""
+"""Sensors of Ouster as they are sold: metadata without a calibration, for encoded packets."""
 
 from __future__ import annotations
 
