@@ -7,6 +7,7 @@ from enum import IntEnum
 from starlette.requests import HTTPConnection
 
 from recon4.locales.coded import said, text_of
+from recon4_app.network.tuning import STREAMS
 from recon4_app.pages import language_of
 
 
@@ -19,14 +20,10 @@ class CloseCode(IntEnum):
     """Beyond the limit of streams; the reason has the message for the user."""
 
 
-MOST_BYTES = 123
-"""Longest reason of a closed WebSocket (RFC 6455, 5.5.1)."""
-
-
 def close_reason(error: BaseException, connection: HTTPConnection) -> str:
     """The message of an error in the language of a browser, as the reason of a closed WebSocket.
 
     What is too long ends after a whole character.
     """
     text = said(text_of(error), language_of(connection))
-    return text.encode()[:MOST_BYTES].decode(errors="ignore")
+    return text.encode()[: STREAMS.longest_reason_bytes].decode(errors="ignore")

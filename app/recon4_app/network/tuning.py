@@ -88,6 +88,8 @@ class StreamRefusal(Struct, frozen=True, kw_only=True):
 
     retry_after_s: float = 10.0
     """Who is refused may come again after this time [s]."""
+    longest_reason_bytes: int = 123
+    """Longest reason of a closed WebSocket (RFC 6455, 5.5.1)."""
 
 
 STREAMS = StreamRefusal()
