@@ -25,7 +25,7 @@ const TALL_PX = [120, 420];
 const MARGIN = { left: 46, bottom: 24, top: 8, right: 12 };
 const TICK_PX = { across: 120, up: 60 };
 /** What the plot leaves of half of the window, for its buttons and captions. */
-const AROUND_PX = 215;
+const AROUND_PX = 240;
 const BEYOND_M = 0.05;
 
 /** The strip of a profile, as the slices take it: u counts from the first point. */
