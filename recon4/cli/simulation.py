@@ -52,11 +52,15 @@ def simulate(  # noqa: PLR0913 - options of a command
             "All are on the page simulation of the docs.",
         ),
     ] = None,
+    targets: Annotated[
+        int,
+        typer.Option(help="Survey targets along the path, and the list of their survey."),
+    ] = 0,
 ) -> None:
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
     if rig and lidar:
         raise typer.BadParameter("give --rig or --lidar, not both")
-    given = _Given(world, out, seconds, seed, figure, bag, tuple(degrade or ()))
+    given = _Given(world, out, seconds, seed, figure, bag, tuple(degrade or ()), targets)
     _simulate(given, _rig(rig, lidar))
 
 
@@ -71,6 +75,7 @@ class _Given:
     figure: str
     bag: bool | None
     degrade: tuple[str, ...]
+    targets: int
 
 
 def _rig(name: str, lidars: list[str] | None) -> Rig:
@@ -87,11 +92,14 @@ def _simulate(given: _Given, mounted: Rig) -> None:
     from recon4.simulation.degradation import parse_degradations
     from recon4.simulation.setup import models_with, prepare
     from recon4.simulation.simulate import simulate as run
+    from recon4.simulation.targets import with_targets
 
     degradations = parse_degradations(given.degrade)
     profiler = mounted.row_of("profiler") is not None
     if given.figure and not profiler:
         raise typer.BadParameter("--figure is for rigs with a profiler, as --rig wuerzburg")
+    if given.targets and profiler:
+        raise typer.BadParameter("--targets is for rigs without a profiler")
     crowd = Crowd.of(degradations)
     with watcher() as progress:
         if profiler:
@@ -113,5 +121,6 @@ def _simulate(given: _Given, mounted: Rig) -> None:
                 models=models_with(degradations),
                 crowd=crowd,
             )
+            setup = with_targets(setup, given.targets)
             run(setup, given.out, bag=given.bag, degradations=degradations, progress=progress)
     write(f"{given.out}")

@@ -147,8 +147,8 @@ class MeshBuilder:
         *,
         bumps: Array | None = None,
     ) -> None:
-        """An ellipsoid of 12 x 7 faces; ``bumps`` (7, 12) scales its corners (tree crowns)."""
-        rows, columns = 7, 12
+        """An ellipsoid; ``bumps`` (rows, columns) scales its corners (tree crowns), else 7 x 12."""
+        rows, columns = (7, 12) if bumps is None else bumps.shape
         polar = np.linspace(0.0, np.pi, rows)[:, None]
         azimuth = np.linspace(0.0, 2.0 * np.pi, columns, endpoint=False)[None, :]
         unit = np.stack(
@@ -170,6 +170,16 @@ class MeshBuilder:
         triangles = _grid_triangles(len(y_m), len(x_m), wrap=False)
         values = np.asarray(reflectivity, dtype=np.float64)
         self.add(corners, triangles, values if values.ndim == 0 else np.repeat(values.ravel(), 2))
+
+
+def joined(a: WorldMesh, b: WorldMesh) -> WorldMesh:
+    """One mesh of two; the triangles of ``a`` keep their rows."""
+    return WorldMesh(
+        np.concatenate([a.vertices_m, b.vertices_m]),
+        np.concatenate([a.triangles, b.triangles + np.uint32(len(a.vertices_m))]),
+        np.concatenate([a.reflectivity, b.reflectivity]),
+        np.concatenate([a.kind, b.kind]),
+    )
 
 
 def _grid_triangles(rows: int, columns: int, *, wrap: bool) -> NDArray[np.int64]:

@@ -20,6 +20,8 @@ class Reflectivities:
     pane: float = 0.015
     """A window, which is a `SURFACES.glass`."""
     paper: float = 0.8
+    ink: float = 0.06
+    """Black sectors of survey targets."""
     retro: float = 2.2
     """Retro-reflective paint of markers, signs and number plates."""
     leaves: float = 0.45

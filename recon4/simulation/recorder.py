@@ -33,6 +33,7 @@ from recon4.simulation.packets import (
 )
 from recon4.simulation.reflectivity import ReflectivityWriter
 from recon4.simulation.setup import SimulationSetup, gnss_samples
+from recon4.simulation.targets import write_targets
 from recon4.simulation.truth import true_trajectory
 from recon4.units import SECOND_NS
 
@@ -125,6 +126,7 @@ class WalkRecorder:
         write_tum(folder / "truth.tum", true_trajectory(setup.walk, epoch_ns=setup.epoch_ns))
         write_ply(folder / "model.ply", setup.world.mesh)
         write_markers(folder / "markers.csv", setup.world)
+        write_targets(folder, setup.world.targets, setup.seed)
         if self._degradation.values:
             true = true_rig(setup, self._degradation)
             (folder / "rig_true.toml").write_text(format_rig(true), "utf-8")

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.geometry.mesh import WorldMesh
 from recon4.geometry.se3 import Array
+from recon4.model.targets import TargetKind
 from recon4.simulation.rides import ElevatorCar
 
 
@@ -40,6 +41,18 @@ class WorldMarker:
 
 
 @dataclass(frozen=True, slots=True)
+class WorldTarget:
+    """A survey target that was put beside the path."""
+
+    name: str
+    kind: TargetKind
+    p_map: tuple[float, float, float]
+    """Its point [m]."""
+    radius_m: float = 0.0
+    """Of a sphere [m]."""
+
+
+@dataclass(frozen=True, slots=True)
 class WorldOrigin:
     """Where the map's origin lies on the earth (WGS 84); its axes are east, north and up there."""
 
@@ -65,6 +78,7 @@ class World:
     stops: int
     """Most places a round can visit."""
     markers: tuple[WorldMarker, ...] = ()
+    targets: tuple[WorldTarget, ...] = ()
     car: ElevatorCar | None = None
     """Of the elevator that the route rides; None = there is none."""
     floor: tuple[float, float, float, float] | None = None
