@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
+from recon4.cli.targets import targets
 from recon4.cli.terminal import write
 from recon4.errors import ConfigError
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from recon4.slices.site_control import ControlTrial
 
 control = typer.Typer()
+control.add_typer(targets)
 
 
 @control.command("control")
@@ -58,7 +60,7 @@ def control_points(
             raise ConfigError("SURVEY: expected a file with surveyed points")
         _make_again(project, SiteControl(targets=(), crs=""))
         return
-    points, crs = _points(survey, crs)
+    points, crs = surveyed_points(survey, crs)
     trial = _try(project, points, picks, crs=crs)
     write(trial_text(trial))
     if trial.unseen:
@@ -68,7 +70,7 @@ def control_points(
         _make_again(project, trial.control)
 
 
-def _points(survey: Path, crs: str) -> tuple[tuple[ControlPoint, ...], str]:
+def surveyed_points(survey: Path, crs: str) -> tuple[tuple[ControlPoint, ...], str]:
     """The points of a file, and their system: one is chosen for latitude and longitude."""
     from recon4.recording.tables.coordinates import raise_question
     from recon4.slices.control_points import read_control

@@ -32,6 +32,8 @@ class BlackWhiteTarget:
     by the scatter of intensities; errors of the poses are not in it [m]."""
     sd_across_m: float
     """The same across the board, that of a single point: neighbors share their errors [m]."""
+    normal: Array
+    """Of the board, of either sign, (3,)."""
     points: int
     """Points of the board that were used."""
     agreement: float
@@ -45,18 +47,21 @@ def find_black_white(tiles: TileSet, p_map: Array) -> BlackWhiteTarget | None:
     return black_white_at(near["xyz"], near[value].astype(np.float64), p_map)
 
 
-def black_white_at(points: Array, intensity: Array, p_map: Array) -> BlackWhiteTarget | None:
+def black_white_at(
+    points: Array, intensity: Array, p_map: Array, *, reach_m: float = BLACK_WHITE.reach_m
+) -> BlackWhiteTarget | None:
     """The target near a place; None if no pattern of this kind is there, or it is seen in part.
 
     Args:
         points: Around the place [m], (N, 3).
         intensity: Of each, in any unit, (N,).
         p_map: The place [m], (3,).
+        reach_m: How far from it the search begins [m].
     """
     board = _board(points, intensity, p_map)
     if board is None:
         return None
-    fitted = _fit(board, _start(board))
+    fitted = _fit(board, _start(board, reach_m))
     if fitted is not None:
         fitted = _fit(board, fitted.at)  # with the points around its own center
     if fitted is None or not _is_target(board, fitted):
@@ -65,6 +70,7 @@ def black_white_at(points: Array, intensity: Array, p_map: Array) -> BlackWhiteT
         p_map=board.middle + fitted.at[:2] @ board.axes[:2],
         sd_m=fitted.sd_m,
         sd_across_m=board.sd_m,
+        normal=board.axes[2],
         points=fitted.count,
         agreement=fitted.agreement,
     )
@@ -137,11 +143,11 @@ def _agreement(board: _Board, at: Array) -> tuple[float, int]:
     return float(np.corrcoef(a, b)[0, 1]), count
 
 
-def _start(board: _Board) -> Array:
+def _start(board: _Board, reach_m: float) -> Array:
     """Center and turn of the pattern that agrees best; a turn by 90° exchanges black and white."""
     step = max(1, len(board.uv) // BLACK_WHITE.search_points)
     thin = replace(board, uv=board.uv[::step], value=board.value[::step])
-    steps = np.arange(-BLACK_WHITE.reach_m, BLACK_WHITE.reach_m + 1e-9, BLACK_WHITE.search_m)
+    steps = np.arange(-reach_m, reach_m + 1e-9, BLACK_WHITE.search_m)
     turns = np.linspace(0.0, np.pi, BLACK_WHITE.turns, endpoint=False)
     starts = np.array(np.meshgrid(steps, steps, turns)).reshape(3, -1).T
     return np.asarray(starts[np.argmax([_agreement(thin, at)[0] for at in starts])])
