@@ -90,7 +90,7 @@ from recon4_app.rigs.store import RigStore
 from recon4_app.rigs.uses import RigUses
 from recon4_app.server_routes import READ_ONLY
 from recon4_app.settings import ServerSettings
-from recon4_app.slices import align_routes, reference_routes, site_routes
+from recon4_app.slices import align_routes, reference_routes, site_routes, target_routes
 from recon4_app.slices import routes as slice_routes
 from recon4_app.slices.store import Slices
 from recon4_app.storage import routes as storage_routes
@@ -174,7 +174,7 @@ def _routes() -> list[BaseRoute]:
     ):
         router.include_router(part.router)
     more = (choices, server_routes, metrics_routes, docs_pages)
-    for part in (*more, reference_routes, align_routes, site_routes):
+    for part in (*more, reference_routes, align_routes, site_routes, target_routes):
         router.include_router(part.router)
     for part in (acknowledgment_routes, annotation_routes, correction_routes, team_routes):
         router.include_router(part.router)

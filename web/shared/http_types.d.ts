@@ -1743,6 +1743,27 @@ export interface TablePreview {
   decimal: string;
 }
 
+export type TargetKind = "plate" | "board" | "sphere";
+
+export interface TargetList {
+  rows: Array<TargetRow>;
+  missing: Array<string>;
+  rmse_m: number | null;
+}
+
+export interface TargetRow {
+  kind: TargetKind;
+  p_map: [number, number, number];
+  cov_m2: [[number, number, number], [number, number, number], [number, number, number]];
+  sd_m: number;
+  size_m: number;
+  points: number;
+  agreement: number;
+  id: string;
+  off_m: number | null;
+  ambiguous: boolean;
+}
+
 export interface Token {
   token: string;
 }
@@ -2150,6 +2171,11 @@ export interface Operations {
     path: { project_id: string };
     query: { point: string };
     response: SurfacePoint;
+  };
+  "GET /api/projects/{project_id}/slices/control/targets": {
+    path: { project_id: string };
+    query?: { crs?: string };
+    response: TargetList;
   };
   "GET /api/projects/{project_id}/slices/doubles": {
     path: { project_id: string };

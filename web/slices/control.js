@@ -21,12 +21,14 @@ import {
   within,
 } from "../shared/dom.js";
 import { askFirst } from "../shared/download.js";
-import { decimal, t } from "../shared/texts.js";
+import { t } from "../shared/texts.js";
 import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { AXES, combined } from "./measured.js";
 import { figures, HEADS, residualCells, roleText } from "./residual_table.js";
 import { siteSection } from "./site.js";
+import { base64Of, firstPoint } from "./survey_file.js";
+import { targetsSection } from "./targets.js";
 
 /**
  * @import {
@@ -44,7 +46,6 @@ import { siteSection } from "./site.js";
 const MAX_ROWS = 300;
 const FILES = ".csv,.txt,.dxf";
 const MAX_NAMED = 10;
-const MOST_BYTES = 600_000;
 /** @type {Record<string, Columns[number]>} */
 const SWAPPED = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
 
@@ -64,21 +65,6 @@ const named = (/** @type {string[]} */ ids) =>
         count: ids.length - MAX_NAMED,
       })
     : ids.join(", ");
-
-/** How many points were read, and where the first of them lies. */
-function firstPoint(/** @type {ControlPreview} */ { points, crs }) {
-  const [one] = points;
-  if (!one) return "";
-  const put = crs ? ` ${t("degrees-put", { crs })}` : "";
-  const [x = "", y = "", z = ""] = one.xyz_m.map((value) => decimal(value, 3));
-  return t("first-point", { count: points.length, name: one.id, x, y, z, put });
-}
-
-async function base64Of(/** @type {File} */ file) {
-  const data = new Uint8Array(await file.arrayBuffer());
-  if (data.length > MOST_BYTES) throw new Error(t("list-too-large"));
-  return btoa(Array.from(data, (one) => String.fromCharCode(one)).join(""));
-}
 
 /**
  * Fills the panel of control and check points.
@@ -282,8 +268,9 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
     </tr>`;
   }
 
-  async function go(/** @type {ControlSpec} */ one) {
-    const { p_map } = await readSurface(id, one.id);
+  const go = async (/** @type {ControlSpec} */ one) => show((await readSurface(id, one.id)).p_map);
+
+  function show(/** @type {[number, number, number]} */ p_map) {
     pointAt(p_map.slice(0, 2));
     change({ kind: "horizontal", z: p_map[2], u: p_map[0], v: p_map[1], m: 0.005 });
   }
@@ -319,6 +306,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
         <p class="quiet status" role="status"></p>
         <p class="error problem" role="alert"></p>
         <div>${now && found ? reported(now, found) : now ? none : nothing}</div>
+        <section class="targets"></section>
         <section class="site" ?hidden=${!found}></section>`,
       host,
     );
@@ -386,6 +374,8 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
   }
 
   draw();
+  const crs = () => /** @type {HTMLInputElement} */ (within(host, ".site input")).value.trim();
+  targetsSection(within(host, ".targets"), { id, crs, put, go: show });
   siteSection(within(host, ".site"), id);
   attempt(message(), async () => {
     await readKept();

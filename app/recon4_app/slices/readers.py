@@ -9,6 +9,7 @@ from pydantic import ValidationError
 
 from recon4.errors import StoreError
 from recon4.slices.double_places import DoubleReport
+from recon4.slices.targets.named import TargetList
 from recon4.untrusted.bounded import read_json_object
 from recon4_app.slices.model import WindowSpec
 from recon4_app.slices.tuning import READERS
@@ -37,5 +38,18 @@ def read_double_walls(path: Path) -> DoubleReport:
     try:
         record = read_json_object(path, READERS.max_bytes, failure=StoreError)
         return msgspec.convert(record, DoubleReport)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{path.name} cannot be read: {error}") from error
+
+
+def read_targets(path: Path) -> TargetList:
+    """Read what `search_targets` wrote.
+
+    Raises:
+        StoreError: If it is damaged or too large.
+    """
+    try:
+        record = read_json_object(path, READERS.max_bytes, failure=StoreError)
+        return msgspec.convert(record, TargetList)
     except msgspec.ValidationError as error:
         raise StoreError(f"{path.name} cannot be read: {error}") from error

@@ -1,0 +1,39 @@
+"""Survey targets found in the whole map, in a real browser."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.conftest import looks
+from tests.e2e.test_control_points import choose_survey, opened
+from tests.e2e.test_pages import fits
+from tests.served import served
+from tests.survey_targets import SITE, TRUE, build_targets
+
+pytestmark = pytest.mark.e2e
+
+server = served(build_targets)
+
+
+@looks("desktop light")
+def test_a_person_takes_the_targets_that_the_survey_names(server, page, screenshot):
+    rows = [[name, *(f"{x:.3f}" for x in SITE @ p), "control"] for name, p in TRUE.items()]
+    table = "\n".join(",".join(row) for row in [["id", "E", "N", "H", "role"], *rows])
+    opened(page, server)
+    choose_survey(page, table.encode())
+    page.get_by_role("button", name="Use, in the map's frame").click()
+
+    page.get_by_role("button", name="Find targets in the whole map").click()
+
+    expect(page.get_by_text(re.compile("4 of 4 surveyed points found"))).to_be_visible(
+        timeout=60_000
+    )
+    page.get_by_label("Take P2").uncheck()
+    page.get_by_role("button", name="Go to target 3").click()
+    page.get_by_role("button", name="Take the chosen ones (3)").scroll_into_view_if_needed()
+    fits(page)
+    screenshot(page, "slices-targets")
+    page.get_by_role("button", name="Take the chosen ones (3)").click()
+    expect(page.get_by_text("3 points measured at their targets.")).to_be_visible()
+    expect(page.locator(".verdict")).to_contain_text("1 more not measured")

@@ -1,0 +1,186 @@
+// Survey targets found in the whole map: proposals, of which a person takes some.
+
+import { findTargets } from "../shared/api.js";
+import { attempt, html, nothing, render, targetOf, within } from "../shared/dom.js";
+import { decimal, t } from "../shared/texts.js";
+import { AXES } from "./measured.js";
+
+/**
+ * @import {TargetList, TargetRow} from "../shared/http_types"
+ * @import {Measurement} from "./measured.js"
+ * @typedef {object} TargetsPage what the section needs of the panel
+ * @property {string} id of the project
+ * @property {() => string} crs of the survey
+ * @property {(measured: Record<string, Measurement>) => Promise<unknown>} put
+ * @property {(p_map: [number, number, number]) => void} go
+ */
+
+const MAX_OTHERS = 100;
+const KINDS = {
+  plate: t("target-plate"),
+  board: t("target-board"),
+  sphere: t("target-sphere"),
+};
+const mm = (/** @type {number | null | undefined} */ m) =>
+  m === null || m === undefined ? "–" : decimal(1000 * m, 1);
+
+/**
+ * Fills the section of targets.
+ * @param {HTMLElement} host
+ * @param {TargetsPage} page
+ */
+export function targetsSection(host, { id, crs, put, go }) {
+  const state = {
+    found: /** @type {TargetList | null} */ (null),
+    chosen: /** @type {Set<string>} */ (new Set()),
+    searching: false,
+    taken: 0,
+  };
+  const set = (/** @type {Partial<typeof state>} */ changes) => {
+    Object.assign(state, changes);
+    draw();
+  };
+  const run = (/** @type {() => Promise<unknown>} */ work) => attempt(within(host, ".error"), work);
+
+  async function search() {
+    set({ searching: true, taken: 0 });
+    try {
+      const found = await findTargets(id, crs());
+      const sure = found.rows.filter((one) => one.id && !one.ambiguous);
+      set({ found, chosen: new Set(sure.map((one) => one.id ?? "")) });
+    } finally {
+      set({ searching: false });
+    }
+  }
+
+  async function take() {
+    const rows = state.found?.rows.filter((one) => state.chosen.has(one.id ?? "")) ?? [];
+    await put(Object.fromEntries(rows.map((one) => [one.id, { p: one.p_map, along: AXES }])));
+    set({ taken: rows.length });
+  }
+
+  function choose(/** @type {string} */ name, /** @type {boolean} */ wanted) {
+    const chosen = new Set(state.chosen);
+    if (wanted) chosen.add(name);
+    else chosen.delete(name);
+    set({ chosen, taken: 0 });
+  }
+
+  function row(/** @type {TargetRow} */ one, /** @type {number} */ number) {
+    const name = one.id ?? "";
+    const [x, y, z] = one.p_map.map((value) => decimal(value, 3));
+    return html`<tr>
+      <td>
+        ${
+          name
+            ? html`<label class="check"
+                ><input
+                  type="checkbox"
+                  aria-label=${t("target-choose", { name })}
+                  .checked=${state.chosen.has(name)}
+                  @change=${(/** @type {Event} */ event) =>
+                    choose(name, /** @type {HTMLInputElement} */ (targetOf(event)).checked)}
+                /><span>${name}</span></label
+              >`
+            : "–"
+        }
+      </td>
+      <td>${KINDS[one.kind]}</td>
+      <td class="number">${mm(one.off_m)}</td>
+      <td class="number">${mm(one.sd_m)}</td>
+      <td class="number">${x} ${y} ${z}</td>
+      <td>
+        <button
+          type="button"
+          class="go"
+          aria-label=${t("target-go", { number: number + 1 })}
+          @click=${() => go(one.p_map)}
+        >
+          ${t("go")}
+        </button>
+      </td>
+    </tr>`;
+  }
+
+  function table(/** @type {TargetRow[]} */ rows, first = 0) {
+    const heads = ["target-point", "target-kind", "target-off", "target-sd"];
+    return html`<div class="scroll">
+      <table>
+        <thead>
+          <tr>
+            ${heads.map(
+              (text, k) => html`<th scope="col" class=${k > 1 ? "number" : ""}>${t(text)}</th>`,
+            )}
+            <th scope="col" class="number">x y z [m]</th>
+            <th scope="col">${t("where")}</th>
+          </tr>
+        </thead>
+        <tbody>
+          ${rows.map((one, k) => row(one, first + k))}
+        </tbody>
+      </table>
+    </div>`;
+  }
+
+  function outcome(/** @type {TargetList} */ { rows, missing, rmse_m }) {
+    if (!rows.length) return html`<p>${t("targets-none")}</p>`;
+    const named = rows.filter((one) => one.id);
+    const others = rows.filter((one) => !one.id);
+    const count = named.length + (missing?.length ?? 0);
+    const doubtful = named.filter((one) => one.ambiguous).map((one) => one.id);
+    return html`${
+      !count
+        ? nothing
+        : named.length
+          ? html`<p>${t("targets-named", { named: named.length, count, off: mm(rmse_m) })}</p>`
+          : html`<p class="bad">✕ ${t("targets-unnamed")}</p>`
+    }
+    ${
+      doubtful.length
+        ? html`<p class="bad">✕ ${t("targets-ambiguous", { names: doubtful.join(", ") })}</p>`
+        : nothing
+    }
+    ${
+      named.length && missing?.length
+        ? html`<p>${t("targets-missing", { names: missing.join(", ") })}</p>`
+        : nothing
+    }
+    ${
+      named.length
+        ? html`${table(named)}
+            <div class="buttons">
+              <button type="button" ?disabled=${!state.chosen.size} @click=${() => run(take)}>
+                ${t("targets-take", { count: state.chosen.size })}
+              </button>
+            </div>`
+        : nothing
+    }
+    ${
+      others.length
+        ? html`<details ?open=${!named.length}>
+            <summary>${t("targets-others", { count: others.length })}</summary>
+            ${table(others.slice(0, MAX_OTHERS), named.length)}
+          </details>`
+        : nothing
+    }`;
+  }
+
+  function draw() {
+    const { found, searching, taken } = state;
+    render(
+      html`<h3>${t("targets-of-map")}</h3>
+        <p class="quiet">${t("targets-are")}</p>
+        <div class="buttons">
+          <button type="button" ?disabled=${searching} @click=${() => run(search)}>
+            ${searching ? t("searching-targets") : t("find-targets")}
+          </button>
+        </div>
+        <p class="quiet" role="status">${taken ? t("targets-taken", { count: taken }) : ""}</p>
+        <p class="error" role="alert"></p>
+        ${found ? outcome(found) : nothing}`,
+      host,
+    );
+  }
+
+  draw();
+}
