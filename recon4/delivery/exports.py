@@ -58,6 +58,7 @@ def export_file(
         sha256=digest.sha256,
         text=text,
         approval=state.text,
+        approval_line=state.line,
         map_key=keys["map"],
         recon4=recon4.__version__,
         points=points,

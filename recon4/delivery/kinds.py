@@ -7,6 +7,7 @@ from typing import Any
 
 from recon4.errors import ConfigError
 from recon4.export.options import ExportOptions
+from recon4.locales.coded import StoredText
 from recon4.untrusted.names import visible
 
 _ALWAYS = ("draft",)
@@ -49,6 +50,8 @@ class ExportedFile:
     """What is in it, in words."""
     approval: str
     """State of the approval of the map, in one line."""
+    approval_line: StoredText | None = None
+    """The same with its code and values; None = written by an earlier version."""
     map_key: str
     """Artifact of the map that it was made of."""
     recon4: str

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -25,7 +24,7 @@ from recon4.review.acknowledgments import (
     seen_finding,
     seen_findings,
 )
-from recon4.review.approval_state import ApprovalKind, ApprovalState, latest_state
+from recon4.review.approval_state import ApprovalState, latest_state
 from recon4.review.approved import Approval, approval_of
 from recon4.review.decisions import DecisionKind
 from recon4.review.journal import JournalRow, read_rows
@@ -36,7 +35,6 @@ from recon4.store.project import read_artifacts
 from recon4.store.seal import check_sealed
 
 SUMMARY, HTML = "summary.json", "report.html"
-_NEWER = re.compile(r"; version (\d+) is newer$")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,15 +191,7 @@ def _signature(
 
 def said_state(state: ApprovalState, texts: Words) -> str:
     """The line of an approval in the words of a language."""
-    if state.who == "" or state.version is None:
-        return texts.term(state.text)
-    version, day = str(state.version), state.time[:10]
-    parts = [texts("signature.approved", version=version, who=state.who, date=day)]
-    if newer := _NEWER.search(state.text):
-        parts.append(texts("signature.newer", version=newer[1]))
-    elif state.kind is ApprovalKind.CHANGED:
-        parts.append(texts("signature.changed"))
-    return "; ".join(parts)
+    return state.line.said(texts.language)
 
 
 def _notes(

@@ -60,14 +60,18 @@ class StoredText:
 
     text: str
     code: str = ""
-    values: dict[str, Shown] = field(default_factory=dict)
+    values: dict[str, int | float | str] = field(default_factory=dict)
 
     @staticmethod
     def of(text: str) -> StoredText:
         """What is stored of a text."""
         if not isinstance(text, CodedText):
             return StoredText(text=text)
-        return StoredText(text=str(text), code=text.code, values=dict(text.values))
+        values = {
+            name: int(value) if isinstance(value, bool) else value
+            for name, value in text.values.items()
+        }
+        return StoredText(text=str(text), code=text.code, values=values)
 
     def said(self, language: str) -> str:
         """The text in a language; in English if it has no code that is known."""

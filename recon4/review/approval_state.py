@@ -11,6 +11,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, StoredText
+from recon4.locales.texts import Shown
 from recon4.review.approved import Approval, NotInJournal, approval_of
 from recon4.review.decisions import DecisionKind, fold
 from recon4.review.journal import JournalRow, read_rows
@@ -47,6 +49,8 @@ class ApprovalState:
     kind: ApprovalKind
     text: str
     """One line, shown wherever a file of the results is offered."""
+    line: StoredText
+    """The same with its code and values, to be said in another language."""
     detail: str = ""
     """Why it does not count, and what to do; empty if there is no more to say."""
     version: int | None = None
@@ -63,8 +67,14 @@ class ApprovalState:
     """Whether the bytes of the results are just being compared with the signed hashes."""
 
 
-NOT_APPROVED = ApprovalState(kind=ApprovalKind.DRAFT, text="Draft: not approved")
-WRITTEN_AS_DRAFT = ApprovalState(kind=ApprovalKind.DRAFT, text="Draft: written without approval")
+def _draft(code: str, text: str) -> ApprovalState:
+    """The state of a draft; importing this module reads no texts."""
+    line = StoredText(text=text, code=code)
+    return ApprovalState(kind=ApprovalKind.DRAFT, text=text, line=line)
+
+
+NOT_APPROVED = _draft("approval-draft", "Draft: not approved")
+WRITTEN_AS_DRAFT = _draft("approval-written-as-draft", "Draft: written without approval")
 """Of a file whose writer asked for that."""
 
 
@@ -81,14 +91,14 @@ def approval_state(root: Path, keys: Mapping[str, str]) -> ApprovalState:
     try:
         return _state(read_rows(root), approval_of(root, keys))
     except UnknownSigner as error:
-        text = f"Signed by unknown key {error.key}: not counted as approved"
-        return ApprovalState(kind=ApprovalKind.UNKNOWN_SIGNER, text=text, detail=str(error))
+        line = CodedText("approval-unknown-key", key=error.key)
+        return replace(_state_of(ApprovalKind.UNKNOWN_SIGNER, line), detail=str(error))
     except Older as error:
-        return not_valid("Not approved: older than what this server approved", error)
+        return not_valid(CodedText("approval-older"), error)
     except NotInJournal as error:
-        return not_valid("Not approved: an approval is missing in the journal", error)
+        return not_valid(CodedText("approval-not-in-journal"), error)
     except StoreError as error:
-        return not_valid("Not approved: the approval is not valid", error)
+        return not_valid(CodedText("approval-invalid"), error)
 
 
 def latest_state(project: Path, *, draft: bool = False) -> ApprovalState:
@@ -103,17 +113,16 @@ def latest_state(project: Path, *, draft: bool = False) -> ApprovalState:
     return approval_state(project, {stage: folder.name for stage, folder in artifacts.items()})
 
 
-def not_valid(text: str, error: StoreError) -> ApprovalState:
+def not_valid(line: CodedText, error: StoreError) -> ApprovalState:
     """The state of an approval that was altered."""
-    return ApprovalState(
-        kind=ApprovalKind.NOT_VALID, text=text, detail=visible(str(error), most=800)
-    )
+    state = _state_of(ApprovalKind.NOT_VALID, line)
+    return replace(state, detail=visible(str(error), most=800))
 
 
 def altered(state: ApprovalState, why: str) -> ApprovalState:
     """The state when bytes turned out to differ from those that were approved."""
-    text = f"Altered since the approval of version {state.version}"
-    return replace(state, kind=ApprovalKind.NOT_VALID, text=text, detail=why)
+    line = CodedText("approval-altered", version=state.version or 0)
+    return replace(_with(state, ApprovalKind.NOT_VALID, line), detail=why)
 
 
 def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalState:
@@ -122,12 +131,12 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
         return NOT_APPROVED
     newest = len(approving)
     if approval is None:
-        text = f"Draft: changed since version {newest}"
-        return ApprovalState(kind=ApprovalKind.CHANGED, text=text, version=newest)
+        line = CodedText("approval-changed", version=newest)
+        return replace(_state_of(ApprovalKind.CHANGED, line), version=newest)
     stamp = approval.stamp
-    state = ApprovalState(
-        kind=ApprovalKind.APPROVED,
-        text=_signed(stamp),
+    signed = _signed(stamp)
+    state = replace(
+        _state_of(ApprovalKind.APPROVED, CodedText("approval-signed", **signed)),
         version=stamp.version,
         who=visible(stamp.who, most=APPROVAL_NAMES.max_name),
         time=stamp.time,
@@ -136,14 +145,22 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
         why=visible(" ".join(stamp.why.split()), most=LIMITS.note),
     )
     if stamp.version < newest:
-        text = f"{state.text}; version {newest} is newer"
-        return replace(state, kind=ApprovalKind.EARLIER, text=text)
+        line = CodedText("approval-earlier", newest=newest, **signed)
+        return _with(state, ApprovalKind.EARLIER, line)
     if approval.decisions != fold(row.decision() for row in rows).key:
-        text = f"{state.text}; changed since: later decisions are not in this map"
-        return replace(state, kind=ApprovalKind.CHANGED, text=text)
+        return _with(state, ApprovalKind.CHANGED, CodedText("approval-decided-since", **signed))
     return state
 
 
-def _signed(stamp: Stamp) -> str:
+def _state_of(kind: ApprovalKind, line: CodedText) -> ApprovalState:
+    return ApprovalState(kind=kind, text=str(line), line=StoredText.of(line))
+
+
+def _with(state: ApprovalState, kind: ApprovalKind, line: CodedText) -> ApprovalState:
+    return replace(state, kind=kind, text=str(line), line=StoredText.of(line))
+
+
+def _signed(stamp: Stamp) -> dict[str, Shown]:
+    """Values of the texts about a signed version."""
     who = visible(stamp.who, most=APPROVAL_NAMES.max_name)
-    return f"Approved v{stamp.version} · {who} · {stamp.time[:10]}"
+    return {"version": stamp.version, "who": who, "day": stamp.time[:10]}

@@ -16,7 +16,6 @@ from recon4.evaluation.reference_mesh import TriangleMesh, scene_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.locales.coded import CodedText, StoredText
 from recon4.locales.languages import ENGLISH
-from recon4.locales.texts import Shown
 from recon4.mapping.tiles import TileSet
 from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.slices.points import SliceWindow, points_in
@@ -280,7 +279,7 @@ def _with_statements(record: Mapping[str, object]) -> dict[str, object]:
 def _visible(statements: Statements) -> Statements:
     """Statements of a file, fit to be shown."""
 
-    def shown(value: Shown) -> Shown:
+    def shown(value: float | str) -> float | str:
         return visible(value, most=REFERENCES.longest_note) if isinstance(value, str) else value
 
     return tuple(

@@ -16,9 +16,6 @@ from recon4.slices.reference import FAR, FITS, MISFIT, Reference
 from recon4.slices.tuning import REFERENCE_FIT
 from recon4.slices.tuning_files import REFERENCES
 
-_NONE = -1.0
-"""In a text, of a ratio that is not known."""
-
 
 @dataclass(frozen=True, slots=True)
 class ReferenceFit:
@@ -127,8 +124,13 @@ def _judged(near: float, walls: float | None, level: float | None) -> ReferenceF
     fits = all(ratio >= REFERENCE_FIT.least_agreeing for ratio in known)
     text = CodedText(
         FITS if fits else MISFIT,
-        walls=_NONE if walls is None else walls,
-        level=_NONE if level is None else level,
+        walls=_quoted(walls),
+        level=_quoted(level),
         limit_cm=round(100.0 * REFERENCE_FIT.on_m),
     )
     return ReferenceFit(near, walls, level, fits, text)
+
+
+def _quoted(ratio: float | None) -> float:
+    """A ratio as texts quote it; negative = not known."""
+    return -1.0 if ratio is None else ratio

@@ -114,7 +114,13 @@ export function drawProfile(element, act) {
         <button type="button" @click=${act.close}>${t("close")}</button>
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
-      ${image ? plot(image, room(element)) : problem ? nothing : html`<p class="quiet">${t("drawing")}</p>`}`,
+      ${
+        image
+          ? plot(image, room(element))
+          : problem
+            ? nothing
+            : html`<p class="quiet">${t("drawing")}</p>`
+      }`,
     element,
   );
 }

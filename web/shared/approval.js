@@ -2,7 +2,7 @@
 
 import { t, wordOf } from "./texts.js";
 
-/** @import {ApprovalState} from "./http_types" */
+/** @import {ApprovalState, StoredText} from "./http_types" */
 
 /** @type {Record<string, [string, string]>} */
 const LEVELS = {
@@ -16,7 +16,7 @@ const LEVELS = {
 
 /** Mark, line and CSS class; nothing is marked as approved while its bytes are being compared. */
 export function approvalLine(
-  /** @type {Pick<ApprovalState, "kind" | "text" | "checking">} */ state,
+  /** @type {Pick<ApprovalState, "kind" | "text" | "line" | "checking">} */ state,
 ) {
   const { kind, checking } = state;
   const [mark, level] = LEVELS[kind];
@@ -25,22 +25,10 @@ export function approvalLine(
   return { text: `◷ ${t("approval-checking", { text })}`, level: "" };
 }
 
-/** The line of the server in the language of the page. */
-export function approvalWords(/** @type {Pick<ApprovalState, "text">} */ { text }) {
-  const found = text.match(/^Approved v(\d+) · (.*) · (\d{4}-\d\d-\d\d)(.*)$/);
-  if (!found) return phrase(text);
-  const [, version = "", who = "", day = "", more = ""] = found;
-  return t("approval-signed", { version, who, day }) + phrase(more);
-}
-
-/** A part of the line of the server, which may name a version or a key. */
-function phrase(/** @type {string} */ text) {
-  const version = text.match(/(?<=version )\d+/)?.[0] ?? "";
-  const key = text.match(/(?<=unknown key )\S+(?=:)/)?.[0] ?? "";
-  const named = text.replace(version, "").replace(key, "");
-  const words = wordOf("approval", named, { version, key });
-  return words === named ? text : words;
-}
+/** The line of an approval in the language of the page. */
+export const approvalWords = (
+  /** @type {{text: string, line: StoredText | null}} */ { text, line },
+) => (line?.code ? t(line.code, line.values) : text);
 
 /** Whether the files carry an approval that does not count. */
 export const isRefused = (/** @type {Pick<ApprovalState, "kind">} */ { kind }) =>

@@ -75,6 +75,7 @@ export type ApprovalKind = "draft" | "approved" | "earlier" | "changed" | "unkno
 export interface ApprovalState {
   kind: ApprovalKind;
   text: string;
+  line: StoredText;
   detail: string;
   version: number | null;
   who: string;
@@ -542,6 +543,7 @@ export interface ExportedFile {
   sha256: string;
   text: string;
   approval: string;
+  approval_line: StoredText | null;
   map_key: string;
   recon4: string;
   points: number;
@@ -1708,6 +1710,12 @@ export interface StoredPart {
   why: string;
   kept: Kept | null;
   version: number | null;
+}
+
+export interface StoredText {
+  text: string;
+  code: string;
+  values: Record<string, number | string>;
 }
 
 export interface Storey {

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.approval_state import ApprovalState, approval_state, not_valid
 from recon4.review.state import artifact_keys
 from recon4.store.earlier_names import SUMMARY, current_names
@@ -45,7 +46,7 @@ def approval_in(folder: Path, summary: dict[str, object]) -> ApprovalState:
     try:
         return approval_state(folder, artifact_keys(summary))
     except StoreError as error:
-        return not_valid("Not approved: the approval cannot be read", error)
+        return not_valid(CodedText("approval-unreadable"), error)
 
 
 def tags_of(facts: dict[str, object]) -> tuple[str, ...]:

@@ -152,16 +152,17 @@ walk-axis = Zeit der Begehung, 0 bis { $end } s, mit Befunden: { $findings }
 ## Freigaben
 
 approval-signed = Freigegeben v{ $version } · { $who } · { $day }
-approval-draft-not-approved = Entwurf: nicht freigegeben
-approval-draft-written-without-approval = Entwurf: ohne Freigabe geschrieben
-approval-draft-changed-since-version = Entwurf: geändert seit Version { $version }
-approval-version-is-newer = ; Version { $version } ist neuer
-approval-changed-since-later-decisions-are-not-in-this-map = ; seither geändert: spätere Entscheidungen sind nicht in dieser Karte
-approval-altered-since-the-approval-of-version = Verändert seit der Freigabe von Version { $version }
-approval-signed-by-unknown-key-not-counted-as-approved = Signiert mit unbekanntem Schlüssel { $key }: gilt nicht als freigegeben
-approval-not-approved-older-than-what-this-server-approved = Nicht freigegeben: älter als das, was dieser Server freigegeben hat
-approval-not-approved-an-approval-is-missing-in-the-journal = Nicht freigegeben: im Journal fehlt eine Freigabe
-approval-not-approved-the-approval-is-not-valid = Nicht freigegeben: die Freigabe ist ungültig
+approval-draft = Entwurf: nicht freigegeben
+approval-written-as-draft = Entwurf: ohne Freigabe geschrieben
+approval-changed = Entwurf: geändert seit Version { $version }
+approval-earlier = Freigegeben v{ $version } · { $who } · { $day }; Version { $newest } ist neuer
+approval-decided-since = Freigegeben v{ $version } · { $who } · { $day }; seither geändert: spätere Entscheidungen sind nicht in dieser Karte
+approval-altered = Verändert seit der Freigabe von Version { $version }
+approval-unknown-key = Signiert mit unbekanntem Schlüssel { $key }: gilt nicht als freigegeben
+approval-older = Nicht freigegeben: älter als das, was dieser Server freigegeben hat
+approval-not-in-journal = Nicht freigegeben: im Journal fehlt eine Freigabe
+approval-invalid = Nicht freigegeben: die Freigabe ist ungültig
+approval-unreadable = Nicht freigegeben: die Freigabe ist nicht lesbar
 approval-checking = { $text }; die Bytes werden mit der Signatur verglichen
 in-spite-of = , trotz der Beurteilung „{ $verdict }“
 usability-check = prüfen

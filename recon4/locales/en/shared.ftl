@@ -152,16 +152,17 @@ walk-axis = Time of the walk, 0 to { $end } s, with findings: { $findings }
 ## Approvals
 
 approval-signed = Approved v{ $version } · { $who } · { $day }
-approval-draft-not-approved = Draft: not approved
-approval-draft-written-without-approval = Draft: written without approval
-approval-draft-changed-since-version = Draft: changed since version { $version }
-approval-version-is-newer = ; version { $version } is newer
-approval-changed-since-later-decisions-are-not-in-this-map = ; changed since: later decisions are not in this map
-approval-altered-since-the-approval-of-version = Altered since the approval of version { $version }
-approval-signed-by-unknown-key-not-counted-as-approved = Signed by unknown key { $key }: not counted as approved
-approval-not-approved-older-than-what-this-server-approved = Not approved: older than what this server approved
-approval-not-approved-an-approval-is-missing-in-the-journal = Not approved: an approval is missing in the journal
-approval-not-approved-the-approval-is-not-valid = Not approved: the approval is not valid
+approval-draft = Draft: not approved
+approval-written-as-draft = Draft: written without approval
+approval-changed = Draft: changed since version { $version }
+approval-earlier = Approved v{ $version } · { $who } · { $day }; version { $newest } is newer
+approval-decided-since = Approved v{ $version } · { $who } · { $day }; changed since: later decisions are not in this map
+approval-altered = Altered since the approval of version { $version }
+approval-unknown-key = Signed by unknown key { $key }: not counted as approved
+approval-older = Not approved: older than what this server approved
+approval-not-in-journal = Not approved: an approval is missing in the journal
+approval-invalid = Not approved: the approval is not valid
+approval-unreadable = Not approved: the approval cannot be read
 approval-checking = { $text }; its bytes are being compared with the signature
 in-spite-of = , in spite of the verdict “{ $verdict }”
 usability-check = check

@@ -20,6 +20,7 @@ from recon4.delivery.pdf_signature import Organization, sign_pdf, signatures_in
 from recon4.delivery.report_files import ReportWish, report_of, said_state, server_key, write_pdf
 from recon4.errors import ConfigError, StoreError
 from recon4.findings.wording import title_of
+from recon4.locales.coded import CodedText, StoredText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import Verdict
 from recon4.report import pdf
@@ -308,14 +309,12 @@ def test_a_german_report_has_german_words_and_commas_but_names_as_given(room):
     )
     assert say.decimal("192.168.1.201, 0.2.0, -0.5 m") == "192.168.1.201, 0.2.0, -0,5 m"
     assert say.label("sensor moving") == "Sensor moving"
+    line = CodedText("approval-earlier", version=1, who="Ann", day="2026-11-27", newest=3)
     state = ApprovalState(
-        kind=ApprovalKind.EARLIER,
-        text="Approved v1 · Ann · 2026-11-27; version 3 is newer",
-        version=1,
-        who="Ann",
-        time="2026-11-27T10:00",
+        kind=ApprovalKind.EARLIER, text=str(line), line=StoredText.of(line), version=1
     )
     assert said_state(state, say) == "Freigegeben v1 · Ann · 2026-11-27; Version 3 ist neuer"
     assert said_state(state, words()) == state.text
+    assert state.text == "Approved v1 · Ann · 2026-11-27; version 3 is newer"
     found = [one for section in report.sections for one in section.findings]
     assert found and all(one.title == title_of(FindingKind(one.code), "de") for one in found)
