@@ -23,7 +23,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import OptimizeResult, least_squares
-from scipy.signal import correlate
 
 from recon4.calibration.tuning_methods import TRAJECTORY_PAIR, TrajectoryPairTuning
 from recon4.errors import CalibrationError
@@ -117,6 +116,8 @@ def align_trajectories(
 
 def _coarse_offset_s(a: Trajectory, b: Trajectory, settings: TrajectoryPairTuning) -> float:
     """Shift of b's clock at which the lengths of rotation vectors correlate best [s]."""
+    from scipy.signal import correlate  # slow to import
+
     turn_a, turn_b = (_turn_lengths(one, settings) for one in (a, b))
     both = correlate(turn_a - turn_a.mean(), turn_b - turn_b.mean())
     # Long shifts leave little in common: weigh the sum by what would be there by chance.
