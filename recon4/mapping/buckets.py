@@ -58,8 +58,17 @@ class TileBuckets:
         return in_voxel_order(np.fromfile(path, RECORD), self._grid)
 
     def drop(self, tile: Tile) -> None:
-        """Remove the file of a finished tile."""
-        self._path(tile).unlink()
+        """Remove the file of a finished tile; an earlier process may have done so."""
+        self._path(tile).unlink(missing_ok=True)
+
+    @property
+    def counts(self) -> dict[Tile, list[int]]:
+        """Records of each run that was written, by tile."""
+        return self._counts
+
+    def take(self, counts: dict[Tile, list[int]]) -> None:
+        """Go on with the files of an earlier process, by its `counts`."""
+        self._counts = counts
 
     def _thinned(self, parts: list[Records]) -> Records:
         records = _taken(parts)

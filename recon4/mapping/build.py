@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +19,13 @@ from recon4.mapping.cell_runs import CellRuns
 from recon4.mapping.class_corrections import ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
+from recon4.mapping.made_tiles import (
+    MadeTiles,
+    TileCounts,
+    keep_placed,
+    placing_folder,
+    take_placed,
+)
 from recon4.mapping.map_notes import MapCrs, MapNotes
 from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
@@ -96,13 +103,14 @@ def build_map(
         OutOfRange: If the trajectory does not cover the frames.
         StoreError: If the folder cannot be written (`NoSpace` when the disk is full).
     """
-    progress = progress or Silent()
-    grid, rig = Grid.of(settings), inputs.frames.rig
+    progress, grid, rig = progress or Silent(), Grid.of(settings), inputs.frames.rig
     noise_m = settings.range_noise_m or surface_noise_m(rig)
-    with TemporaryDirectory(dir=out, prefix="buckets-") as folder:
-        buckets = TileBuckets(Path(folder), grid, burst=burst)
-        cells = CellRuns(Path(folder))
-        starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
+    with placing_folder(out) as folder:
+        buckets, cells = TileBuckets(folder, grid, burst=burst), CellRuns(folder)
+        starts = take_placed(folder, buckets, cells)
+        if starts is None:
+            starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
+            keep_placed(folder, buckets, cells, starts=starts)
         structure = find_structure(cells, inputs.trajectory.T_a_b.t)
         del cells
         paths = SensorPaths.of(starts, inputs.trajectory, rig)
@@ -118,8 +126,7 @@ def build_map(
                 classes=dict(done.classes),
                 corrected=_counts(inputs.corrections, done.corrected),
             )
-    made = TileSet.open(out)
-    progress.event(MapBuilt(points=len(made), removed=dict(done.removed)))
+    progress.event(MapBuilt(points=len(made := TileSet.open(out)), removed=dict(done.removed)))
     return made
 
 
@@ -187,42 +194,35 @@ _Counted = tuple[Placed, NDArray[np.bool_], NDArray[np.uint8]]
 """Arguments of `CellRuns.add`."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Done:
-    """What became of points."""
-
-    removed: Counter[str]
-    corrected: Counter[int]
-    """Number of a correction of classes -> how many points it changed."""
-    classes: Counter[int]
-    """Code of a class -> how many points have it."""
-
-
 def _finish_tile(
     tile: Tile, records: Records, *, recipe: Recipe, means: TileMeans, writer: TileWriter
-) -> tuple[PackedTile, _Done]:
+) -> tuple[PackedTile, TileCounts]:
     """Make a tile and compress it."""
     made = make_tile(records, tile, recipe, means=means)
     packed = writer.pack(tile, made.blocks, points=made.points, strays=made.strays, each=means.each)
-    return packed, _Done(made.removed, made.corrected, made.classes)
+    return packed, TileCounts(made.removed, made.corrected, made.classes)
 
 
 def _finish_tiles(
     buckets: TileBuckets, recipe: Recipe, writer: TileWriter, *, progress: Progress
-) -> _Done:
+) -> TileCounts:
     """Write all tiles; what became of their points."""
     removed: Counter[str] = Counter()
     corrected: Counter[int] = Counter()
     classes: Counter[int] = Counter()
-    tiles = buckets.tiles()
+    tiles, log = buckets.tiles(), MadeTiles()
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        made = _made_tiles(buckets, pool, recipe=recipe, writer=writer)
-        for packed, part in track(made, progress, what="map", unit="tiles", total=len(tiles)):
+        rest = _made_tiles(buckets, tiles[len(log) :], pool, recipe=recipe, writer=writer)
+        made = chain(log.earlier(), map(log.kept, rest))
+        for tile, (packed, part) in zip(
+            tiles, track(made, progress, what="map", unit="tiles", total=len(tiles)), strict=True
+        ):
             writer.write(packed)
+            buckets.drop(tile)
             removed += part.removed
             corrected += part.corrected
             classes += part.classes
-    return _Done(removed, corrected, classes)
+    return TileCounts(removed, corrected, classes)
 
 
 def _counts(corrections: ClassVolumes | None, changed: Counter[int]) -> tuple[int, ...]:
@@ -230,19 +230,23 @@ def _counts(corrections: ClassVolumes | None, changed: Counter[int]) -> tuple[in
 
 
 def _made_tiles(
-    buckets: TileBuckets, pool: ThreadPoolExecutor, *, recipe: Recipe, writer: TileWriter
-) -> Iterator[tuple[PackedTile, _Done]]:
+    buckets: TileBuckets,
+    tiles: Sequence[Tile],
+    pool: ThreadPoolExecutor,
+    *,
+    recipe: Recipe,
+    writer: TileWriter,
+) -> Iterator[tuple[PackedTile, TileCounts]]:
     """Tiles in their order: several small ones at a time, of a large one several parts.
 
     So there is never more than one large tile in memory.
     """
     finish = partial(_finish_tile, recipe=recipe, writer=writer)
     small, large = TileMeans(Scratch()), TileMeans(None, partial(in_order, pool))
-    waiting: deque[Future[tuple[PackedTile, _Done]]] = deque()
+    waiting: deque[Future[tuple[PackedTile, TileCounts]]] = deque()
     try:
-        for tile in buckets.tiles():
+        for tile in tiles:
             records = buckets.read(tile)
-            buckets.drop(tile)
             is_large = len(records) >= MAP_BUILD.large
             if not is_large:
                 waiting.append(pool.submit(finish, tile, records, means=small))

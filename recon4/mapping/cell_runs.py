@@ -58,7 +58,7 @@ class CellRuns:
             part = slice(start, start + room // 2)
             count = len(echo[part])
             if self._used + count > room or self._returns + count > RUNS.returns:
-                self._write_run()
+                self.flush()
             xyz, origin = placed.xyz_m[part], placed.origin_m[part]
             counted = chosen[part], echo[part]
             self._used = add_returns(
@@ -77,7 +77,7 @@ class CellRuns:
         Raises:
             OSError: If a run cannot be written or read.
         """
-        self._write_run()
+        self.flush()
         last = self._last_run(least, most) if sum(self._rows) > most else len(self._rows)
         for cells, first in self._slabs(least):
             kept = first <= last
@@ -106,7 +106,21 @@ class CellRuns:
             rows = order[starts[kept]]
             yield MergedCells(key[rows], sums[kept]), run_of[rows]
 
-    def _write_run(self) -> None:
+    @property
+    def rows(self) -> list[int]:
+        """Cells of each run in the folder."""
+        return self._rows
+
+    def take(self, rows: list[int]) -> None:
+        """Go on with the runs of an earlier process, by its `rows`."""
+        self._rows = rows
+
+    def flush(self) -> None:
+        """Write the table as a run, if it has returns.
+
+        Raises:
+            OSError: If it cannot be written.
+        """
         if not self._used:
             return
         rows = np.flatnonzero(self._sums.key >= 0)

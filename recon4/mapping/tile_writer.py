@@ -29,7 +29,7 @@ from recon4.store.frames import storing
 
 
 @dataclass(slots=True, kw_only=True)
-class _TileRow:
+class TileRow:
     """A tile in ``tiles.json``; the fields are its keys."""
 
     ijk: list[int]
@@ -42,7 +42,7 @@ class _TileRow:
     time_ns: list[int] = field(default_factory=list)
     """Times of its first and last point [ns], (2,)."""
 
-    def extend(self, block: _Block) -> None:
+    def extend(self, block: TileBlock) -> None:
         """Extend the bounds by the points of a block."""
         self.low_m = np.fmin(self.low_m, block.low_m).tolist()
         self.high_m = np.fmax(self.high_m, block.high_m).tolist()
@@ -51,7 +51,7 @@ class _TileRow:
 
 
 @dataclass(frozen=True, slots=True)
-class _Block:
+class TileBlock:
     """A compressed block."""
 
     count: int
@@ -70,10 +70,10 @@ class _Block:
 class PackedTile:
     """A tile as it will be stored."""
 
-    row: _TileRow
+    row: TileRow
     count: int
     """Rows, stray returns included."""
-    blocks: list[_Block]
+    blocks: list[TileBlock]
 
 
 class TileWriter:
@@ -102,7 +102,7 @@ class TileWriter:
         self._fields = list(fields)
         self._tile_m = tile_m
         self._paths = paths or SensorPaths()
-        self._rows: list[_TileRow] = []
+        self._rows: list[TileRow] = []
         self._points = 0
         self._index: list[tuple[int, list[int], list[int]]] = []
         self._ends = [0] * len(self._fields)
@@ -158,9 +158,9 @@ class TileWriter:
             each: Threads for the blocks.
         """
         origin_m = np.array(ijk) * self._tile_m
-        row = _TileRow(ijk=list(ijk), origin_m=origin_m.tolist())
+        row = TileRow(ijk=list(ijk), origin_m=origin_m.tolist())
         row.strays = strays
-        packed: list[_Block] = []
+        packed: list[TileBlock] = []
         first = 0
         for block in each(partial(self._block, origin_m=origin_m), blocks):
             # A tile of strays only has their bounds: every tile has some.
@@ -170,7 +170,7 @@ class TileWriter:
             first += block.count
         return PackedTile(row, first, packed)
 
-    def _block(self, make: Callable[[], Columns], *, origin_m: Array) -> _Block:
+    def _block(self, make: Callable[[], Columns], *, origin_m: Array) -> TileBlock:
         columns = make()
         began_ns = self._began_ns(columns)
         within_ns = columns["t_ns"] - began_ns
@@ -180,7 +180,7 @@ class TileWriter:
         t_ns = began_ns + as_stored("t_ns", within_ns)
         columns = columns | {"t_ns": within_ns}
         made = [pack(name, columns[name]) for name in self._fields]
-        return _Block(
+        return TileBlock(
             len(columns["xyz"]),
             [one.data for one in made],
             [one.width for one in made],
@@ -236,7 +236,7 @@ def _rows_of(columns: Columns, rows: NDArray[np.intp]) -> Columns:
     return {name: np.take(values, rows, axis=0) for name, values in columns.items()}
 
 
-def _listed(rows: Iterable[_TileRow]) -> Iterator[dict[str, object]]:
+def _listed(rows: Iterable[TileRow]) -> Iterator[dict[str, object]]:
     """Entries of ``tiles.json``; the number of stray returns only where there are some."""
     for row in rows:
         listed = asdict(row)

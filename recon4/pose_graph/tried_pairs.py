@@ -36,7 +36,7 @@ class TriedPairs:
     def __init__(self, log: RecordLog) -> None:
         """Take up the pairs of an earlier process."""
         self._log, self._lock = log, threading.Lock()
-        found = [msgspec.msgpack.decode(record, type=_Tried) for record in log.earlier]
+        found = [msgspec.msgpack.decode(record, type=_Tried) for record in log]
         self._tried: Mapping[bytes, _Tried] = {one.pair: one for one in found}
 
     def known(self, pairs: Sequence[Pair]) -> dict[int, Edge]:

@@ -32,7 +32,7 @@ class MatchedFrames:
     def __init__(self, number: int) -> None:
         """Take up what an earlier process has matched in the round of this number."""
         self._log = RecordLog(unfinished_file(f"round-{number}"))
-        found = (np.frombuffer(record, np.float64) for record in self._log.earlier)
+        found = (np.frombuffer(record, np.float64) for record in self._log)
         self._known = {int(values[0]): _matched(values[1:]) for values in found}
 
     def get(self, row: int) -> MatchedFrame | None:
@@ -56,9 +56,9 @@ class RefinedRounds:
 
     def get(self, number: int) -> tuple[Array, RefineRound] | None:
         """Corrections of the knots (K, 6) and figures of a round; None = it was not finished."""
-        if number >= len(self._log.earlier):
+        if number >= len(self._log):
             return None
-        values = np.frombuffer(self._log.earlier[number], np.float64)
+        values = np.frombuffer(self._log[number], np.float64)
         step = values[2:].reshape(-1, 6)
         return step, _figures(step, mean_m=float(values[0]), match_ratio=float(values[1]))
 

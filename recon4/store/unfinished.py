@@ -8,6 +8,7 @@ is kept.
 
 from __future__ import annotations
 
+import os
 import shutil
 import struct
 import weakref
@@ -84,19 +85,32 @@ class RecordLog:
         Raises:
             OSError: If it cannot be opened.
         """
-        self.earlier: list[bytes] = []
-        """Records of earlier processes."""
         self._file: BinaryIO | None = None
+        self._earlier: list[tuple[int, int]] = []
+        """First byte and size of each record of earlier processes."""
         if path is None:
             return
         self._file = path.open("r+b" if path.exists() else "w+b", buffering=0)
         weakref.finalize(self, self._file.close)
-        whole = 0
-        for record in _records(self._file.read()):
-            self.earlier.append(record)
-            whole += _HEAD.size + len(record)
-        self._file.truncate(whole)
-        self._file.seek(whole)
+        end = 0
+        while (record := _record_at(self._file, end)) is not None:
+            self._earlier.append((end + _HEAD.size, len(record)))
+            end += _HEAD.size + len(record)
+        self._file.truncate(end)
+        self._file.seek(end)
+
+    def __len__(self) -> int:
+        """Number of records of earlier processes."""
+        return len(self._earlier)
+
+    def __iter__(self) -> Iterator[bytes]:
+        return (self[k] for k in range(len(self)))
+
+    def __getitem__(self, k: int) -> bytes:
+        """Record ``k`` of earlier processes."""
+        first, size = self._earlier[k]
+        assert self._file is not None
+        return os.pread(self._file.fileno(), size, first)
 
     def append(self, record: bytes) -> None:
         """Add a record; what a killed process has added is there.
@@ -105,18 +119,20 @@ class RecordLog:
             OSError: If the disk is full.
         """
         if self._file is not None:
-            self._file.write(_HEAD.pack(len(record), zlib.crc32(record, 1)) + record)
+            self._file.write(_HEAD.pack(len(record), zlib.crc32(record, 1)))
+            self._file.write(record)
 
 
-def _records(data: bytes) -> Iterator[bytes]:
-    at = 0
-    while at + _HEAD.size <= len(data):
-        size, crc = _HEAD.unpack_from(data, at)
-        record = data[at + _HEAD.size : at + _HEAD.size + size]
-        if len(record) < size or zlib.crc32(record, 1) != crc:
-            return
-        yield record
-        at += _HEAD.size + size
+def _record_at(file: BinaryIO, at: int) -> bytes | None:
+    """The record that begins at a byte; None = it is cut or damaged, or there is none."""
+    head = os.pread(file.fileno(), _HEAD.size, at)
+    if len(head) < _HEAD.size:
+        return None
+    size, crc = _HEAD.unpack(head)
+    if size > os.fstat(file.fileno()).st_size - at - _HEAD.size:
+        return None
+    record = os.pread(file.fileno(), size, at + _HEAD.size)
+    return record if zlib.crc32(record, 1) == crc else None
 
 
 def _remove(folder: Path) -> None:

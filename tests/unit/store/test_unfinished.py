@@ -17,8 +17,8 @@ def test_a_log_goes_on_after_the_last_whole_record(tmp_path):
     cut = RecordLog(path)
     cut.append(b"four")
 
-    assert cut.earlier == [b"one", b"two"]
-    assert RecordLog(path).earlier == [b"one", b"two", b"four"]
+    assert list(cut) == [b"one", b"two"]
+    assert list(RecordLog(path)) == [b"one", b"two", b"four"]
 
 
 def test_a_damaged_record_ends_the_log(tmp_path):
@@ -30,7 +30,7 @@ def test_a_damaged_record_ends_the_log(tmp_path):
     data[-9 - 8] ^= 1  # in "two"
     path.write_bytes(data)
 
-    assert RecordLog(path).earlier == [b"one"]
+    assert list(RecordLog(path)) == [b"one"]
 
 
 def test_rows_that_an_earlier_process_wrote_are_there(tmp_path):
@@ -44,14 +44,12 @@ def test_rows_that_an_earlier_process_wrote_are_there(tmp_path):
     assert rows.read(2, start=1, size=3) == b"bcd"
 
 
-@pytest.mark.parametrize("damage", ["a byte", "another size"])
-def test_a_damaged_row_is_absent(tmp_path, damage):
+def test_a_damaged_row_is_absent(tmp_path):
     kept = tmp_path / "rows"
     RowFile(4, 10, scratch=tmp_path, kept=kept).write(2, b"abcdef")
-    if damage == "a byte":
-        kept.write_bytes(kept.read_bytes().replace(b"abc", b"abd"))
+    kept.write_bytes(kept.read_bytes().replace(b"abc", b"abd"))
 
-    rows = RowFile(4, 10 if damage == "a byte" else 12, scratch=tmp_path, kept=kept)
+    rows = RowFile(4, 10, scratch=tmp_path, kept=kept)
 
     assert not any(rows.has(k) for k in range(4))
 
@@ -60,7 +58,7 @@ def test_outside_of_a_stage_nothing_is_kept(tmp_path):
     log = RecordLog(unfinished_file("log"))
     log.append(b"one")
 
-    assert log.earlier == []
+    assert list(log) == []
 
 
 @pytest.mark.parametrize(
@@ -89,6 +87,6 @@ def test_another_key_of_the_stage_removes_the_work_of_the_one_before(tmp_path):
             raise Cancelled("stop")
 
     with keeping(tmp_path, "graph", "b"):
-        assert RecordLog(unfinished_file("log")).earlier == []
+        assert list(RecordLog(unfinished_file("log"))) == []
 
     assert [path.name for path in (tmp_path / UNFINISHED).iterdir()] == ["map-a"]
