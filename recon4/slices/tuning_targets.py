@@ -144,6 +144,8 @@ class TargetMatchTuning(Struct, frozen=True, kw_only=True):
     """Two targets that are nearer do not say how a map is turned."""
     most_trials: int = 20_000
     """Positions of the survey that are tried."""
+    tilt_rad: float = 0.01
+    """Largest tilt of a map against its survey: leveling by an IMU is within 1 mrad to 5 mrad."""
     rounds: int = 4
     alike: float = 2.0
     """Another reading of the names that agrees for as many points is as good up to this many times

@@ -14,7 +14,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.model.targets import TargetKind
 from recon4.slices.targets.candidate import TargetCandidate
 from recon4.slices.tuning_targets import SPHERES, TARGET_MATCH
@@ -186,7 +186,7 @@ def _settled(T: SE3, sites: Array, places: Array, *, fits: NDArray[np.bool_]) ->
         known = rows >= 0
         if known.sum() < TARGET_MATCH.least:
             return None
-        T = _upright_fit(sites[known], places[rows[known]])
+        T = _fit(sites[known], places[rows[known]])
         rows = _named(T, sites, places, fits=fits, within_m=TARGET_MATCH.fitted_m)
     known = rows >= 0
     if known.sum() < TARGET_MATCH.least:
@@ -210,6 +210,15 @@ def _named(
         if rows[i] < 0 and k not in rows:
             rows[i] = k
     return rows
+
+
+def _fit(sites: Array, places: Array) -> SE3:
+    """The rigid fit of least squares, tilted as far as leveling may have left a map."""
+    if len(sites) > TARGET_MATCH.least:
+        T = align_points(places, sites)
+        if T.R[2, 2] >= np.cos(TARGET_MATCH.tilt_rad):
+            return T
+    return _upright_fit(sites, places)
 
 
 def _upright_fit(sites: Array, places: Array) -> SE3:

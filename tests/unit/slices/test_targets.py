@@ -118,6 +118,19 @@ def test_a_survey_names_targets_among_others_and_says_what_is_missing():
     assert not any(one.ambiguous for one in got.rows)
 
 
+def test_targets_of_a_map_that_is_tilted_a_little_are_named():
+    rng = np.random.default_rng(8)
+    true = rng.uniform([0, 0, 0], [60, 20, 3], (10, 3))
+    tilted = SE3.from_rpy(0.002, 0.003, 0.0, t=[0.0, 0.0, 0.0]) @ true
+    survey = [SurveyedPlace(f"P{k}", p) for k, p in enumerate(SITE @ true - SITE.t)]
+
+    match = match_targets(survey, candidates(tilted))
+
+    assert match is not None
+    assert dict(match.row_of) == {f"P{k}": k for k in range(10)}
+    assert match.rmse_m < 0.001
+
+
 def test_names_that_may_be_exchanged_are_reported():
     # A rectangle fits itself after half a turn; the fifth point on its axis fits, too.
     square = np.array([[0, 0, 1], [8, 0, 1], [8, 3, 1], [0, 3, 1], [4.0, 1.5, 1.0]])
