@@ -24,11 +24,12 @@ _MIDDLE: Array = np.zeros((6, END.stop))
 """A correction of the pose at the middle of a frame, by those at its start and end."""
 _MIDDLE[:, START] = _MIDDLE[:, END_POSE] = 0.5 * np.eye(6)
 _AT_REST = {
-    Rest.STATIONARY: np.full(3, 0.02**-2),
+    Rest.STATIONARY: np.array([0.02, 0.02, 0.005]) ** -2.0,
     Rest.STOPPED: np.array([0.1, 0.1, np.inf]) ** -2.0,
 }
-"""Information on the velocity of a person who stands [s²/m²]. Who has just stopped still sways; the
-ground observes the height."""
+"""Information on the velocity of a person who stands [s²/m²], odom axes. One sways sideways by
+1 cm/s and hardly up or down: with 2 cm/s a second of standing knew gravity to 30 mm/s² only. Who
+has just stopped still sways more; the ground observes the height."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

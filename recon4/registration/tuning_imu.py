@@ -119,6 +119,10 @@ class PredictionTuning(Struct, frozen=True, kw_only=True):
     rest_m_s: float = 0.1
     """Largest turn rate [rad/s], shaking [m/s²] and speed [m/s] of a person who stands; who walks
     turns by 0.5 rad/s and shakes by 1 m/s² and more."""
+    rest_change_m_s: float = 0.005
+    """A body whose speed changes by more within half a second, beside the noise, does not stand
+    still [m/s]: who stands changes it by 1 to 3 mm/s, who begins to walk by 5, 12, 15, 19 and 70 in
+    five multiframes."""
     walked_ns: int = 30_000_000_000
     walk_m_s2: float = 0.8
     """Who stops has walked within this time [ns], and shook by more than this [m/s²]."""

@@ -307,7 +307,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 34, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    44,
+    45,
     OdometryReads,
     _odometry,
     OdometryFigures,

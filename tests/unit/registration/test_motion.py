@@ -332,6 +332,28 @@ def test_a_still_body_without_speed_is_stationary_whatever_observes_it():
     assert rest_at(5.0, imu, speed=0.05) is Rest.STATIONARY
 
 
+@pytest.mark.parametrize("noise_m_s2", [0.0, 0.014, 0.1])
+def test_noise_alone_does_not_set_a_body_in_motion(noise_m_s2):
+    imu = who_walks_and_stands(walking_s=0.0)
+    noise = noise_m_s2 * np.random.default_rng(1).standard_normal(imu.accel_m_s2.shape)
+
+    noisy = replace(imu, accel_m_s2=imu.accel_m_s2 + noise)
+
+    assert rest_at(5.0, noisy, speed=0.02) is Rest.STATIONARY
+
+
+def test_who_begins_to_walk_does_not_stand_any_more():
+    imu = who_walks_and_stands(walking_s=0.0)
+    noise = 0.014 * np.random.default_rng(1).standard_normal(imu.accel_m_s2.shape)
+    sinks = np.zeros_like(noise)
+    sinks[1e-9 * (imu.t_ns - T0_NS) >= 4.8, 2] = -0.1
+
+    begun = replace(imu, accel_m_s2=imu.accel_m_s2 + noise + sinks)
+
+    assert rest_at(4.8, begun, speed=0.02) is Rest.STATIONARY
+    assert rest_at(5.0, begun, speed=0.02) is Rest.MOVING
+
+
 def test_without_an_imu_nothing_is_known_of_a_rest():
     state = start_of(standing, T0_NS, [0.0, 0.0, 0.0])
 

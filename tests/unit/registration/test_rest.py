@@ -7,7 +7,7 @@ from recon4.registration.motion import FreeMotion, Rest
 from recon4.registration.odometry import Odometry
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.segments import sample_segments
-from recon4.registration.state import END, VECTOR
+from recon4.registration.state import END, STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning, ScanTuning
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
@@ -119,7 +119,8 @@ def velocity_after(recording, rest):
     fitter = FrameFitter(settings.odometry, 1e-4, coarse=3, rounds=8)
     fit = fitter.fit(PlaneMap(), segments, prediction, rest=rest)
     after = prediction.end.corrected(fit.delta[END], fit.P[END, END])
-    return after.vector[VECTOR.velocity], fit.stationary
+    velocity_sd = np.sqrt(np.diag(after.P)[STATE.velocity])
+    return after.vector[VECTOR.velocity], fit.stationary, velocity_sd
 
 
 def test_who_has_stopped_is_slowed_and_not_called_stationary(slow):
@@ -131,3 +132,9 @@ def test_who_has_stopped_is_slowed_and_not_called_stationary(slow):
     assert 0.0 < stopped[0][0] < 0.2 and stopped[0][2] > 0.39
     assert np.abs(still[0]).max() < 0.01
     assert (moving[1], stopped[1], still[1]) == (False, False, True)
+
+
+def test_who_stands_sways_sideways_and_hardly_up_or_down(slow):
+    _, _, velocity_sd = velocity_after(slow, Rest.STATIONARY)
+
+    np.testing.assert_allclose(velocity_sd, [0.02, 0.02, 0.005], rtol=0.1)
