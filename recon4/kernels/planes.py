@@ -295,7 +295,7 @@ def normals(
     criteria: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> None:
-    """Normals of the finest planes at points (N, 3), written to ``out`` (N, 3)."""
+    """Normals of the finest planes at points (N, 3), and variances across, to ``out`` (N, 4)."""
     found = _finest_planes(keys, rows, sums, fits, state, sizes, criteria, q, 0)
     for k in range(len(q)):
         if found[k] == EMPTY:
@@ -303,7 +303,7 @@ def normals(
         f = fits[found[k]]
         r = f[3] * (q[k, 0] - f[0]) + f[4] * (q[k, 1] - f[1]) + f[5] * (q[k, 2] - f[2])
         if abs(r) <= gate:
-            out[k, 0], out[k, 1], out[k, 2] = f[3], f[4], f[5]
+            out[k, 0], out[k, 1], out[k, 2], out[k, 3] = f[3], f[4], f[5], f[6]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -161,14 +161,18 @@ class PlaneMap:
         self._fits = np.empty((len(self._sums), CUBE.fits))
         self._state = np.zeros(len(self._sums), np.uint8)
 
-    def normals(self, p_map: Array, gate_m: float) -> Array:
-        """Normal of the finest plane at each point, zero where there is none, (N, 3)."""
-        out = np.zeros((len(p_map), 3))
+    def normals(self, p_map: Array, gate_m: float) -> tuple[Array, Array]:
+        """Normal of the finest plane at each point, (N, 3), and how much the plane scatters.
+
+        Both are zero where there is none; the latter is the standard deviation of the points of
+        the plane across it [m], (N,).
+        """
+        out = np.zeros((len(p_map), 4))
         planes.normals(
             self._keys, self._rows, self._sums, self._fits, self._state, self._sizes, p_map,
             gate_m, self._criteria, out,
         )  # fmt: skip
-        return out
+        return out[:, :3], np.sqrt(out[:, 3])
 
     def match(
         self,

@@ -105,12 +105,15 @@ class PointMap:
         if not self._keyframes:
             return points[:0]
         p_odom = points.placed(t_s, T_odom_body)
-        n = self._planes.normals(p_odom, POINT_MAP.gate_m)
+        n, scatter_m = self._planes.normals(p_odom, POINT_MAP.gate_m)
         sight = p_odom - T_odom_body.t[-1]
-        incidence = np.abs(np.sum(n * sight, axis=1)) > POINT_MAP.min_incidence * np.linalg.norm(
-            sight, axis=1
+        incidence = np.abs(np.sum(n * sight, axis=1)) / np.linalg.norm(sight, axis=1)
+        expected_m = np.hypot(POINT_MAP.range_sd_m * incidence, POINT_MAP.across_sd_m)
+        rows = np.flatnonzero(
+            (incidence > POINT_MAP.min_incidence)
+            & (np.linalg.norm(n @ weak.T, axis=1) > POINT_MAP.min_facing)
+            & (scatter_m < POINT_MAP.most_sds * expected_m)
         )
-        rows = np.flatnonzero(incidence & (np.abs(n @ weak.T).max(axis=1) > POINT_MAP.min_facing))
         return points[rows[:: -(-len(rows) // POINT_MAP.max_points) or 1]]
 
     def match(

@@ -136,8 +136,16 @@ class PointMapTuning(Struct, frozen=True, kw_only=True):
     min_viewpoints: int = 5
     """Far away a scan is a few sparse lines, which move with the sensor and seem to be surfaces
     until they were seen from this many keyframes."""
-    min_facing: float = 0.5
-    """Cosine between a plane's normal and a weak direction above which its points are used."""
+    min_facing: float = 0.9
+    """Cosine between a plane's normal and the weak directions above which its points are used. In a
+    corner two walls, hit by a few rings, seem to be one plane that is tilted by 30 to 60°: with 0.5
+    most of what a level VLP-16 knew of its height were such planes."""
+    range_sd_m: float = 0.015
+    across_sd_m: float = 0.005
+    most_sds: float = 2.0
+    """The points of a surface scatter by their range, along the sight, and by the poses of the map;
+    planes that scatter by more than this multiple are of several surfaces, and move with the
+    rings. Floors scatter by 3 to 6 mm, corners by 13 to 22."""
     min_incidence: float = 0.25
     """Cosine of the angle of incidence above which a point is used. Where one ring sweeps around an
     edge, its points span the plane of the ring itself, which moves with the sensor: a false plane,

@@ -138,6 +138,50 @@ def test_the_plane_that_one_ring_spans_is_no_surface():
     assert len(chosen(filled(fan), fan)) == 0
 
 
+def test_a_surface_between_the_weak_direction_and_another_says_too_little():
+    c, s = np.cos(0.7), np.sin(0.7)
+    end = wall(0, 5.0)
+    slanted = end @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    assert len(chosen(filled(end), end))
+    assert len(chosen(filled(slanted), slanted)) == 0
+
+
+@pytest.mark.parametrize("tilt_deg", [0, 45])
+def test_a_surface_may_face_both_of_two_weak_directions(tilt_deg):
+    turn = so3_exp([0.0, 0.0, np.deg2rad(tilt_deg)])
+    end = wall(0, 5.0) @ turn.T
+    sideways = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+
+    found = filled(end).choose(
+        FramePoints(end, np.zeros(len(end))), np.array([0.0, 0.1]), still(), weak=sideways
+    )
+
+    assert len(found)
+
+
+def test_points_that_scatter_by_more_than_their_range_are_no_surface():
+    # A corner at the height of the body, hit by a few rings: the best plane is nearly horizontal.
+    rng = np.random.default_rng(3)
+    floor = rng.uniform(-1.0, 1.0, (6000, 3)) + np.array([5.0, 0.0, 0.0])
+    exact, corner = floor.copy(), floor.copy()
+    exact[:, 2] = 2.1 + 0.004 * rng.standard_normal(6000)
+    corner[:, 2] = 2.1 + 0.02 * rng.standard_normal(6000)
+    up = np.array([[0.0, 0.0, 1.0]])
+
+    counts = [
+        len(
+            filled(p).choose(
+                FramePoints(p, np.zeros(len(p))), np.array([0.0, 0.1]), still(), weak=up
+            )
+        )
+        for p in (exact, corner)
+    ]
+
+    assert counts[0] > 500
+    assert counts[1] < 0.1 * counts[0]
+
+
 def test_an_empty_map_gives_no_points():
     assert len(chosen(PointMap(PlaneTuning()), wall(0, 3.0))) == 0
 
