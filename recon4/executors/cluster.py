@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -80,11 +80,14 @@ class Cluster:
         of_future = dict(zip((future.key for future in futures), tasks, strict=True))
         try:
             for future in as_completed(futures):
-                yield _finished(of_future[future.key], future)
+                ended = _finished(of_future[future.key], future)
+                future.release()  # else it is run again when its worker dies later
+                yield ended
         finally:
-            stop.set()  # a task that still runs stops at its next line
-            client.cancel(futures, force=True)
-            client.unsubscribe_topic(topic)
+            with suppress(OSError, TimeoutError):  # the scheduler is gone
+                stop.set()  # a task that still runs stops at its next line
+                client.cancel(futures, force=True)
+                client.unsubscribe_topic(topic)
 
     @property
     def size(self) -> int:
@@ -228,14 +231,18 @@ def _on_worker(function: Callable[[Task, Say], Result], task: Task, topic: str) 
     def say(name: str, line: str) -> None:
         if stop.is_set():
             raise Cancelled("stopped by the program that sent the task")
-        worker.log_event(topic, (name, line))
+        if line:
+            worker.log_event(topic, (name, line))
 
     return function(task, say)
 
 
 def _finished(task: Task, future: Any) -> Finished[Task, Any]:
     if future.status == "finished":
-        return Finished(task, future.result())
+        try:
+            return Finished(task, future.result())
+        except OSError as error:  # the scheduler is gone, and the result with it
+            return Finished(task, None, f"its result is lost: {error}")
     if future.status == "cancelled":
         return Finished(task, None, "the scheduler has ended or lost it")
     return Finished(task, None, f"{type(future.exception()).__name__}: {future.exception()}")

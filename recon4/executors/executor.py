@@ -14,7 +14,8 @@ Task = TypeVar("Task")
 Result = TypeVar("Result")
 
 Say = Callable[[str, str], None]
-"""Receives lines of progress: the name of a task, and the line."""
+"""Receives lines of progress: the name of a task, and the line; an empty line only asks whether to
+go on. Raises `Cancelled` if not."""
 
 
 @dataclass(frozen=True, slots=True)

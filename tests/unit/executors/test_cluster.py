@@ -2,30 +2,18 @@
 
 from __future__ import annotations
 
-import datetime as dt
 import os
-import socket
-import subprocess
-import sys
 import threading
-from pathlib import Path
 
 import pytest
-from cryptography import x509
-from cryptography.hazmat.primitives import hashes, serialization
-from cryptography.hazmat.primitives.asymmetric import ec
-from cryptography.x509.oid import NameOID
-from distributed import Client, Security
 
 from recon4.cli.main import main
 from recon4.errors import ConfigError
 from recon4.executors.cluster import Certificates, Cluster, workers_here, workers_of
 from recon4.executors.executor import InOrder
 from tests.cluster_functions import always_die, die_first, double, refuse, until_stopped
-from tests.deadlines import HANG_S
+from tests.clusters import files_in, remote_cluster, write_certificates
 from tests.service.running import wait_for
-
-ROOT = Path(__file__).parents[3]
 
 
 def ignore(name: str, line: str) -> None:
@@ -113,84 +101,8 @@ def test_a_scheduler_without_certificates_is_refused(address, tmp_path):
 def remote(tmp_path_factory):
     """A scheduler and a worker as an administrator starts them, and their certificates."""
     folder = tmp_path_factory.mktemp("cluster")
-    write_certificates(folder)
-    address = f"tls://127.0.0.1:{free_port()}"
-    scheduler = start(folder, "scheduler", "--host", address, "--no-dashboard")
-    worker = start(folder, "worker", address, "--nthreads", "1", "--no-dashboard")
-    try:
-        with Client(address, security=security(folder), timeout=HANG_S) as client:
-            client.wait_for_workers(1, timeout=HANG_S)
-        yield address, folder
-    finally:
-        for process in (worker, scheduler):
-            process.terminate()
-            process.wait()
-
-
-def security(folder: Path) -> Security:
-    return Security(
-        tls_ca_file=str(folder / "ca.pem"),
-        tls_client_cert=str(folder / "client.pem"),
-        tls_client_key=str(folder / "client-key.pem"),
-        require_encryption=True,
-    )
-
-
-def start(folder: Path, what: str, *arguments: str) -> subprocess.Popen[bytes]:
-    names = {"ca-file": "ca.pem", "cert": "client.pem", "key": "client-key.pem"}
-    tls = [word for name, file in names.items() for word in (f"--tls-{name}", str(folder / file))]
-    return subprocess.Popen(
-        [sys.executable, "-m", "dask", what, *arguments, *tls],
-        cwd=ROOT,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-
-
-def free_port() -> int:
-    with socket.socket() as bound:
-        bound.bind(("127.0.0.1", 0))
-        return int(bound.getsockname()[1])
-
-
-def write_certificates(folder: Path) -> None:
-    """An authority, and one certificate that it signed for all."""
-    authority, of_authority = ec.generate_private_key(ec.SECP256R1()), named("authority")
-    own, of_all = ec.generate_private_key(ec.SECP256R1()), named("workers")
-    root = signed(authority.public_key(), of_authority, of_authority, authority, is_authority=True)
-    one = signed(own.public_key(), of_all, of_authority, authority, is_authority=False)
-    (folder / "ca.pem").write_bytes(root.public_bytes(serialization.Encoding.PEM))
-    (folder / "client.pem").write_bytes(one.public_bytes(serialization.Encoding.PEM))
-    (folder / "client-key.pem").write_bytes(
-        own.private_bytes(
-            serialization.Encoding.PEM,
-            serialization.PrivateFormat.PKCS8,
-            serialization.NoEncryption(),
-        )
-    )
-
-
-def named(name: str) -> x509.Name:
-    return x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name)])
-
-
-def signed(key, subject, issuer, by, *, is_authority):
-    now = dt.datetime.now(dt.UTC)
-    return (
-        x509.CertificateBuilder()
-        .subject_name(subject)
-        .issuer_name(issuer)
-        .public_key(key)
-        .serial_number(x509.random_serial_number())
-        .not_valid_before(now - dt.timedelta(hours=1))
-        .not_valid_after(now + dt.timedelta(days=1))
-        .add_extension(x509.BasicConstraints(ca=is_authority, path_length=None), critical=True)
-        .sign(by, hashes.SHA256())
-    )
-
-
-def files_in(folder: Path) -> Certificates:
-    return Certificates(folder / "ca.pem", folder / "client.pem", folder / "client-key.pem")
+    with remote_cluster(folder) as started:
+        yield started.address, folder
 
 
 def entered(cluster: Cluster) -> None:
