@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import threading
+import time
 from pathlib import Path
 
 from recon4.errors import CorruptFile
 from recon4.executors.executor import Say
+from recon4.orders.on_worker import PartTask, make_part
 
 
 def double(task: int, say: Say) -> int:
@@ -43,3 +45,28 @@ def until_stopped(task: str, say: Say) -> None:
     finally:
         if task:
             Path(task).write_text("stopped", "ascii")
+
+
+def make_part_and_die_once(task: PartTask, say: Say) -> str:
+    """End the worker when it has made its first part, before anybody hears of it."""
+    failure = make_part(task, say)
+    killed = Path(task.project) / "killed"
+    if not killed.exists():
+        killed.write_text(str(task.item), "ascii")
+        os.kill(os.getpid(), signal.SIGKILL)
+    return failure
+
+
+def make_part_slowly(task: PartTask, say: Say) -> str:
+    """Make a part, on the first worker that comes ten times as slowly as on others."""
+    slow = Path(task.project) / "slow"
+    try:
+        slow.touch(exist_ok=False)
+        slow.write_text(str(os.getpid()), "ascii")
+    except FileExistsError:
+        pass
+    began_s = time.monotonic()
+    failure = make_part(task, say)
+    if slow.read_text("ascii") == str(os.getpid()):
+        threading.Event().wait(9.0 * (time.monotonic() - began_s))
+    return failure

@@ -24,6 +24,11 @@ class TileBuckets:
         self._held = 0
         self._counts: dict[Tile, list[int]] = {}
 
+    @property
+    def folder(self) -> Path:
+        """Where they are."""
+        return self._folder
+
     def add(self, parts: dict[Tile, Records], pool: ThreadPoolExecutor) -> None:
         """Add the records of a multiframe; write all when `BUCKETS.burst` is reached."""
         for tile, records in parts.items():

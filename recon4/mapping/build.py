@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from itertools import chain
@@ -18,6 +17,7 @@ from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.cell_runs import CellRuns
 from recon4.mapping.class_corrections import ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
+from recon4.mapping.finish import finished_tiles
 from recon4.mapping.grid import Grid
 from recon4.mapping.made_tiles import (
     MadeTiles,
@@ -27,14 +27,14 @@ from recon4.mapping.made_tiles import (
     take_placed,
 )
 from recon4.mapping.map_notes import MapCrs, MapNotes
+from recon4.mapping.ordered_tiles import OrderedTiles
 from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.structure import find_structure
 from recon4.mapping.structure_tuning import STRUCTURE
 from recon4.mapping.threads import in_order
-from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
-from recon4.mapping.tile_memory import Scratch, TileMeans
-from recon4.mapping.tile_writer import PackedTile, TileWriter
+from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe
+from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import BUCKETS, MAP_BUILD, TILE_SURFACES
 from recon4.mapping.undistort import Placed, place_with_origins
@@ -45,6 +45,7 @@ from recon4.model.intensity_table import IntensityTable
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
+from recon4.orders.order import Workers
 from recon4.progress import Progress, Silent, track
 from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.settings import MapSettings
@@ -78,13 +79,23 @@ class MapInputs:
     """Of classes by people; None = there are none."""
 
 
+@dataclass(frozen=True, slots=True)
+class MapMeans:
+    """What a map is made with; its bytes do not depend on it."""
+
+    workers: Workers | None = None
+    """Who makes the tiles; None = threads of this process."""
+    burst: int = BUCKETS.burst
+    """Points collected before a write."""
+
+
 def build_map(
     inputs: MapInputs,
     out: Path,
     *,
     settings: MapSettings,
     progress: Progress | None = None,
-    burst: int = BUCKETS.burst,
+    means: MapMeans = MapMeans(),
 ) -> TileSet:
     """Write ``tiles/`` and ``tiles.json`` into a folder.
 
@@ -97,7 +108,7 @@ def build_map(
         out: The stage's folder; needs 32 bytes of disk space per point.
         settings: Settings of the map.
         progress: Receives the progress.
-        burst: Points collected before a write; for tests.
+        means: Who makes the tiles.
 
     Raises:
         OutOfRange: If the trajectory does not cover the frames.
@@ -106,7 +117,7 @@ def build_map(
     progress, grid, rig = progress or Silent(), Grid.of(settings), inputs.frames.rig
     noise_m = settings.range_noise_m or surface_noise_m(rig)
     with placing_folder(out) as folder:
-        buckets, cells = TileBuckets(folder, grid, burst=burst), CellRuns(folder)
+        buckets, cells = TileBuckets(folder, grid, burst=means.burst), CellRuns(folder)
         starts = take_placed(folder, buckets, cells)
         if starts is None:
             starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
@@ -117,7 +128,7 @@ def build_map(
         parts = inputs.covariances, inputs.corrections, structure
         recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, *parts)
         with TileWriter(out, _fields(recipe), tile_m=grid.tile_m, paths=paths) as writer:
-            done = _finish_tiles(buckets, recipe, writer, progress=progress)
+            done = _finish_tiles(buckets, recipe, writer, means=means, progress=progress)
             writer.notes = MapNotes(
                 voxel_m=settings.voxel_m,
                 crs=inputs.crs,
@@ -194,71 +205,36 @@ _Counted = tuple[Placed, NDArray[np.bool_], NDArray[np.uint8]]
 """Arguments of `CellRuns.add`."""
 
 
-def _finish_tile(
-    tile: Tile, records: Records, *, recipe: Recipe, means: TileMeans, writer: TileWriter
-) -> tuple[PackedTile, TileCounts]:
-    """Make a tile and compress it."""
-    made = make_tile(records, tile, recipe, means=means)
-    packed = writer.pack(tile, made.blocks, points=made.points, strays=made.strays, each=means.each)
-    return packed, TileCounts(made.removed, made.corrected, made.classes)
-
-
 def _finish_tiles(
-    buckets: TileBuckets, recipe: Recipe, writer: TileWriter, *, progress: Progress
+    buckets: TileBuckets,
+    recipe: Recipe,
+    writer: TileWriter,
+    *,
+    means: MapMeans,
+    progress: Progress,
 ) -> TileCounts:
     """Write all tiles; what became of their points."""
-    removed: Counter[str] = Counter()
-    corrected: Counter[int] = Counter()
-    classes: Counter[int] = Counter()
+    counts = TileCounts(Counter(), Counter(), Counter())
     tiles, log = buckets.tiles(), MadeTiles()
+    rest = tiles[len(log) :]
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        rest = _made_tiles(buckets, tiles[len(log) :], pool, recipe=recipe, writer=writer)
-        made = chain(log.earlier(), map(log.kept, rest))
+        if means.workers is None:
+            finished = finished_tiles(buckets, rest, pool, recipe=recipe, writer=writer)
+        else:
+            each = partial(in_order, pool)
+            ordered = OrderedTiles(buckets, rest, means.workers, each, progress)
+            finished = ordered.finished(recipe, writer)
+        made = chain(log.earlier(), map(log.kept, finished))
         for tile, (packed, part) in zip(
             tiles, track(made, progress, what="map", unit="tiles", total=len(tiles)), strict=True
         ):
             writer.write(packed)
             buckets.drop(tile)
-            removed += part.removed
-            corrected += part.corrected
-            classes += part.classes
-    return TileCounts(removed, corrected, classes)
+            counts.removed.update(part.removed)
+            counts.corrected.update(part.corrected)
+            counts.classes.update(part.classes)
+    return counts
 
 
 def _counts(corrections: ClassVolumes | None, changed: Counter[int]) -> tuple[int, ...]:
     return tuple(changed[k] for k in range(len(corrections.steps))) if corrections else ()
-
-
-def _made_tiles(
-    buckets: TileBuckets,
-    tiles: Sequence[Tile],
-    pool: ThreadPoolExecutor,
-    *,
-    recipe: Recipe,
-    writer: TileWriter,
-) -> Iterator[tuple[PackedTile, TileCounts]]:
-    """Tiles in their order: several small ones at a time, of a large one several parts.
-
-    So there is never more than one large tile in memory.
-    """
-    finish = partial(_finish_tile, recipe=recipe, writer=writer)
-    small, large = TileMeans(Scratch()), TileMeans(None, partial(in_order, pool))
-    waiting: deque[Future[tuple[PackedTile, TileCounts]]] = deque()
-    try:
-        for tile in tiles:
-            records = buckets.read(tile)
-            is_large = len(records) >= MAP_BUILD.large
-            if not is_large:
-                waiting.append(pool.submit(finish, tile, records, means=small))
-            while len(waiting) > (0 if is_large else MAP_BUILD.workers):
-                yield waiting.popleft().result()
-            if is_large:
-                small = TileMeans(Scratch())  # what the threads held is free
-                return_freed_memory()
-                yield finish(tile, records, means=large)
-            del records  # before the next ones are read
-        while waiting:
-            yield waiting.popleft().result()
-    finally:
-        for future in waiting:
-            future.cancel()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,12 +33,23 @@ class ClassVolume:
     @staticmethod
     def of(what: Reclassified) -> ClassVolume:
         """Prepare a correction; a point that has the new class already is not changed."""
-        low_m, high_m = bounds_of(what.volume)
         delivered = [int(one) for one, facts in CLASSES.items() if facts.delivered]
+        changed = {*(what.only or delivered)} - {what.to}
+        return ClassVolume.changing(what.volume, what.to, sorted(changed))
+
+    @staticmethod
+    def changing(volume: Volume, to: int, classes: Sequence[int]) -> ClassVolume:
+        """Points of some classes in a volume get another one.
+
+        Args:
+            volume: In the map.
+            to: Code of the new class.
+            classes: Codes of those that are changed.
+        """
+        low_m, high_m = bounds_of(volume)
         changes = np.zeros(256, np.bool_)
-        changes[list(what.only) or delivered] = True
-        changes[what.to] = False
-        return ClassVolume(what.volume, what.to, low_m, high_m, changes)
+        changes[list(classes)] = True
+        return ClassVolume(volume, to, low_m, high_m, changes)
 
     def meets(self, low_m: Array, high_m: Array) -> bool:
         """Whether a box in the map may have points of it, (3,) each [m]."""

@@ -117,7 +117,7 @@ class MadeTiles:
         for record in self._log:
             made = msgspec.msgpack.decode(record, type=_Made)
             # Bounds and times of the blocks are in the row already.
-            nothing = np.zeros(3), np.zeros(3), (0, 0)
+            nothing = [0.0] * 3, [0.0] * 3, (0, 0)
             blocks = [TileBlock(*block, *nothing) for block in made.blocks]
             counts = (made.removed, made.corrected, made.classes)
             yield (

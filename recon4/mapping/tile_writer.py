@@ -59,8 +59,8 @@ class TileBlock:
     """Of each field."""
     width: list[int]
     """Bytes of a number of each field."""
-    low_m: Array
-    high_m: Array
+    low_m: list[float]
+    high_m: list[float]
     """Bounds of its points in the map, as they will be read [m], (3,)."""
     time_ns: tuple[int, int]
     """Times of its first and last point [ns]."""
@@ -99,13 +99,13 @@ class TileWriter:
             paths: Where the sensors were; None = not known, and no ranges of the points either.
         """
         self._folder = folder
-        self._fields = list(fields)
-        self._tile_m = tile_m
-        self._paths = paths or SensorPaths()
+        self.fields = list(fields)
+        self.tile_m = tile_m
+        self.paths = paths or SensorPaths()
         self._rows: list[TileRow] = []
         self._points = 0
         self._index: list[tuple[int, list[int], list[int]]] = []
-        self._ends = [0] * len(self._fields)
+        self._ends = [0] * len(self.fields)
         self._files: list[BinaryIO] = []
         self.notes = MapNotes()
 
@@ -113,7 +113,7 @@ class TileWriter:
         with storing(self._folder):
             folder = self._folder / "tiles"
             folder.mkdir(parents=True)
-            self._files = [(folder / f"{name}.zst").open("wb") for name in self._fields]
+            self._files = [(folder / f"{name}.zst").open("wb") for name in self.fields]
         return self
 
     def __exit__(
@@ -157,7 +157,7 @@ class TileWriter:
             strays: Stray returns.
             each: Threads for the blocks.
         """
-        origin_m = np.array(ijk) * self._tile_m
+        origin_m = np.array(ijk) * self.tile_m
         row = TileRow(ijk=list(ijk), origin_m=origin_m.tolist())
         row.strays = strays
         packed: list[TileBlock] = []
@@ -179,21 +179,21 @@ class TileWriter:
         low_m, high_m = as_stored("xyz", corners) + origin_m
         t_ns = began_ns + as_stored("t_ns", within_ns)
         columns = columns | {"t_ns": within_ns}
-        made = [pack(name, columns[name]) for name in self._fields]
+        made = [pack(name, columns[name]) for name in self.fields]
         return TileBlock(
             len(columns["xyz"]),
             [one.data for one in made],
             [one.width for one in made],
-            low_m,
-            high_m,
+            low_m.tolist(),
+            high_m.tolist(),
             (int(t_ns.min()), int(t_ns.max())),
         )
 
     def _began_ns(self, columns: Columns) -> Times:
         """Start of the multiframe of each point [ns], (N,); a reference has no multiframes."""
-        if not self._paths.known:
+        if not self.paths.known:
             return np.zeros(len(columns["t_ns"]), np.int64)
-        return self._paths.began_ns(columns["frame_id"])
+        return self.paths.began_ns(columns["frame_id"])
 
     def write(self, tile: PackedTile) -> None:
         """Write the next tile; an empty one is omitted.
@@ -216,8 +216,8 @@ class TileWriter:
 
     def _finish(self) -> None:
         folder = self._folder / "tiles"
-        self._paths.save(folder / PATHS)
-        np.save(folder / BLOCKS, np.array(self._index, dtype=index_dtype(self._fields)))
+        self.paths.save(folder / PATHS)
+        np.save(folder / BLOCKS, np.array(self._index, dtype=index_dtype(self.fields)))
         rows = self._rows
         bounds = [
             np.min([row.low_m for row in rows], axis=0).tolist() if rows else None,
@@ -228,7 +228,7 @@ class TileWriter:
         facts: dict[str, object] = {"format": FORMATS.tiles, "points": points, "bounds_m": bounds}
         facts |= self.notes.to_json()
         facts["time_ns"] = [min(times), max(times)] if times else None
-        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": list(_listed(rows))}
+        facts |= {"tile_m": self.tile_m, "fields": self.fields, "tiles": list(_listed(rows))}
         write_json(self._folder / "tiles.json", facts)
 
 

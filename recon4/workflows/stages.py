@@ -270,7 +270,8 @@ def _map(
     calibration: Path | None = None,
     corrections: tuple[StandingCorrection, ...] = (),
 ) -> MapFigures:
-    from recon4.mapping.build import MapInputs, build_map
+    from recon4.mapping.build import MapInputs, MapMeans, build_map
+    from recon4.orders.confined import workers_of_this_process
     from recon4.sandbox.freed_memory import return_freed_memory
     from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.classes import StoredClasses
@@ -291,7 +292,13 @@ def _map(
         classes=StoredClasses.open(classes),
         corrections=placed.volumes,
     )
-    tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
+    tiles = build_map(
+        inputs,
+        context.out,
+        settings=context.settings.map,
+        progress=context.progress,
+        means=MapMeans(workers_of_this_process()),
+    )
     return_freed_memory()
     write_map_laz(context.out, level, progress=context.progress)
     return map_figures(tiles, placed)

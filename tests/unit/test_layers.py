@@ -38,6 +38,11 @@ MAY_IMPORT = {
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/executors": {"recon4.errors", "recon4.executors"},
+    "recon4/orders": {"recon4.errors", "recon4.orders", "recon4.executors.executor"}
+    | {"recon4.store.package_versions", "recon4.sandbox", "recon4.system.processes"},
+    "recon4/orders/child.py": {"recon4"},
+    "recon4/orders/maker.py": {"recon4.orders", "recon4.sandbox", "recon4.system.processes"}
+    | {"recon4.recording.formats.scratch", "recon4.mapping.tile_files"},
     "recon4/batch": MODEL
     | {"recon4.batch", "recon4.executors", "recon4.export.cells", "recon4.store"}
     | {"recon4.recording.kinds", "recon4.recording.nearby_samples"}
@@ -85,21 +90,15 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference"}
     | {f"recon4.registration.{name}" for name in ("aiding", "tuning")},
     "recon4/review": STAGE
-    | {
-        "recon4.registration",
-        "recon4.pose_graph",
-        "recon4.mapping",
-        "recon4.profiler",
-        "recon4.review",
-        "recon4.slam2d",
-    }
+    | {f"recon4.{room}" for room in ("registration", "pose_graph", "mapping", "profiler")}
+    | {"recon4.review", "recon4.slam2d"}
     | {"recon4.report.approval"}
     | {f"recon4.findings.{name}" for name in ("summary_notes", "review_problems", "wording")},
     "recon4/review/class_corrections.py": STAGE
     | {"recon4.classes.corrections", "recon4.mapping.tiles", "recon4.review"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
-    "recon4/mapping": STAGE | {"recon4.mapping"},
-    "recon4/mapping/build.py": STAGE | {"recon4.mapping", "recon4.sandbox.freed_memory"},
+    "recon4/mapping": STAGE
+    | {"recon4.mapping", "recon4.orders.order", "recon4.sandbox.freed_memory"},
     "recon4/classes": STAGE | {"recon4.mapping", "recon4.classes"},
     "recon4/export": STAGE
     | {"recon4.mapping", "recon4.export"}
@@ -166,12 +165,8 @@ MAY_IMPORT = {
     | {f"recon4.{room}" for room in ("review", "simulation", "slices", "pose_graph.files")}
     | {"recon4.pipeline", "recon4.export.map_files", "recon4.cli.kernel_cache"},
     "recon4/cli/main.py": {"recon4", "recon4_app.cli"},
-    "app/recon4_app/cli/users.py": {
-        "recon4.errors",
-        "recon4.cli.terminal",
-        "recon4.archive.verify",
-        "recon4_app",
-    },
+    "app/recon4_app/cli/users.py": {"recon4.errors", "recon4_app"}
+    | {"recon4.cli.terminal", "recon4.archive.verify"},
     "app": {"recon4_app", "recon4"},
 }
 """Place -> prefixes of our own modules it may import; the longest place that fits counts."""

@@ -4,7 +4,8 @@ import pytest
 
 from recon4.errors import Cancelled
 from recon4.mapping import build as map_build
-from recon4.mapping.build import MapInputs, build_map
+from recon4.mapping import finish
+from recon4.mapping.build import MapInputs, MapMeans, build_map
 from recon4.progress import Silent
 from recon4.settings import MapSettings
 from recon4.store.unfinished import keeping
@@ -39,10 +40,8 @@ def test_a_map_that_was_stopped_goes_on_with_the_same_bytes(
     tmp_path, monkeypatch, task, count, placed_again
 ):
     walk, made, placed = room_walk(frames=6, points=800), [], []
-    make_tile, place = map_build.make_tile, map_build.place_with_origins
-    monkeypatch.setattr(
-        map_build, "make_tile", lambda *a, **k: made.append(1) or make_tile(*a, **k)
-    )
+    make_tile, place = finish.make_tile, map_build.place_with_origins
+    monkeypatch.setattr(finish, "make_tile", lambda *a, **k: made.append(1) or make_tile(*a, **k))
     monkeypatch.setattr(map_build, "place_with_origins", lambda *a: placed.append(1) or place(*a))
 
     def run(name, progress):
@@ -52,7 +51,7 @@ def test_a_map_that_was_stopped_goes_on_with_the_same_bytes(
         out.mkdir()
         inputs = MapInputs(walk, walk.trajectory)
         with keeping(tmp_path / "project", "map", "key"):
-            build_map(inputs, out, settings=SETTINGS, progress=progress, burst=900)
+            build_map(inputs, out, settings=SETTINGS, progress=progress, means=MapMeans(burst=900))
         return digest(out), len(made), len(placed)
 
     whole, tiles, _ = run("whole", Silent())

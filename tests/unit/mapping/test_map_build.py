@@ -13,7 +13,7 @@ from recon4.errors import OutOfRange, StoreError
 from recon4.export.laz import export_laz
 from recon4.mapping import build as map_build
 from recon4.mapping import voxel_runs
-from recon4.mapping.build import MapInputs, build_map
+from recon4.mapping.build import MapInputs, MapMeans, build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs
 from recon4.mapping.tile import FIELDS, STORED, SURFACE_FIELDS
@@ -116,7 +116,7 @@ def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path, monkeypatch):
     settings = MapSettings(voxel_m=0.05)
 
     for name, burst in {"once": 10**9, "again": 10**9, "streamed": 5000}.items():
-        build(walk, tmp_path / name, settings, burst=burst)
+        build(walk, tmp_path / name, settings, means=MapMeans(burst=burst))
 
     assert digest(tmp_path / "once") == digest(tmp_path / "again")
     assert digest(tmp_path / "once") == digest(tmp_path / "streamed")
@@ -248,7 +248,7 @@ def test_memory_does_not_grow_with_the_walk(tmp_path):
     for frames in (60, 240):
         longer = walk.repeated(frames)
         tracemalloc.start()
-        build(longer, tmp_path / f"{frames}", settings, burst=20_000)
+        build(longer, tmp_path / f"{frames}", settings, means=MapMeans(burst=20_000))
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
 
@@ -375,7 +375,7 @@ def test_fitted_maps_do_not_depend_on_the_number_of_bursts_and_threads(tmp_path,
 
     for threads, burst in ((2, 10**9), (2, 5000), (1, 10**9), (4, 10**9)):
         monkeypatch.setattr(map_build, "MAP_BUILD", structs.replace(MAP_BUILD, workers=threads))
-        build(walk, tmp_path / f"{threads} {burst}", settings, burst=burst)
+        build(walk, tmp_path / f"{threads} {burst}", settings, means=MapMeans(burst=burst))
 
     first, *others = (digest(folder) for folder in tmp_path.iterdir())
     assert len(others) == 3
