@@ -1,4 +1,4 @@
-"""The command ``recon4 batch``, and the options that name a cluster."""
+"""The command ``recon4 batch``."""
 
 from __future__ import annotations
 
@@ -11,24 +11,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.terminal import is_progress, write
-from recon4.errors import ConfigError
+from recon4.cli.workers import SchedulerOption, TlsOption, certificates_in
 
 if TYPE_CHECKING:
     from recon4.batch.table import BatchRow
-    from recon4.executors.cluster import Certificates
     from recon4.executors.executor import Executor
 
 batches = typer.Typer()
-
-SchedulerOption = Annotated[
-    str, typer.Option(metavar="tls://HOST:PORT", help="Scheduler of Dask whose workers are used.")
-]
-TlsOption = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="FOLDER", help="Certificates for the scheduler: ca.pem, client.pem, client-key.pem."
-    ),
-]
 
 
 @batches.command()
@@ -74,19 +63,6 @@ def batch(  # noqa: PLR0913 - an argument for each option
     with _executor(workers, scheduler, tls=tls, out=out) as executor:
         rows = run_batch(tasks, out, executor, say=_say, ended=_ended)
     _show(rows, as_json=as_json)
-
-
-def certificates_in(folder: Path | None) -> Certificates:
-    """The files of the option ``--tls``.
-
-    Raises:
-        ConfigError: If no folder is given.
-    """
-    from recon4.executors.cluster import Certificates
-
-    if folder is None:
-        raise ConfigError("command: --scheduler needs --tls FOLDER with its certificates")
-    return Certificates(folder / "ca.pem", folder / "client.pem", folder / "client-key.pem")
 
 
 def _executor(workers: int, scheduler: str, *, tls: Path | None, out: Path) -> Executor:

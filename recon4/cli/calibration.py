@@ -79,3 +79,14 @@ def _write(found: MethodResult, out: Path) -> None:
     with atomic_file(out) as temporary:
         temporary.write_text(format_rig(found.rig), "utf-8")
     write(f"{found.outcome}\n{out}")
+
+
+def assignments_of(word: str) -> list[str]:
+    """Assignments of the option ``--calibrate``."""
+    if not word:
+        return []
+    if word in ("auto", "off"):
+        return [f"calibration.mode={word}"]
+    if word == "beams":
+        return ["calibration.mode=auto", "calibration.beams=true"]
+    return ["calibration.mode=auto", f"calibration.sensors={word}"]

@@ -1,4 +1,4 @@
-"""The command ``recon4 doctor``."""
+"""The commands ``recon4 doctor`` and ``recon4 compile``: this machine."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.batch import SchedulerOption, TlsOption, certificates_in
 from recon4.cli.terminal import write
+from recon4.cli.workers import SchedulerOption, TlsOption, certificates_in
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -41,6 +41,17 @@ def doctor(
             write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
     if not all(check.ok for check in checks):
         raise typer.Exit(1)
+
+
+@machine.command("compile")
+def compile_command() -> None:
+    """Compile the kernels, once after an installation; other commands do it when they need to."""
+    from recon4.cli.terminal import watcher
+    from recon4.system.compile_kernels import compile_kernels
+
+    with watcher() as progress:
+        new = compile_kernels(progress)
+    write("compiled" if new else "compiled already")
 
 
 def _examine_cluster(scheduler: str, tls: Path | None, shared: Path) -> Check:

@@ -19,7 +19,7 @@ import typer
 import recon4
 from recon4.cli.backup import backups
 from recon4.cli.batch import batches
-from recon4.cli.calibration import calibration
+from recon4.cli.calibration import assignments_of, calibration
 from recon4.cli.classify import classify
 from recon4.cli.compare import comparison
 from recon4.cli.confinement import compile_first, confine_command, result_folder
@@ -36,6 +36,13 @@ from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
 from recon4.cli.storage import space
 from recon4.cli.terminal import write
+from recon4.cli.workers import (
+    SchedulerOption,
+    TlsOption,
+    WorkersOption,
+    chosen_workers,
+    run_confined,
+)
 from recon4.errors import Cancelled, Recon4Error
 from recon4.locales.languages import ENVIRONMENT, LANGUAGE_HELP, checked, of_terminal
 from recon4.system.stopping import StopSignals
@@ -132,6 +139,7 @@ def info(
 
 @app.command()
 def process(  # noqa: PLR0913 - an argument for each option
+    context: typer.Context,
     recordings: Annotated[
         list[Path],
         typer.Argument(help="pcap, bag, folder of clouds, CARMEN log, tables of line scans."),
@@ -148,15 +156,21 @@ def process(  # noqa: PLR0913 - an argument for each option
     verbose: Annotated[
         bool, typer.Option("-v", "--verbose", help="Show what the odometry tried to assume.")
     ] = False,
+    workers: WorkersOption = 0,
+    scheduler: SchedulerOption = "",
+    tls: TlsOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Make a map of a recording; started again, it continues where it stopped."""
     from recon4.recording.sources import Sources, require_files
 
-    chosen = _settings(preset, [*_calibrate(calibrate), *(assignments or [])])
+    chosen = _settings(preset, [*assignments_of(calibrate), *(assignments or [])])
     require_files([*recordings, *(path for path in (imu, gnss) if path)])
     compile_first()
-    confine_command(write=[result_folder(out)])
+    folder = result_folder(out)
+    if executor := chosen_workers(workers, scheduler, tls=tls, out=folder):
+        raise typer.Exit(run_confined(context, folder, executor))
+    confine_command(write=[folder])
 
     from recon4.cli.terminal import describe_summary, describe_tried, watcher
     from recon4.model.events import Warned
@@ -174,28 +188,6 @@ def process(  # noqa: PLR0913 - an argument for each option
         _write_json(summary.to_json())
     else:
         write("\n".join([describe_summary(summary), *(describe_tried(out) if verbose else ())]))
-
-
-def _calibrate(word: str) -> list[str]:
-    """Assignments of the option ``--calibrate``."""
-    if not word:
-        return []
-    if word in ("auto", "off"):
-        return [f"calibration.mode={word}"]
-    if word == "beams":
-        return ["calibration.mode=auto", "calibration.beams=true"]
-    return ["calibration.mode=auto", f"calibration.sensors={word}"]
-
-
-@app.command("compile")
-def compile_command() -> None:
-    """Compile the kernels, once after an installation; other commands do it when they need to."""
-    from recon4.cli.terminal import watcher
-    from recon4.system.compile_kernels import compile_kernels
-
-    with watcher() as progress:
-        new = compile_kernels(progress)
-    write("compiled" if new else "compiled already")
 
 
 @app.command()

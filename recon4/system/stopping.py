@@ -139,6 +139,10 @@ class StopSignals:
         with suppress(OSError):
             os.write(2, f"recon4: stopped by {self.received.name}{more}\n".encode())
 
+    def is_said(self) -> None:
+        """Another process has said why this one ends."""
+        self._said = True
+
     def _stop(self, number: int, _: FrameType | None) -> None:
         if number == signal.SIGHUP:
             self._forget_closed_terminals()
