@@ -5,6 +5,7 @@ The worker is trusted by the scheduler and all who use it, so it opens none of t
 
 from __future__ import annotations
 
+import atexit
 import os
 import select
 import subprocess
@@ -183,6 +184,12 @@ def _give_back(maker: _Maker) -> None:
         return
     with _lock:
         _idle.append(maker)
+
+
+@atexit.register
+def _end_idle() -> None:
+    while _idle:
+        _idle.pop().end()
 
 
 def _compile_once() -> None:
