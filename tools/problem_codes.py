@@ -29,7 +29,11 @@ that its text quotes.
 The text is `detail`, in the language of the request; here it is in English, with `‹values›`.
 Reasons why a job ended are the `reason` of the job and have no status."""
 _Error = TypeVar("_Error", bound=Exception)
-TITLES = {"problems": "Problems of requests", "endings": "Reasons why jobs ended"}
+TITLES = {
+    "problems": "Problems of requests",
+    "endings": "Reasons why jobs ended",
+    "references": "What is said of references",
+}
 
 
 def problems_page(made: str) -> str:
