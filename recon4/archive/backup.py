@@ -34,6 +34,7 @@ from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import is_project
 from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_text
 from recon4.store.sqlite_files import connect, connect_read_only
+from recon4.store.unfinished import UNFINISHED
 
 SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls", "metrics.token", "backups/access-")
 """Beginnings of the names of files that are secret, or say whom the server trusts: keys, password
@@ -174,7 +175,11 @@ def _names(root: Path, *, with_keys: bool) -> Iterator[str]:
     """Files to copy, relative to the root."""
     for parent, folders, names in os.walk(root):
         place = Path(parent).relative_to(root)
-        folders[:] = [f for f in folders if not _TEMPORARY.fullmatch(f) and not _again(place, f)]
+        folders[:] = [
+            name
+            for name in folders
+            if not _TEMPORARY.fullmatch(name) and not _made_again(root, place / name)
+        ]
         for name in names:
             relative = (place / name).as_posix()
             if _TEMPORARY.fullmatch(name) or name in (LOCK, TURN) or _is_beside(name):
@@ -185,8 +190,11 @@ def _names(root: Path, *, with_keys: bool) -> Iterator[str]:
                 yield relative
 
 
-def _again(place: Path, folder: str) -> bool:
-    return place == Path(STATE) and folder in _DERIVED
+def _made_again(root: Path, folder: Path) -> bool:
+    """Whether a server, or the next run of a project, makes what is in a folder again."""
+    if folder.name == UNFINISHED:
+        return is_project(root / folder.parent)
+    return folder.parent == Path(STATE) and folder.name in _DERIVED
 
 
 def _is_beside(name: str) -> bool:

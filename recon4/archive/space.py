@@ -22,6 +22,7 @@ from recon4.store.hashing import files_below
 from recon4.store.json_files import read_object
 from recon4.store.project import Project, read_artifacts, read_description, read_stages
 from recon4.store.seal import changing
+from recon4.store.unfinished import UNFINISHED
 
 ARTIFACTS = "artifacts"
 
@@ -30,7 +31,7 @@ class Freeable(StrEnum):
     """Why a part of a project can be freed."""
 
     EARLIER = "earlier"
-    """Of earlier runs with other settings or decisions, or damaged."""
+    """Of earlier runs with other settings or decisions, damaged, or left by a killed run."""
     FRAMES = "frames"
     """The points as recorded: needed by new decisions, by the views of pairs and of multiframes."""
     MAP = "map"
@@ -121,6 +122,9 @@ def _remove(project: Project, part: StoredPart) -> None:
     path = project.root / part.name
     gone = temporary_beside(path)
     try:
+        if part.name == UNFINISHED:  # nothing refers to it; a run makes it again
+            shutil.rmtree(path)
+            return
         with changing(project.root, part.name, compared=False):
             path.rename(gone)
         project.ledger.forget(path.name)
@@ -165,7 +169,8 @@ def _unknown(key: str) -> str:
 
 
 def _file(path: Path, seen: set[tuple[int, int]]) -> StoredPart:
-    return StoredPart(path.name, path.name, _size(path, seen), None)
+    freeable = Freeable.EARLIER if path.name == UNFINISHED else None
+    return StoredPart(path.name, path.name, _size(path, seen), freeable)
 
 
 def _size(path: Path, seen: set[tuple[int, int]]) -> int:

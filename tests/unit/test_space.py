@@ -6,6 +6,8 @@ import shutil
 
 import pytest
 
+from recon4.archive.backup import back_up
+from recon4.archive.listing import read_list
 from recon4.archive.space import Freeable, free_space, stored_parts
 from recon4.archive.verify import verify
 from recon4.cli.main import main
@@ -74,6 +76,19 @@ def test_what_a_run_writes_stays(office):
     (part,) = (part for part in stored_parts(office) if part.what == "unfinished artifact")
 
     assert (part.freeable, part.why) == (None, "a run writes it")
+
+
+def test_what_a_killed_run_left_can_be_freed_and_is_not_backed_up(office, tmp_path):
+    left = office / "unfinished" / "map-0123456789ab"
+    left.mkdir(parents=True)
+    (left / "tiles").write_bytes(bytes(1000))
+
+    made = back_up(office, tmp_path / "backups", with_keys=False, progress=Silent())
+    freed = free_space(office, [Freeable.EARLIER])
+
+    assert not [name for name in read_list(made.path).files if "unfinished" in name]
+    assert [(part.name, part.bytes) for part in freed] == [("unfinished", 1000)]
+    assert not (office / "unfinished").exists() and verify(office, Silent()).damaged == ()
 
 
 def test_an_artifact_of_an_earlier_run_can_be_freed(office):
