@@ -27,7 +27,7 @@ class _Tried(msgspec.Struct, array_like=True):
     """`Edge.overlap`, ``error_m``, ``limit_m``, ``degeneracy``."""
     converged: bool
     iterations: int
-    judgments: list[tuple[str, str, str, str, float | None, float | None]]
+    history: list[tuple[str, str, str, str, float | None, float | None]]
 
 
 class TriedPairs:
@@ -55,7 +55,7 @@ class TriedPairs:
             numbers=tuple(float(one) for one in numbers),  # type: ignore[arg-type]
             converged=bool(edge.converged),
             iterations=int(edge.iterations),
-            judgments=[_row(one) for one in edge.judgments],
+            history=[_row(one) for one in edge.judgments],
         )
         with self._lock:
             self._log.append(msgspec.msgpack.encode(record))
@@ -85,7 +85,7 @@ def _edge(pair: Pair, tried: _Tried) -> Edge:
         kind=EdgeKind(pair.kind),
         T_i_j=SE3(values[:9].reshape(3, 3), values[9:12]),
         information=values[12:].reshape(6, 6),
-        judgments=tuple(_judgment(*row) for row in tried.judgments),
+        judgments=tuple(_judgment(*row) for row in tried.history),
         overlap=overlap,
         error_m=error_m,
         limit_m=limit_m,

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from msgspec import structs
 
 from recon4.model.classes import PointClass
 from recon4.model.events import Warned
@@ -125,10 +126,10 @@ def test_damaged_files_of_a_folder_are_a_failure_and_no_crash_of_the_worker(tmp_
     assert on_worker._idle[0].alive
 
 
-def test_a_maker_that_is_killed_is_a_failure(tmp_path):
-    folder = tmp_path / "artifacts" / "a"
-    folder.mkdir(parents=True)
-    os.mkfifo(folder / "recipe.json")  # opening it waits
+def test_who_stops_waiting_ends_the_maker(tmp_path, monkeypatch):
+    (tmp_path / "artifacts" / "a").mkdir(parents=True)
+    often = structs.replace(on_worker.ORDERS, looks_every_s=0.001)  # before it has begun
+    monkeypatch.setattr(on_worker, "ORDERS", often)
 
     with pytest.raises(ZeroDivisionError):
         make_part(task(tmp_path), lambda *_: 1 / 0)
