@@ -6,14 +6,16 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from msgspec import structs
 
+from recon4.locales.numbers import number_functions
 from recon4_app.viewer import proxy
-from recon4_app.viewer.client.legend_html import count
 from tests.benchmarks.viewer_figures import PEOPLE, own_server
 from tests.deadlines import HANG_S
 from tests.processes import viewer_process
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 from tests.service.viser_client import camera, viewing
+
+COUNT = number_functions("en")["COUNT"]
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +36,7 @@ def test_twenty_people_at_once_each_have_a_map_of_a_million_points(million):
     def look(url):
         with viewing(url) as client:
             ask_for_all(client)
-            client.until(lambda c: c.shown == whole and f"{count(whole)} of" in c.html())
+            client.until(lambda c: c.shown == whole and f"{COUNT(whole)} of" in c.html())
 
     with own_server(million) as (server, _), ThreadPoolExecutor(PEOPLE) as people:
         with viewing(server.url) as first:  # the viewer process is there

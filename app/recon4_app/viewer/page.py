@@ -19,7 +19,7 @@ from recon4_app.network.behind import public_path
 from recon4_app.pages import WEB, Language, language_of
 from recon4_app.projects.model import ProjectView
 from recon4_app.viewer.hotkeys import HOTKEYS
-from recon4_app.viewer.words import approval_words, word_of, words
+from recon4_app.viewer.words import word_of, words
 
 router = APIRouter()
 
@@ -234,4 +234,4 @@ def frame_caption(project: ProjectView, say: Texts) -> str:
     crs = project.summary.get("crs")
     known = isinstance(crs, str) and crs
     frame = say("frame-crs", crs=str(crs)) if known else say("frame-map")
-    return say("caption", frame=frame, approval=approval_words(project.approval.text, say))
+    return say("caption", frame=frame, approval=project.approval.line.said(say.language))
