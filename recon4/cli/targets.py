@@ -82,6 +82,8 @@ def _lines(found: TargetList, asked: bool) -> list[str]:
             f"{1e3 * row.sd_m:7.1f} {off:>7} {row.agreement:10.2f}"
             f"{'  ambiguous' if row.ambiguous else ''}"
         )
+    if found.rows:
+        lines.append("σ is that of the points of a target; errors of the trajectory come on top")
     if asked and found.rmse_m is None:
         lines.append("no three surveyed points agree with targets of the map")
     elif found.rmse_m is not None:
