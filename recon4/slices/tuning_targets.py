@@ -34,7 +34,8 @@ class PlateTuning(Struct, frozen=True, kw_only=True):
     """What surrounds a plate within this shows its edges."""
     off_plane_m: float = 0.03
     """Points farther from the plane of a plate are not on it."""
-    least_points: int = 30
+    least_points: int = 60
+    """Bright spots of walls that are no plates have up to 38."""
     least_around: int = 30
     """With fewer points around it, a plate stands free: its middle is that of its outline."""
     edge_m: float = 0.008
