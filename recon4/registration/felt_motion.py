@@ -14,7 +14,7 @@ shifts; what the odometry makes of a weak direction it does not use, so both may
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -95,7 +95,7 @@ def felt_motion(
     felt = _integrate(t_ns, trajectory, imu, rig=rig)
     if felt is None:
         return None
-    return _smoothed(felt, list(_measurements(steps)), accel_noise)
+    return _smoothed(felt, _measurements(steps), accel_noise)
 
 
 def carried(steps: Sequence[OdometryStep], felt: FeltMotion) -> list[OdometryStep]:
@@ -135,10 +135,23 @@ def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
     _, force = imu_in_body(imu, rig)
     if not np.isfinite(force).all():
         return None
-    known = np.concatenate([imu.t_ns, t_ns])
-    grid = distinct(known[(known >= t_ns[0]) & (known <= t_ns[-1])])
+    # Hours have millions of samples: some minutes at a time.
+    parts = [
+        _integrated(t_ns[k : k + FELT.at_once + 1], trajectory, imu.t_ns, force=force)
+        for k in range(0, len(t_ns) - 1, FELT.at_once)
+    ]
+    dt_s, speed, shift = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return _Felt(dt_s, speed, shift, _missing(t_ns, imu))
+
+
+def _integrated(
+    t_ns: Times, trajectory: Trajectory, sample_ns: Times, *, force: Array
+) -> tuple[Array, Array, Array]:
+    """Times, speeds and shifts of `_Felt` from each of some multiframes to the next."""
+    inside = (sample_ns >= t_ns[0]) & (sample_ns <= t_ns[-1])
+    grid = distinct(np.concatenate([sample_ns[inside], t_ns]))
     s = 1e-9 * (grid - grid[0])
-    sample_s = 1e-9 * (imu.t_ns - grid[0])
+    sample_s = 1e-9 * (sample_ns - grid[0])
     f = np.stack([np.interp(s, sample_s, force[:, axis]) for axis in range(3)], axis=1)
     R = trajectory.at(grid, slack_ns=FELT.longest_gap_ns).R
     both = np.concatenate([(R @ f[:, :, None]), R], axis=2).reshape(len(grid), 12)
@@ -151,7 +164,7 @@ def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
     dt_s = np.diff(s[rows])
     speed = np.diff(once[rows], axis=0)
     shift = np.diff(twice[rows], axis=0) - once[rows[:-1]] * dt_s[:, None]
-    return _Felt(dt_s, speed.reshape(-1, 3, 4), shift.reshape(-1, 3, 4), _missing(t_ns, imu))
+    return dt_s, speed.reshape(-1, 3, 4), shift.reshape(-1, 3, 4)
 
 
 def _missing(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
@@ -179,25 +192,24 @@ def _measurements(steps: Sequence[OdometryStep]) -> Iterator[tuple[Array, Array,
 
 
 def _smoothed(
-    felt: _Felt, measured: Sequence[tuple[Array, Array, bool]], accel_noise: float
+    felt: _Felt, measured: Iterable[tuple[Array, Array, bool]], accel_noise: float
 ) -> FeltMotion:
     """Rauch, Tung and Striebel's smoother; the state is velocity, bias, gravity, (9,)."""
     x, P = np.zeros(9), np.diag(np.repeat(FELT.first_sd, 3) ** 2)
     x[8] = -STANDARD_GRAVITY_M_S2
-    filtered = []
+    filtered: list[tuple[Array, Array]] = []
     for k, (shift_m, cov, still) in enumerate(measured):
         H = _shift_by_state(felt, k)
         x, P = _updated(x, P, H, z=shift_m - felt.shift[k, :, 0], R=cov)
         if still:
             x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=FELT.at_rest_m_s**2 * np.eye(3))
-        F, Q = _transition(felt, k, accel_noise)
-        predicted = F @ x
-        predicted[_V] += felt.speed[k, :, 0]
-        filtered.append((F, (x, P), (predicted, F @ P @ F.T + Q)))
-        x, P = filtered[-1][2]
+        filtered.append((x, P))
+        x, P = _ahead(felt, k, filtered[-1], accel_noise=accel_noise)
     shifts_m, covs = np.zeros((len(filtered), 3)), np.zeros((len(filtered), 3, 3))
     for k in range(len(filtered) - 1, -1, -1):
-        F, known, ahead = filtered[k]
+        known = filtered[k]
+        F, _ = _transition(felt, k, accel_noise)
+        ahead = _ahead(felt, k, known, accel_noise=accel_noise)
         gain = np.linalg.solve(ahead[1], F @ known[1]).T
         x, P = known[0] + gain @ (x - ahead[0]), known[1] + gain @ (P - ahead[1]) @ gain.T
         H = _shift_by_state(felt, k)
@@ -208,6 +220,17 @@ def _smoothed(
 def _shift_by_state(felt: _Felt, k: int) -> Array:
     dt_s = felt.dt_s[k]
     return np.hstack([dt_s * np.eye(3), -felt.shift[k, :, 1:], 0.5 * dt_s**2 * np.eye(3)])
+
+
+def _ahead(
+    felt: _Felt, k: int, known: tuple[Array, Array], *, accel_noise: float
+) -> tuple[Array, Array]:
+    """State and covariance at the next multiframe."""
+    F, Q = _transition(felt, k, accel_noise)
+    x, P = known
+    predicted = F @ x
+    predicted[_V] += felt.speed[k, :, 0]
+    return predicted, F @ P @ F.T + Q
 
 
 def _transition(felt: _Felt, k: int, accel_noise: float) -> tuple[Array, Array]:

@@ -26,6 +26,8 @@ class FeltMotionTuning(Struct, frozen=True, kw_only=True):
     """No motion over a multiframe is known better [m]."""
     longest_gap_ns: int = 50_000_000
     """Samples farther apart do not feel what lies between them [ns]."""
+    at_once: int = 2000
+    """Multiframes whose samples are integrated at a time: hours have millions of samples."""
 
 
 FELT = FeltMotionTuning()

@@ -14,7 +14,9 @@ def test_package_project_and_changelog_state_the_same_version():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     headings = re.findall(r"^## \[([^\]]+)\]", (ROOT / "CHANGELOG.md").read_text("utf-8"), re.M)
 
-    assert recon4.__version__ == project["version"] == headings[0]
+    released = [one for one in headings if one != "Unreleased"]
+    assert recon4.__version__ == project["version"] == released[0]
+    assert "Unreleased" not in headings[1:]
     assert re.fullmatch(r"\d+\.\d+\.\d+", recon4.__version__)
 
 

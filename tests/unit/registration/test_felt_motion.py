@@ -4,10 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.registration import felt_motion as module
 from recon4.registration.felt_motion import carried, felt_motion
 from recon4.registration.step import OdometryStep
 from tests.unit.registration.test_unseen_rides import RIG, walked
@@ -49,6 +51,16 @@ def after(
 def stated_m(steps: list[OdometryStep]) -> float:
     """Standard deviation of the motion over the weak stretch, all errors being the same."""
     return sum(step.weak_motion_sd_m for step in steps)
+
+
+def test_a_walk_in_parts_is_felt_as_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+    trajectory, imu = walked("office", seconds=15.0, seed=1)
+    whole = [step.motion_cov for step in after(trajectory, imu, UP)]
+
+    monkeypatch.setattr(module, "FELT", structs.replace(module.FELT, at_once=7))
+    parts = [step.motion_cov for step in after(trajectory, imu, UP)]
+
+    assert np.allclose(parts, whole, rtol=1e-9, atol=1e-15)
 
 
 @pytest.mark.parametrize("direction", [ALONG_X, UP], ids=["along", "up"])
