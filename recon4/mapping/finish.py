@@ -8,17 +8,14 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 
 from recon4.mapping.buckets import TileBuckets
-from recon4.mapping.made_tiles import TileCounts
+from recon4.mapping.made_tiles import Finished, TileCounts
 from recon4.mapping.records import Records, Tile
 from recon4.mapping.threads import in_order
 from recon4.mapping.tile import Recipe, make_tile
 from recon4.mapping.tile_memory import Scratch, TileMeans
-from recon4.mapping.tile_writer import PackedTile, TileWriter
+from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.sandbox.freed_memory import return_freed_memory
-
-Finished = tuple[PackedTile, TileCounts]
-"""A tile as it will be stored, and what became of its points."""
 
 
 def finish_tile(

@@ -6,7 +6,7 @@ import shutil
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.cell_runs import CellRuns
-from recon4.mapping.tile_writer import PackedTile, TileBlock, TileRow
+from recon4.mapping.tile_writer import PackedTile
 from recon4.model.trajectory import Times
 from recon4.store.atomic import atomic_file
 from recon4.store.unfinished import RecordLog, unfinished_file
@@ -89,16 +89,35 @@ def take_placed(folder: Path, buckets: TileBuckets, cells: CellRuns) -> Times | 
     return np.frombuffer(placed.starts, np.int64)
 
 
-class _Made(msgspec.Struct, array_like=True):
-    """A tile in the log."""
+Finished = tuple[PackedTile, TileCounts]
+"""A tile as it will be stored, and what became of its points."""
 
-    row: TileRow
-    count: int
-    blocks: list[tuple[int, list[bytes], list[int]]]
-    """Points, fields and widths."""
+
+@dataclass(frozen=True, slots=True)
+class _Made:
+    """A finished tile in a file."""
+
+    packed: PackedTile
     removed: dict[str, int]
     corrected: dict[int, int]
     classes: dict[int, int]
+
+
+def made_bytes(made: Finished) -> bytes:
+    """A finished tile as a file of this process, or of a worker, keeps it."""
+    packed, counts = made
+    return msgspec.msgpack.encode(_Made(packed, counts.removed, counts.corrected, counts.classes))
+
+
+def made_of(data: bytes) -> Finished:
+    """The tile of `made_bytes`.
+
+    Raises:
+        msgspec.DecodeError: If these are other bytes.
+    """
+    made = msgspec.msgpack.decode(data, type=_Made)
+    counts = TileCounts(Counter(made.removed), Counter(made.corrected), Counter(made.classes))
+    return made.packed, counts
 
 
 class MadeTiles:
@@ -112,29 +131,11 @@ class MadeTiles:
         """Number of tiles that an earlier process has made."""
         return len(self._log)
 
-    def earlier(self) -> Iterator[tuple[PackedTile, TileCounts]]:
+    def earlier(self) -> Iterator[Finished]:
         """Those tiles."""
-        for record in self._log:
-            made = msgspec.msgpack.decode(record, type=_Made)
-            # Bounds and times of the blocks are in the row already.
-            nothing = [0.0] * 3, [0.0] * 3, (0, 0)
-            blocks = [TileBlock(*block, *nothing) for block in made.blocks]
-            counts = (made.removed, made.corrected, made.classes)
-            yield (
-                PackedTile(made.row, made.count, blocks),
-                TileCounts(*(Counter(one) for one in counts)),  # type: ignore[arg-type]
-            )
+        return map(made_of, self._log)
 
-    def kept(self, made: tuple[PackedTile, TileCounts]) -> tuple[PackedTile, TileCounts]:
+    def kept(self, made: Finished) -> Finished:
         """Note a tile, and return it."""
-        tile, counts = made
-        numbers = (counts.removed, counts.corrected, counts.classes)
-        row = asdict(tile.row)
-        record = _Made(
-            TileRow(**row),
-            tile.count,
-            [(block.count, block.data, block.width) for block in tile.blocks],
-            *({key: int(n) for key, n in one.items()} for one in numbers),  # type: ignore[arg-type]
-        )
-        self._log.append(msgspec.msgpack.encode(record))
+        self._log.append(made_bytes(made))
         return made

@@ -8,7 +8,8 @@ from functools import partial
 
 from recon4.errors import StoreError
 from recon4.mapping.buckets import TileBuckets
-from recon4.mapping.finish import Finished, finish_tile
+from recon4.mapping.finish import finish_tile
+from recon4.mapping.made_tiles import Finished
 from recon4.mapping.records import Tile
 from recon4.mapping.threads import Each
 from recon4.mapping.tile import Recipe

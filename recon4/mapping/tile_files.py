@@ -6,10 +6,7 @@
 
 from __future__ import annotations
 
-import os
-from collections import Counter
 from dataclasses import dataclass, field
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -24,14 +21,14 @@ from recon4.kernels.structure_points import Structure
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.class_corrections import ClassVolume, ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
-from recon4.mapping.finish import Finished, finish_tile
+from recon4.mapping.finish import finish_tile
 from recon4.mapping.grid import Grid
-from recon4.mapping.made_tiles import TileCounts
+from recon4.mapping.made_tiles import Finished, made_bytes, made_of
 from recon4.mapping.records import Tile
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import Recipe
 from recon4.mapping.tile_memory import Scratch, TileMeans
-from recon4.mapping.tile_writer import PackedTile, TileWriter
+from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.volumes import Volume
 from recon4.sandbox.freed_memory import return_freed_memory
@@ -42,6 +39,7 @@ from recon4.store.arrays import (
     save_arrays,
     save_intensity_table,
 )
+from recon4.store.atomic import atomic_file
 from recon4.untrusted.bounded import read_bytes_limited
 from recon4.untrusted.limits import LIMITS
 
@@ -68,16 +66,6 @@ class _Facts(msgspec.Struct, frozen=True, kw_only=True):
     """Of the map."""
     corrections: list[_Correction] | None
     has_table: bool
-
-
-@dataclass(frozen=True, slots=True)
-class _MadeFile:
-    """The content of ``made_I_J_K``."""
-
-    packed: PackedTile
-    removed: dict[str, int]
-    corrected: dict[int, int]
-    classes: dict[int, int]
 
 
 def save_recipe(buckets: TileBuckets, recipe: Recipe, writer: TileWriter) -> None:
@@ -119,12 +107,11 @@ def read_made(folder: Path, tile: Tile) -> Finished:
     path = _made_path(folder, tile)
     data = read_bytes_limited(path, LIMITS.array_bytes, failure=StoreError)
     try:
-        made = msgspec.msgpack.decode(data, type=_MadeFile)
+        made = made_of(data)
     except (msgspec.DecodeError, RecursionError) as error:
         raise StoreError(f"{path.name}: {error}") from error
     path.unlink()
-    counts = TileCounts(Counter(made.removed), Counter(made.corrected), Counter(made.classes))
-    return made.packed, counts
+    return made
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -164,8 +151,7 @@ class TileMaker:
             numbers: Its index.
 
         Raises:
-            StoreError: If there is no such tile.
-            OSError: If it cannot be written.
+            StoreError: If there is no such tile, or it cannot be written.
         """
         i, j, k = numbers
         tile = i, j, k
@@ -174,14 +160,10 @@ class TileMaker:
         records = self.buckets.read(tile)
         is_large = len(records) >= MAP_BUILD.large
         means = TileMeans(None if is_large else self.scratch)
-        finish = partial(finish_tile, recipe=self.recipe, means=means, writer=self.writer)
-        packed, counts = finish(tile, records)
+        made = finish_tile(tile, records, recipe=self.recipe, means=means, writer=self.writer)
         del records
-        made = _MadeFile(packed, counts.removed, counts.corrected, counts.classes)
-        path = _made_path(self.buckets.folder, tile)
-        unfinished = path.with_name(f"{path.name}.{os.getpid()}")
-        unfinished.write_bytes(msgspec.msgpack.encode(made))
-        os.replace(unfinished, path)
+        with atomic_file(_made_path(self.buckets.folder, tile)) as temporary:
+            temporary.write_bytes(made_bytes(made))
         if is_large:
             return_freed_memory()
 
