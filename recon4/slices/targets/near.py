@@ -62,6 +62,8 @@ class PlacePoints:
             value: Name of the intensities.
         """
         self._tiles, self._value = tiles, value
+        self._low_m = np.array([tile.low_m for tile in tiles]).reshape(-1, 3)
+        self._high_m = np.array([tile.high_m for tile in tiles]).reshape(-1, 3)
         self._kept: OrderedDict[int, _Sorted] = OrderedDict()
 
     def in_order(self, places: Array, rows: NDArray[np.intp] | None = None) -> NDArray[np.intp]:
@@ -73,11 +75,10 @@ class PlacePoints:
 
     def around(self, p_map: Array, radius_m: float) -> tuple[Array, Array]:
         """Points in a ball [m], (N, 3), and their intensities, (N,)."""
-        low, high = p_map - radius_m, p_map + radius_m
         parts = [(np.zeros((0, 3)), np.zeros(0))]
-        for row, tile in enumerate(self._tiles):
-            if np.any(np.array(tile.low_m) > high) or np.any(np.array(tile.high_m) < low):
-                continue
+        meets = (self._low_m <= p_map + radius_m) & (self._high_m >= p_map - radius_m)
+        for row in np.flatnonzero(meets.all(axis=1)).tolist():
+            tile = self._tiles.tiles[row]
             xyz, value = self._sorted(row, tile).around(p_map - tile.origin_m, radius_m)
             parts.append((xyz + tile.origin_m, value))
         return np.concatenate([one[0] for one in parts]), np.concatenate([one[1] for one in parts])
