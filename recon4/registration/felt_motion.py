@@ -204,12 +204,11 @@ def _smoothed(
         if still:
             x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=FELT.at_rest_m_s**2 * np.eye(3))
         filtered.append((x, P))
-        x, P = _ahead(felt, k, filtered[-1], accel_noise=accel_noise)
+        _, x, P = _ahead(felt, k, filtered[-1], accel_noise=accel_noise)
     shifts_m, covs = np.zeros((len(filtered), 3)), np.zeros((len(filtered), 3, 3))
     for k in range(len(filtered) - 1, -1, -1):
         known = filtered[k]
-        F, _ = _transition(felt, k, accel_noise)
-        ahead = _ahead(felt, k, known, accel_noise=accel_noise)
+        F, *ahead = _ahead(felt, k, known, accel_noise=accel_noise)
         gain = np.linalg.solve(ahead[1], F @ known[1]).T
         x, P = known[0] + gain @ (x - ahead[0]), known[1] + gain @ (P - ahead[1]) @ gain.T
         H = _shift_by_state(felt, k)
@@ -224,13 +223,13 @@ def _shift_by_state(felt: _Felt, k: int) -> Array:
 
 def _ahead(
     felt: _Felt, k: int, known: tuple[Array, Array], *, accel_noise: float
-) -> tuple[Array, Array]:
-    """State and covariance at the next multiframe."""
+) -> tuple[Array, Array, Array]:
+    """Transition to the next multiframe, state and covariance there."""
     F, Q = _transition(felt, k, accel_noise)
     x, P = known
     predicted = F @ x
     predicted[_V] += felt.speed[k, :, 0]
-    return predicted, F @ P @ F.T + Q
+    return F, predicted, F @ P @ F.T + Q
 
 
 def _transition(felt: _Felt, k: int, accel_noise: float) -> tuple[Array, Array]:
