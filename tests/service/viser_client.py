@@ -64,6 +64,7 @@ class ViserClient:
         self.cameras: list[dict[str, Any]] = []
         self.notes: list[str] = []
         self.bytes = 0
+        """Bytes of all that was shown, without the questions that pace it."""
         self.colored = 0
         """Points whose colors were sent again."""
 
@@ -90,11 +91,12 @@ class ViserClient:
 
     def take(self, data: bytes | str) -> None:
         assert isinstance(data, bytes)
-        self.bytes += len(data)
         packed = int.from_bytes(data[8:16], "little")
         inner = zstandard.ZstdDecompressor().decompress(data[16 : 16 + packed])
         window = msgspec.msgpack.decode(inner)
         sizes = window["binaryBufferLengths"]
+        if any(m["type"] != "LocalStorageGetItemRequestMessage" for m in window["messages"]):
+            self.bytes += len(data)
         for message in window["messages"]:
             self._apply(message, sizes)
 
