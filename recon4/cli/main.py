@@ -31,6 +31,7 @@ from recon4.cli.findings import findings
 from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
 from recon4.cli.machine import machine
+from recon4.cli.overview import CommandGroup
 from recon4.cli.products import products
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(
     name="recon4",
+    cls=CommandGroup,
     help="From the recording of a LiDAR backpack to a verified, leveled, georeferenced map.",
     invoke_without_command=True,
     add_completion=False,

@@ -8,9 +8,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
 import recon4
-from recon4.cli.main import main
+from recon4.cli.main import app, main
+from recon4.cli.overview import HEADINGS
 from recon4.settings import preset, to_json
 from recon4.system.doctor import examine
 from tests.unit.store.small_pipeline import run_all
@@ -36,6 +38,16 @@ def _processor_seconds(argument: str) -> float:
     subprocess.run(command, check=True, capture_output=True, cwd=ROOT)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def test_every_command_has_one_heading_in_the_help(capsys):
+    main(["--help"])
+    text = capsys.readouterr().out
+
+    placed = [name for names in HEADINGS.values() for name in names]
+    assert sorted(placed) == sorted(get_command(app).commands)
+    assert [text.count(f"─ {heading} ─") for heading in HEADINGS] == [1] * len(HEADINGS)
+    assert "─ Commands ─" not in text
 
 
 def test_the_version_is_printed(capsys):
