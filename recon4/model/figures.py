@@ -10,6 +10,8 @@ from typing import Literal
 
 import msgspec
 
+from recon4.model.finding import Value
+
 Point = tuple[float, float, float]
 
 
@@ -274,8 +276,10 @@ class Scan2dFigures(Figures, frozen=True, kw_only=True):
     """Angle between the plane of the laser and the level one, by rig file or tf [°]."""
     mirrored: bool = False
     """Whether the scans turned against the odometry, and were mirrored."""
+    stated: dict[str, Value] = {}
+    """What states the mount of the laser, and how it is, as values of findings; empty = nothing."""
     mount: str = ""
-    """What states the mount of the laser, and how it is; empty = nothing does."""
+    """Of earlier versions: the same as text."""
     doubts: tuple[str, ...] = ()
     """Of earlier versions: sentences about the mount of the laser, in place of findings."""
 

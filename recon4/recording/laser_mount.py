@@ -10,7 +10,6 @@ import numpy as np
 
 from recon4.geometry.se2 import compose
 from recon4.geometry.se3 import SE3, Array
-from recon4.locales.numbers import mount_text
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
@@ -18,7 +17,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import is_upside_down, turned_round
 from recon4.recording.formats.bags import Bag
 from recon4.recording.frame_graph import last_name, mount_value
-from recon4.recording.mounts import Mounts, read_mounts, stated_text, stated_values
+from recon4.recording.mounts import Mounts, read_mounts, stated_values
 from recon4.recording.report import ImportReport
 from recon4.recording.transform_messages import frame_name
 from recon4.recording.tuning_heads import PROBE
@@ -35,10 +34,10 @@ class LaserMount:
     T_body_laser: SE3
     T_odometry_laser: SE3
     """Mount in the frame whose poses the odometry gives."""
-    source: str
-    """Who states it, with values."""
     stated: Mapping[str, Value]
-    """The same as values of `DerivedKind.MOUNT_STATED`."""
+    """Who states it, as values of `DerivedKind.MOUNT_STATED`."""
+    doubted: Mapping[str, Value]
+    """The same as values of findings: ``by_rig`` or ``by_recording`` with its frames."""
 
     @property
     def is_upside_down(self) -> bool:
@@ -79,7 +78,7 @@ def mount_of_rig(T_body_laser: SE3) -> LaserMount:
     """The mount that a rig file states; its odometry is that of the body."""
     by_rig = mount_value(T_body_laser)
     stated: dict[str, Value] = {"what": "laser", "by_rig": by_rig}
-    return LaserMount(T_body_laser, T_body_laser, f"the rig file: {mount_text(by_rig)}", stated)
+    return LaserMount(T_body_laser, T_body_laser, stated, {"by_rig": by_rig})
 
 
 def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -> LaserMount | None:
@@ -103,11 +102,13 @@ def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -
         return None
     moving = mounts.graph.meant_by(_child_frame(bag, odometry) if odometry else "")
     T_odometry_laser = mounts.graph.T_a_b(moving[0], frame) if len(moving) == 1 else None
+    stated = stated_values(mounts, body, frame, what="laser")
+    place = {name: stated[name] for name in ("parent", "child", "sources")}
     return LaserMount(
         T_body_laser,
         T_body_laser if T_odometry_laser is None else T_odometry_laser,
-        stated_text(mounts, body, frame, what="laser"),
-        stated_values(mounts, body, frame, what="laser"),
+        stated,
+        place | {"by_recording": mount_value(T_body_laser)},
     )
 
 
@@ -145,7 +146,7 @@ def mounted_scans(
             FindingKind.LASER_TILTED,
             tilt_rad=mount.tilt_rad,
             longer=min(longer, 9.99),
-            mount=mount.source,
+            **mount.doubted,
         )
     return MountedScans(scans, mount)
 
@@ -158,8 +159,8 @@ def _compare(by_rig: LaserMount, by_bag: LaserMount, report: ImportReport) -> No
         report.warn(
             FindingKind.LASER_CONTRADICTED,
             angle_rad=angle_rad,
-            by_rig=by_rig.source,
-            by_recording=by_bag.source,
+            **by_rig.doubted,
+            **by_bag.doubted,
         )
 
 

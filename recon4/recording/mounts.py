@@ -250,18 +250,6 @@ def stated_mount(
     return T_a_b
 
 
-def stated_text(mounts: Mounts, a: str, b: str, *, what: str) -> str:
-    """Where a mount comes from, and its values."""
-    T_a_b = mounts.graph.T_a_b(a, b)
-    assert T_a_b is not None
-    sources = sorted({one.source for one in mounts.graph.path(a, b)})
-    values = "not turned, at one place: a placeholder?" * is_placeholder(T_a_b)
-    return (
-        f"mount of the {what} from {' and '.join(sources)}: {a} -> {b} "
-        f"{values or mount_text(mount_value(T_a_b))}"
-    )
-
-
 def stated_values(mounts: Mounts, a: str, b: str, *, what: str) -> dict[str, Value]:
     """Where a mount comes from, and what it is, as values of `DerivedKind.MOUNT_STATED`."""
     T_a_b = mounts.graph.T_a_b(a, b)

@@ -83,7 +83,7 @@ def import_scans(
         outcome=report.outcome,
         tilt_deg=round(mounted.tilt_deg, 2),
         mirrored=mirrored,
-        mount=mounted.mount.source if mounted.mount is not None else "",
+        stated=dict(mounted.mount.doubted) if mounted.mount is not None else {},
     )
 
 

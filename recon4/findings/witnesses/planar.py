@@ -111,7 +111,8 @@ def _mounting(record: PlanarRecord) -> Iterator[Finding]:
         if one.kind in MOUNT_DOUBTS:
             yield replace(one, level=level)
     if scans.mirrored:
-        stated: dict[str, Value] = {"mount": scans.mount} if scans.mount else {}
+        earlier: dict[str, Value] = {"mount": scans.mount} if scans.mount else {}
+        stated = scans.stated or earlier
         yield finding(FindingKind.BEAM_ORDER, level if stated else Level.NOTE, stated)
 
 

@@ -620,7 +620,9 @@ LASER-MOUNT = Einbaulage des Lasers
 
 BEAM-ORDER = Strahlen in falscher Reihenfolge
     .text1 = Die Scans drehen sich gegen die Odometrie: ihre Strahlen sind in falscher Reihenfolge gespeichert, und die Scans sind gespiegelt.
-    .text2 = Das widerspricht der Angabe: { $mount }.
+    .text2 = Das widerspricht der Aufzeichnung: { MOUNT($by_recording) } ({ $parent } -> { $child }, { $sources }).
+    .text3 = Das widerspricht der Rig-Datei: { MOUNT($by_rig) }.
+    .text4 = Das widerspricht der Angabe: { $mount }.
     .meaning = Wie aufgezeichnet wäre die Karte ein Spiegelbild. Die Scans wurden korrigiert.
     .detection = Die Drehungen der Scans haben das umgekehrte Vorzeichen der der Odometrie. Ein Hinweis, wenn nirgends steht, wie der Laser montiert ist.
 

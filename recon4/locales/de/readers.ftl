@@ -462,7 +462,10 @@ MOUNT-CONTRADICTED = Rig-Datei und Bag widersprechen einander
     .detection = Der Unterschied ist größer, als eine angegebene oder kalibrierte Einbaulage bekannt ist.
 
 LASER-TILTED = 2-D-Laser geneigt
-    .text1 = Der Laser ist um { DEGREES($tilt_rad, digits: 1) } geneigt: Strecken in der Karte sind bis zu { PERCENT($longer, digits: 1) } zu lang, und Boden oder Decke können darin sein; { $mount }.
+    .text1 = Der Laser ist um { DEGREES($tilt_rad, digits: 1) } geneigt: Strecken in der Karte sind bis zu { PERCENT($longer, digits: 1) } zu lang, und Boden oder Decke können darin sein.
+    .text2 = Die Aufzeichnung gibt seine Einbaulage an: { MOUNT($by_recording) } ({ $parent } -> { $child }, { $sources }).
+    .text3 = Die Rig-Datei gibt seine Einbaulage an: { MOUNT($by_rig) }.
+    .text4 = { $mount }.
     .meaning = Die Ebene des Lasers ist nicht horizontal.
     .detection = Rig-Datei oder tf. *Nicht verwenden* ab einer Neigung von 30°.
 
@@ -472,7 +475,10 @@ LASER-ON-JOINT = 2-D-Laser an einem bewegten Gelenk
     .detection = *Nicht verwenden* ab einer Neigung von 30°.
 
 LASER-CONTRADICTED = Einbaulage des Lasers widersprochen
-    .text1 = Rig-Datei und Bag widersprechen einander über den Laser: die Lotrichtung in seinen Achsen weicht um { DEGREES($angle_rad, digits: 1) } ab; { $by_rig }; { $by_recording }; die Rig-Datei wird verwendet.
+    .text1 = Rig-Datei und Bag widersprechen einander über den Laser: die Lotrichtung in seinen Achsen weicht um { DEGREES($angle_rad, digits: 1) } ab.
+    .text2 = Die Rig-Datei wird verwendet: { MOUNT($by_rig) }.
+    .text3 = Die Aufzeichnung sagt: { MOUNT($by_recording) }.
+    .text4 = Das ist { $parent } -> { $child } aus { $sources }.
     .meaning = Eine von beiden Einbaulagen ist falsch.
 
 JOINT-CLOCK = Gelenk auf anderer Uhr

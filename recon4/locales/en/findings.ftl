@@ -603,7 +603,9 @@ LASER-MOUNT = Mount of the laser
 
 BEAM-ORDER = Beams in the wrong order
     .text1 = The scans turn against the odometry: their beams are stored in the wrong order, and the scans are mirrored.
-    .text2 = This contradicts what is stated: { $mount }.
+    .text2 = This contradicts the recording: { MOUNT($by_recording) } ({ $parent } -> { $child }, { $sources }).
+    .text3 = This contradicts the rig file: { MOUNT($by_rig) }.
+    .text4 = This contradicts what is stated: { $mount }.
     .meaning = As recorded, the map would be a mirror image. The scans were corrected.
     .detection = The turns of the scans have the sign opposite to those of the odometry. A note if nothing states the mount of the laser.
 

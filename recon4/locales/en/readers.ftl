@@ -463,7 +463,10 @@ MOUNT-CONTRADICTED = Rig file and bag contradict each other
     .detection = The difference is larger than what a stated or a calibrated mount is known to.
 
 LASER-TILTED = 2-D laser tilted
-    .text1 = The laser is tilted by { DEGREES($tilt_rad, digits: 1) }: distances in the map are up to { PERCENT($longer, digits: 1) } too long, and floor or ceiling may be in it; { $mount }.
+    .text1 = The laser is tilted by { DEGREES($tilt_rad, digits: 1) }: distances in the map are up to { PERCENT($longer, digits: 1) } too long, and floor or ceiling may be in it.
+    .text2 = The recording states its mount: { MOUNT($by_recording) } ({ $parent } -> { $child }, { $sources }).
+    .text3 = The rig file states its mount: { MOUNT($by_rig) }.
+    .text4 = { $mount }.
     .meaning = The plane of the laser is not level.
     .detection = Rig file or tf. *Do not use* from a tilt of 30° on.
 
@@ -473,7 +476,10 @@ LASER-ON-JOINT = 2-D laser on a joint that moves
     .detection = *Do not use* from a tilt of 30° on.
 
 LASER-CONTRADICTED = Mount of the laser contradicted
-    .text1 = Rig file and bag contradict each other about the laser: the vertical in its axes differs by { DEGREES($angle_rad, digits: 1) }; { $by_rig }; { $by_recording }; the rig file is used.
+    .text1 = Rig file and bag contradict each other about the laser: the vertical in its axes differs by { DEGREES($angle_rad, digits: 1) }.
+    .text2 = The rig file is used: { MOUNT($by_rig) }.
+    .text3 = The recording says: { MOUNT($by_recording) }.
+    .text4 = These are { $parent } -> { $child } of { $sources }.
     .meaning = One of both mounts is wrong.
 
 JOINT-CLOCK = Joint on another clock

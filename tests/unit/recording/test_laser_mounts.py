@@ -217,7 +217,8 @@ def test_a_tilted_laser_is_announced(tmp_path, pitch):
 
     assert found.tilt_deg == pytest.approx(20.0)
     assert kinds(report) == [K.LASER_TILTED]
-    assert warned(report, K.LASER_TILTED, tilt_rad=float(np.deg2rad(20.0)))
+    assert warned(report, K.LASER_TILTED, tilt_rad=float(np.deg2rad(20.0)), child="laser")
+    assert "states its mount: xyz 0.000 0.000 0.000 m, roll " in words(report)
 
 
 def test_a_laser_that_leans_a_little_is_not_accused(tmp_path):
@@ -237,7 +238,7 @@ def test_a_rig_file_wins_over_the_transforms_and_the_contradiction_is_said(tmp_p
     assert quiet.findings == []
     assert warned(report, K.LASER_CONTRADICTED, angle_rad=np.pi)
     text = words(report)
-    assert "roll 180.0" in text and "yaw 30.0" in text
+    assert "used: xyz 0.200 0.100 0.300 m, roll 180.0" in text and "says: xyz" in text
 
 
 def test_a_rig_file_mounts_the_laser_of_a_bag_without_transforms(tmp_path):
@@ -263,8 +264,8 @@ def test_odometry_that_turns_against_the_stated_mount_is_a_contradiction(tmp_pat
         progress=Silent(),
     )
 
-    assert figures.mirrored and figures.mount.startswith("the rig file: ")
-    assert figures.doubts == ()
+    assert figures.mirrored and figures.stated["by_rig"].startswith("0.200000 0.100000 0.300000 ")
+    assert figures.doubts == () and figures.mount == ""
 
 
 @pytest.mark.parametrize("name", ["rolled by 180", "backward"])

@@ -94,6 +94,32 @@ def test_scans_that_had_to_be_mirrored_contradict_a_stated_mount(mount, tilt_deg
 
 
 @pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ({"by_rig": "0 0 0.3 3.141593 0 0"}, "the rig file: xyz 0.000 0.000 0.300 m, roll 180.0"),
+        (
+            {
+                "by_recording": "0 0 1 0 0 0",
+                "parent": "base_link",
+                "child": "laser",
+                "sources": "tf",
+            },
+            "the recording: xyz 0.000 0.000 1.000 m, roll 0.0 pitch 0.0 yaw 0.0° "
+            "(base_link -> laser, tf)",
+        ),
+    ],
+)
+def test_who_states_the_mount_of_mirrored_scans_is_said_with_its_numbers(values, said):
+    record = facts(Verdict.ACCEPTED)
+    scans = replace_struct(record.scans, mirrored=True, stated=values)
+
+    (found,) = of_kind(replace(record, scans=scans), FindingKind.BEAM_ORDER)
+
+    assert found.level is Level.CHECK
+    assert f"This contradicts {said}" in text_of(found)
+
+
+@pytest.mark.parametrize(
     ("odometry", "level", "said"), [(True, Level.NOTE, "says how"), (False, Level.CHECK, "unknown")]
 )
 def test_a_silent_laser_is_worse_where_no_odometry_says_how_it_moved(odometry, level, said):
