@@ -21,7 +21,7 @@ from recon4.slices.reference import Method, Reference, alignment_text
 from recon4.slices.reference_fit import ReferenceFit, fit_of
 from recon4.slices.residual_table import UNKNOWN
 from recon4.slices.signed_distances import SignedFigures, SignedTally, merged
-from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.slice_plane import PlanePosition, SlicePlane
 from recon4.slices.tuning import SIGNED
 from recon4.slices.tuning_files import SLICE_PLANES
 
@@ -43,9 +43,13 @@ class ComparedSlice:
     ratio_within_2cm: float | None
     ratio_within_5cm: float | None
     signed: SignedFigures
+    position: PlanePosition | None = None
+    """Where it lies; None = several slices together."""
 
     @staticmethod
-    def of(row: SliceError, signed: SignedFigures) -> ComparedSlice:
+    def of(
+        row: SliceError, signed: SignedFigures, position: PlanePosition | None = None
+    ) -> ComparedSlice:
         """The row of a slice."""
         return ComparedSlice(
             name=row.name,
@@ -55,6 +59,7 @@ class ComparedSlice:
             ratio_within_2cm=finite_or_none(row.ratio_within_2cm),
             ratio_within_5cm=finite_or_none(row.ratio_within_5cm),
             signed=signed,
+            position=position,
         )
 
 
@@ -108,7 +113,10 @@ def compare(
     all_signed = merged([signed for _, signed in found])
     fit = fit_of(tiles, reference, rng=rng)
     return Comparison(
-        slices=tuple(ComparedSlice.of(row, signed.figures()) for row, signed in found),
+        slices=tuple(
+            ComparedSlice.of(row, signed.figures(), plane.position)
+            for plane, (row, signed) in zip(planes, found, strict=True)
+        ),
         point_weighted=ComparedSlice.of(merge_slices(rows), all_signed.figures()),
         plain_mean_m=float(np.mean(measured)) if measured else None,
         outlier_m=RELATIVE_ERROR.outlier_m,

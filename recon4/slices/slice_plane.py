@@ -16,6 +16,29 @@ Vector = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
+class PlanePosition:
+    """Where a plane lies, in the numbers by which people name it."""
+
+    kind: Kind
+    normal: Vector
+    """Unit vector in the map."""
+    offset_m: float
+    """``normal · p`` of its points [m]: the height of a horizontal plane."""
+    azimuth_deg: float
+    """Direction of the line of a vertical plane, clockwise from y [°]; 0 of other planes."""
+
+    @property
+    def text(self) -> str:
+        """It in English: ``z = 1.200 m``."""
+        if self.kind == "horizontal":
+            return f"z = {self.offset_m:.3f} m"
+        if self.kind == "vertical":
+            return f"azimuth {self.azimuth_deg:.1f}°, offset {self.offset_m:.3f} m"
+        n = ", ".join(f"{x:.3f}" for x in self.normal)
+        return f"normal ({n}), offset {self.offset_m:.3f} m"
+
+
+@dataclass(frozen=True, slots=True)
 class SlicePlane:
     """A slab of the map and the axes of its image.
 
@@ -136,15 +159,17 @@ class SlicePlane:
         return tuple(self.moved(k * spacing_m) for k in range(count))
 
     @property
+    def position(self) -> PlanePosition:
+        """Where it lies, in the numbers by which people name it."""
+        azimuth_deg = 0.0
+        if self.kind == "vertical":
+            azimuth_deg = float(np.rad2deg(np.arctan2(self.u[0], self.u[1])) % 360.0)
+        return PlanePosition(self.kind, _vector(self.normal), self.offset_m, azimuth_deg)
+
+    @property
     def name(self) -> str:
         """Text of the position: ``z = 1.200 m``."""
-        if self.kind == "horizontal":
-            return f"z = {self.origin_m[2]:.3f} m"
-        if self.kind == "vertical":
-            azimuth = np.rad2deg(np.arctan2(self.u[0], self.u[1])) % 360.0
-            return f"azimuth {azimuth:.1f}°, offset {self.offset_m:.3f} m"
-        n = ", ".join(f"{x:.3f}" for x in self.normal)
-        return f"normal ({n}), offset {self.offset_m:.3f} m"
+        return self.position.text
 
 
 def _vector(values: Array) -> Vector:

@@ -76,6 +76,7 @@ def test_an_image_shows_the_room_from_all_its_points(server):
     assert (window["right"] - window["left"]) / body["pixel_m"] == pytest.approx(400)
     assert window["left"] < 0 and window["right"] > ROOM_M[0]
     assert body["points"] > 3000 and body["name"] == "z = 1.500 m"
+    assert body["position"]["kind"] == "horizontal" and body["position"]["offset_m"] == 1.5
     assert np.asarray(image)[..., 3].any()
 
 

@@ -12,7 +12,14 @@ test("a caption names the map, the color and the points", () => {
   assert.equal(of(""), "This map · Time · 12 points as measured");
   assert.equal(of("v1"), "Project Hall · Time · 12 points as measured");
   assert.equal(of("gone"), "gone · Time · 12 points as measured");
-  assert.equal(cutText("free", "B"), "Free plane B");
+});
+
+test("a plane is named by its numbers", () => {
+  const at = { normal: [0.6, 0, 0.8], offset_m: 1.25, azimuth_deg: 9.96 };
+  assert.equal(cutText({ ...at, kind: "horizontal" }), "Horizontal z = 1.250 m");
+  assert.equal(cutText({ ...at, kind: "vertical" }), "Vertical azimuth 10.0°, offset 1.250 m");
+  const free = "Free plane normal (0.600, 0.000, 0.800), offset 1.250 m";
+  assert.equal(cutText({ ...at, kind: "free" }), free);
 });
 
 test("a point is given in the map and in the coordinate reference system", () => {

@@ -236,6 +236,7 @@ export interface ComparedSlice {
   ratio_within_2cm: number | null;
   ratio_within_5cm: number | null;
   signed: SignedFigures;
+  position: PlanePosition | null;
 }
 
 export interface Comparison {
@@ -1180,6 +1181,13 @@ export interface PickView {
   target: FoundTarget | null;
 }
 
+export interface PlanePosition {
+  kind: "horizontal" | "vertical" | "free";
+  normal: [number, number, number];
+  offset_m: number;
+  azimuth_deg: number;
+}
+
 export interface PointPairs {
   p_i: Array<Array<number>>;
   p_j: Array<Array<number>>;
@@ -1624,6 +1632,7 @@ export interface SliceImageView {
   points: number;
   surface: "fitted" | "raw" | "strays";
   name: string;
+  position: PlanePosition;
   low: number;
   high: number;
   colors: Array<string>;

@@ -1,9 +1,9 @@
 // Captions of slices, of points picked on them and of distances. No DOM, no network.
 
-import { decimal, language, t, written } from "../shared/texts.js";
+import { decimal, language, t } from "../shared/texts.js";
 import { COLORS, SURFACES } from "./state.js";
 
-/** @import {OtherMap, PickView, SliceFacts} from "../shared/http_types" */
+/** @import {OtherMap, PickView, PlanePosition, SliceFacts} from "../shared/http_types" */
 
 const KINDS = {
   horizontal: t("kind-horizontal"),
@@ -12,22 +12,18 @@ const KINDS = {
 };
 const fixed = (/** @type {number[]} */ xs) => xs.map((x) => decimal(x, 3)).join("  ");
 
-/** The position of a plane as the server writes it, in words of the page. */
-export function planeText(/** @type {string} */ name) {
-  const [, azimuth, along = ""] = name.match(/^azimuth (\S+)°, offset (\S+) m$/) ?? [];
-  if (azimuth) return t("plane-vertical", { azimuth: written(azimuth), offset: written(along) });
-  const [, normal, offset = ""] = name.match(/^normal \((.+)\), offset (\S+) m$/) ?? [];
-  if (!normal) return written(name);
-  const axes = normal.split(", ").map(written).join("; ");
-  return t("plane-free", { normal: language() === "en" ? normal : axes, offset: written(offset) });
+/** The position of a plane. */
+export function planeText(/** @type {PlanePosition} */ { kind, normal, offset_m, azimuth_deg }) {
+  const offset = decimal(offset_m, 3);
+  if (kind === "horizontal") return `z = ${offset} m`;
+  if (kind === "vertical") return t("plane-vertical", { azimuth: decimal(azimuth_deg, 1), offset });
+  const axes = normal.map((x) => decimal(x, 3)).join(language() === "en" ? ", " : "; ");
+  return t("plane-free", { normal: axes, offset });
 }
 
-/**
- * The kind of the slice and its name.
- * @param {import("./state.js").Kind} kind
- * @param {string} name
- */
-export const cutText = (kind, name) => `${KINDS[kind]} ${planeText(name)}`;
+/** The kind of the slice and its position. */
+export const cutText = (/** @type {PlanePosition} */ position) =>
+  `${KINDS[position.kind]} ${planeText(position)}`;
 
 /** The name of another map: an earlier one, or that of another project. */
 export const sourceText = (/** @type {OtherMap} */ { kind, name }) =>

@@ -45,7 +45,7 @@ export function comparison(found, csvUrl) {
     ${figure(found.plain_mean_m)}
   </tr>`;
   const rows = [
-    ...found.slices.map((one) => row(planeText(one.name), one)),
+    ...found.slices.map((one) => row(one.position ? planeText(one.position) : one.name, one)),
     row(t("mean-of-points"), found.point_weighted),
     plain,
   ];

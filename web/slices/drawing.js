@@ -163,9 +163,9 @@ function drawUnder(/** @type {Act} */ { change }) {
  * @param {SliceImageView} shown
  * @param {SliceFacts} facts
  */
-function facing({ name, points, surface }, { strays, frame, approval }) {
-  const { kind, t: thickness } = page.state;
-  return html`<strong>${cutText(kind, name)}</strong
+function facing({ position, points, surface }, { strays, frame, approval }) {
+  const { t: thickness } = page.state;
+  return html`<strong>${cutText(position)}</strong
     ><span>${t("cm-thick", { cm: written(String(Number((thickness * 100).toFixed(1)))) })}</span
     ><span>${t("points-on", { points: count(points), surface: SURFACES[surface] })}</span>
     ${

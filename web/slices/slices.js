@@ -141,11 +141,11 @@ function describe() {
   const { shown, state, facts } = page;
   if (!shown || !facts) return;
   const { source, color } = state;
-  const { name, surface } = shown;
+  const { position, surface } = shown;
   const points = count(shown.points);
   page.caption = imageText({ source, color, points, surface }, facts.sources);
   first.label = t("slice-label", {
-    name: planeText(name),
+    name: planeText(position),
     points,
     surface: SURFACES[surface],
     color: COLORS[color],

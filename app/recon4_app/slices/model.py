@@ -17,7 +17,7 @@ from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.control_limits import ControlLimits
 from recon4.slices.measured_points import MeasuredPosition, orthonormal
-from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.slice_plane import PlanePosition, SlicePlane
 from recon4.slices.tuning_files import CONTROL_LIMITS, SLICE_PLANES
 from recon4_app.names import Name
 from recon4_app.slices.listed_reference import ListedReference
@@ -122,7 +122,9 @@ class SliceImageView(BaseModel):
     surface: Surface
     """Where they lie: on fitted surfaces, or where they were measured."""
     name: str
-    """Name of the slice."""
+    """Name of the slice in English."""
+    position: PlanePosition
+    """The same as numbers."""
     low: float
     high: float
     colors: list[str]

@@ -160,6 +160,7 @@ def slice_image(
         points=made.points,
         surface=tiles.surface,
         name=plane.name,
+        position=plane.position,
         low=span.low,
         high=span.high,
         colors=_stops(ask.color, ask.ground),

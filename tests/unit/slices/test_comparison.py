@@ -156,6 +156,9 @@ def test_a_map_that_is_larger_than_the_reference_has_a_signed_mean_and_no_shift(
 
     assert found.point_weighted.signed.mean_m == pytest.approx(-0.02, abs=0.002)
     assert found.point_weighted.signed.shift_m == pytest.approx((0.0, 0.0, 0.0), abs=0.002)
+    assert [one.position.text for one in found.slices] == [one.name for one in found.slices]
+    assert {one.position.azimuth_deg for one in found.slices} == {0.0, 90.0}
+    assert found.point_weighted.position is None
 
 
 def test_a_map_without_normals_has_distances_without_sign(tmp_path, box_reference):
