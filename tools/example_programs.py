@@ -26,8 +26,9 @@ LOCAL = (
     "evaluate",
 )
 """Programs that work in a folder with ``recording/``; those after the first need its ``walk/``."""
-REMOTE = "http_client"
-"""Needs a server; `tests/service/test_client_example.py` runs it against several."""
+REMOTE = ("http_client", "mcp_client")
+"""They need a server; `tests/service/test_client_example.py` and `test_assistant_http.py` there
+run them."""
 SECONDS = 10.0
 """Length of the walk in the pages [s]."""
 _HOW = {
@@ -58,7 +59,7 @@ def page(name: str, output: str) -> str:
     title, _, text = documented.partition("\n\n")
     program = source[source.index('"""', source.index('"""') + 3) + 3 :].strip()
     parts = [f"# {title.rstrip('.')}", text.strip("\n")]
-    if name != REMOTE:
+    if name not in REMOTE:
         parts += [_HOW[True], f"```sh\npython examples/{name}.py\n```"]
     parts += [f"```python\n{program}\n```"]
     if output:
@@ -82,7 +83,8 @@ def main() -> None:
         api.simulate("office", folder / "recording", seconds=SECONDS)
         for name in LOCAL:
             page_path(name).write_text(page(name, run(name, folder)), "utf-8")
-    page_path(REMOTE).write_text(page(REMOTE, ""), "utf-8")
+    for name in REMOTE:
+        page_path(name).write_text(page(name, ""), "utf-8")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from recon4_app.access.login.login_service import Access
+from recon4_app.assistant.endpoint import AssistantEndpoint
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.exports.kept import KeptExports
 from recon4_app.jobs.store import JobStore
@@ -58,6 +59,7 @@ class ServerParts:
     calibrations: Calibrations
     project_spaces: ProjectSpaces
     webhooks: Webhooks
+    assistants: AssistantEndpoint
 
 
 def parts(connection: HTTPConnection) -> ServerParts:

@@ -27,6 +27,7 @@ from recon4_app import docs_pages, error_responses, metrics_routes, server_route
 from recon4_app.access import admin_routes, key_routes
 from recon4_app.access.guests import routes as guest_routes
 from recon4_app.access.login import routes as login_routes
+from recon4_app.access.login import token_routes
 from recon4_app.access.login.login_service import Access, open_access
 from recon4_app.access.middleware.origin import OriginMiddleware
 from recon4_app.access.pairing import routes as pairing_routes
@@ -35,6 +36,8 @@ from recon4_app.access.restoring import access_copies, restore_access
 from recon4_app.access.routes_check import check_declared
 from recon4_app.access.startup_notice import startup_notice
 from recon4_app.annotations import routes as annotation_routes
+from recon4_app.assistant import routes as assistant_routes
+from recon4_app.assistant.endpoint import AssistantEndpoint
 from recon4_app.comparisons import routes as comparison_routes
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.deps import Server, ServerParts
@@ -160,6 +163,7 @@ def _routes() -> list[BaseRoute]:
     router = APIRouter()
     for part in (
         login_routes,
+        token_routes,
         admin_routes,
         key_routes,
         webhook_routes,
@@ -178,6 +182,7 @@ def _routes() -> list[BaseRoute]:
         router.include_router(part.router)
     for part in (acknowledgment_routes, annotation_routes, correction_routes, team_routes):
         router.include_router(part.router)
+    router.include_router(assistant_routes.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
     for part in (review_routes, slice_routes, map_view_routes, rig_routes, storage_routes):
@@ -307,6 +312,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         rig_uses=uses,
         calibrations=Calibrations(projects, uses),
         project_spaces=ProjectSpaces(projects, jobs),
+        assistants=AssistantEndpoint(),
     )
 
 
@@ -330,6 +336,7 @@ async def _maintain(parts: ServerParts) -> None:
 
 
 async def _close_parts(parts: ServerParts) -> None:
+    await parts.assistants.close()
     await parts.current_capture.leave()
     await parts.compute_pool.close()
     parts.checks.close()

@@ -270,3 +270,26 @@ def test_a_guest_opens_a_link_and_sees_one_map_until_it_is_revoked(
         guest.goto(f"{server.url}/guest#{made['token']}")
         expect(guest.locator("#message")).to_contain_text("revoked")
         screenshot(guest, "guest-refused")
+
+
+@looks("desktop dark", "phone light")
+def test_a_person_makes_an_access_token_and_ends_it(server, page, look, screenshot):
+    sign_in(page, server, "otto", "/account")
+    expect(page.get_by_label("It may").locator("option")).to_have_text(
+        ["look only", "look, and start jobs and captures"]
+    )
+    page.get_by_label("For which program").fill(f"helper {look[0]}")
+    page.get_by_role("button", name="Make access token").click()
+
+    token = page.locator("#token").inner_text()
+    expect(page.locator("#made-token pre")).to_contain_text(f'"url": "{server.url}/mcp"')
+    with server.client(headers={"Authorization": f"Bearer {token}"}) as program:
+        assert program.get("/api/me").json()["role"] == "viewer"
+        fits(page)
+        assert page.evaluate("innerWidth") == page.viewport_size["width"]  # else it is zoomed out
+        assert barriers(page) == []
+        screenshot(page, "access-token")
+        row = page.locator("session-list tbody tr").filter(has_text=f"“helper {look[0]}”")
+        row.get_by_role("button").click()
+        expect(row).to_have_count(0)
+        assert program.get("/api/me").status_code == 401

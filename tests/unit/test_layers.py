@@ -219,7 +219,7 @@ ONLY_HERE = {
     "cryptography": {"app/recon4_app/network/certificate.py"}
     | {f"recon4/review/{name}.py" for name in ("certificate", "signature")},
     "mcp": {"app/recon4_app/assistant"},
-    "httpx2": {"app/recon4_app/assistant/http_client.py"},
+    "httpx2": {"app/recon4_app/assistant/http_client.py", "app/recon4_app/assistant/in_process.py"},
     "h11": {"app/recon4_app/webhooks/post.py"},
     "typst": {"recon4/report/pdf.py"},
     "pyhanko": {"recon4/delivery/pdf_signature.py", "recon4/report/pdf.py"},

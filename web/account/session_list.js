@@ -72,17 +72,23 @@ export class SessionList extends HTMLElement {
     );
   }
 
+  /** What uses the session: a browser, or a program with a token. */
+  #device(/** @type {SessionView["session"]} */ { access_token: label, agent, until_s }) {
+    if (!label) return device(agent);
+    return t("session-token", { label, when: until_s ? moment(until_s) : "" });
+  }
+
   #row(/** @type {SessionView} */ { session, current }) {
     const end = html`<button
       type="button"
-      aria-label=${t("session-end-of", { who: session.person, device: device(session.agent) })}
+      aria-label=${t("session-end-of", { who: session.person, device: this.#device(session) })}
       @click=${() => this.#end(session.id)}
     >
       ${t("session-end")}
     </button>`;
     return html`<tr>
       <th scope="row">${session.person}</th>
-      <td title=${session.agent} data-label=${t("session-device")}>${device(session.agent)}</td>
+      <td title=${session.agent} data-label=${t("session-device")}>${this.#device(session)}</td>
       <td data-label=${t("from-address")}>${session.address}</td>
       <td data-label=${t("session-began")}><time>${moment(session.began_s)}</time></td>
       <td data-label=${t("session-seen")}><time>${moment(session.seen_s)}</time></td>

@@ -1,5 +1,9 @@
 // Generated from the server's OpenAPI description by `make docs`; do not edit.
 
+export interface AccessTokenView {
+  token: string;
+}
+
 export interface Account {
   name: string;
   role: Role;
@@ -914,6 +918,12 @@ export interface Move {
   moved_m: number;
 }
 
+export interface NewAccessToken {
+  label: string;
+  role?: Role;
+  days?: number;
+}
+
 export interface NewAcknowledgment {
   finding: number;
   kind: string;
@@ -1552,6 +1562,7 @@ export interface Session {
   phone: boolean;
   guest_link: string;
   project: string;
+  access_token: string;
   until_s: number;
 }
 
@@ -2374,6 +2385,10 @@ export interface Operations {
   "POST /api/me/password": {
     body: NewPassword;
     response: Me;
+  };
+  "POST /api/me/tokens": {
+    body: NewAccessToken;
+    response: AccessTokenView;
   };
   "POST /api/pairing/approve": {
     body: PairingApproval;

@@ -147,8 +147,11 @@ def audit(connection: HTTPConnection, action: str, what: str, *, outcome: str = 
         outcome: ``done``, ``refused`` or ``failed``.
     """
     log: AuditLog = connection.app.state.parts.access.log
-    name = connection.scope["state"]["person"].name
-    log.add(name, address(connection), action=action, what=what, outcome=outcome)
+    state = connection.scope["state"]
+    session = state.get("session")
+    if session is not None and session.access_token:
+        what = f"{what} (access token {session.access_token})"
+    log.add(state["person"].name, address(connection), action=action, what=what, outcome=outcome)
 
 
 def address(connection: HTTPConnection) -> str:

@@ -48,10 +48,13 @@ SESSIONS = sa.Table(
     sa.Column("agent", sa.String, nullable=False),
     sa.Column("phone_role", sa.String, nullable=True),
     sa.Column("guest_link", sa.String, nullable=True),
+    sa.Column("access_token", sa.String, nullable=True),
+    sa.Column("until_s", sa.Float, nullable=True),
 )
 """``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is the
 role of a phone that the person paired, ``guest_link`` the link of `GUEST_LINKS` that the person
-made and a guest opened; both are NULL for a login."""
+made and a guest opened; both are NULL for a login. ``access_token`` is what the person named a
+token for a program, whose role is in ``phone_role``; it expires at ``until_s``."""
 
 GUEST_LINKS = sa.Table(
     "guest_links",

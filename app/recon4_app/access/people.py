@@ -140,12 +140,14 @@ def allow_anonymous() -> None:
 
 
 def interactive_login(connection: HTTPConnection) -> Person:
-    """A dependency that rejects paired phones, for actions such as ending their owner's sessions.
+    """A dependency that rejects phones and programs, as for ending their owner's sessions.
 
     Raises:
-        Refused: If the session is that of a paired phone.
+        Refused: If the session is that of a paired phone, or of a program.
     """
     session = connection.scope["state"].get("session")
+    if session is not None and session.access_token:
+        raise Refused(CodedText("token-may-not"))
     if session is not None and session.phone:
         raise Refused(CodedText("phone-may-not"), remedy=LOGIN)
     return person(connection)

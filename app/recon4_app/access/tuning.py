@@ -109,6 +109,22 @@ class GuestLinkLimits(Struct, frozen=True, kw_only=True):
 GUEST_LINK = GuestLinkLimits()
 
 
+class AccessTokenLimits(Struct, frozen=True, kw_only=True):
+    """Access tokens of programs."""
+
+    max_days: int = 365
+    """Longest time until a token expires [days]."""
+    usual_days: int = 30
+    """Time until a token expires, if nothing else is said [days]."""
+    max_of_a_person: int = 20
+    """Tokens of a person that have neither expired nor been revoked."""
+    longest_label: int = 64
+    """Longest name of a token [characters]."""
+
+
+ACCESS_TOKEN = AccessTokenLimits()
+
+
 class PairingLimits(Struct, frozen=True, kw_only=True):
     """Pairing of phones."""
 

@@ -25,6 +25,9 @@ FileName = Annotated[
     str,
     Field(pattern=r"^[a-z0-9_]+(\.[a-z0-9]+){1,2}$", description="A name of `list_exports`."),
 ]
+Crs = Annotated[
+    str, Field(description="CRS of a map file, as EPSG:25832; empty = that of the map.")
+]
 Meters = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Xy = tuple[Meters, Meters]
 Color = Literal["height", "intensity", "normalized", "time", "sensor"]

@@ -10,12 +10,13 @@ from mcp.server.mcpserver import Image
 from mcp.server.mcpserver.exceptions import ToolError
 from pydantic import Field
 
-from recon4_app.assistant.arguments import Color, FileName, Meters, ProjectId, Xy
+from recon4_app.assistant.arguments import Color, Crs, FileName, Meters, ProjectId, Xy
 from recon4_app.assistant.http_client import ServerClient
 from recon4_app.assistant.job_tools import ended_job
 from recon4_app.assistant.records import (
     Downloaded,
     ExportList,
+    FileAddress,
     MapExtent,
     OrderedExport,
     ProjectFacts,
@@ -43,27 +44,33 @@ class FileTools:
         return ExportList(files=facts.files, written_on_request=written)
 
     async def download_export(
-        self,
-        project: ProjectId,
-        file: FileName,
-        crs: Annotated[
-            str,
-            Field(description="CRS of a map file, as EPSG:25832; empty = that of the map."),
-        ] = "",
+        self, project: ProjectId, file: FileName, crs: Crs = ""
     ) -> Downloaded:
         """Download a file to the folder for downloads of this computer; nothing is overwritten.
 
         A file of the map is made first, and stands in the list of exports.
         """
         assert self._downloads is not None  # else this is no tool
+        path = await self._path(project, file, crs)
+        target = _free_name(self._downloads / f"{project}-{file}")
+        return await self._server.download(path, target)
+
+    async def export_address(
+        self, project: ProjectId, file: FileName, crs: Crs = ""
+    ) -> FileAddress:
+        """Say where a file is downloaded: GET with the same `Authorization` as this session.
+
+        A file of the map is made first, and stands in the list of exports.
+        """
+        return FileAddress(url=self._server.url + await self._path(project, file, crs))
+
+    async def _path(self, project: str, file: str, crs: str) -> str:
+        """Path of a file on the server; one of the map is made first."""
         facts = await self._server.get(f"api/projects/{project}", ProjectFacts)
         results = {one.name for one in facts.files}
         if file.startswith("map.") and file in WRITTEN and (crs or file not in results):
-            path = await self._exported(project, file, crs)
-        else:
-            path = _address(project, file, crs, results=results)
-        target = _free_name(self._downloads / f"{project}-{file}")
-        return await self._server.download(path, target)
+            return await self._exported(project, file, crs)
+        return _address(project, file, crs, results=results)
 
     async def _exported(self, project: str, file: str, crs: str) -> str:
         """Path of a file of the map, ordered if nobody did before."""

@@ -28,7 +28,14 @@ Query = Mapping[str, str | int | float | bool]
 class ServerClient:
     """Requests to one server. Every error of a request is a `ToolError` with the server's words."""
 
-    def __init__(self, url: str, *, password: str = "", certificate: Path | None = None) -> None:
+    def __init__(
+        self,
+        url: str,
+        *,
+        password: str = "",
+        certificate: Path | None = None,
+        transport: httpx2.AsyncBaseTransport | None = None,
+    ) -> None:
         """Name the server, and the person.
 
         Args:
@@ -36,6 +43,7 @@ class ServerClient:
                 before the host, as ``https://rita@backpack.local:8000/``, if there is a login.
             password: Of that account.
             certificate: That of the server, PEM, where no authority signed it.
+            transport: Instead of the network.
 
         Raises:
             ConfigError: If the address is none, the certificate cannot be read, or the password
@@ -52,14 +60,20 @@ class ServerClient:
         if self._name and parts.scheme == "http" and not _is_this_computer(parts.hostname):
             raise ConfigError(f"{url} has no TLS: the password would cross the network readably")
         place = parts.netloc.rpartition("@")[2]
-        self.url = f"{parts.scheme}://{place}{parts.path.rstrip('/')}/"
+        self._url = f"{parts.scheme}://{place}{parts.path.rstrip('/')}/"
         self._http = httpx2.AsyncClient(
-            base_url=self.url,
-            verify=_trust(certificate),
+            base_url=self._url,
+            verify=_trust(certificate) if transport is None else False,
+            transport=transport,
             timeout=httpx2.Timeout(ASSISTANT.answer_s, connect=ASSISTANT.connect_s),
         )
         self._signing_in = anyio.Lock()
         self._sign_ins = 0
+
+    @property
+    def url(self) -> str:
+        """Address of the server."""
+        return self._url
 
     @property
     def needs_password(self) -> bool:

@@ -212,6 +212,13 @@ class OrderedExport:
 
 
 @dataclass(frozen=True, kw_only=True)
+class FileAddress:
+    """Where a file is downloaded."""
+
+    url: str
+
+
+@dataclass(frozen=True, kw_only=True)
 class Downloaded:
     """A file on this computer."""
 

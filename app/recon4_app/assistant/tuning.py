@@ -20,6 +20,10 @@ class AssistantLimits(Struct, frozen=True, kw_only=True):
     """One call that watches a job [s]; hosts end longer ones."""
     chunk_bytes: int = 1 << 20
     """Piece of a download that is written at a time."""
+    waiting_pieces: int = 16
+    """Pieces of a response within this process that wait to be read."""
+    max_message_bytes: int = 256 << 10
+    """Largest message of an assistant over HTTP; a job with all settings takes 20 kB."""
     image_px: int = 1000
     """Usual width of an image of a slice."""
     eye_m: float = 1.2

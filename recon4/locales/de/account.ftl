@@ -62,6 +62,22 @@ action = Aktion
 session-end-of = Sitzung von { $who }, { $device }, beenden
 session-end = Beenden
 session-this = Diese hier
+session-token = Zugriffstoken „{ $label }“, bis { $when }
+
+## Zugriffstoken
+
+tokens = Zugriffstoken
+tokens-what = Ein Programm oder Assistent mit einem Token handelt unter diesem Namen, bis das Token abläuft. Es lässt sich oben jederzeit beenden; ein neues Passwort beendet alle.
+token-for = Für welches Programm
+token-example = Assistent im Büro
+token-may = Es darf
+token-role-viewer = nur ansehen
+token-role-operator = ansehen, Aufträge und Aufnahmen starten
+token-role-reviewer = ansehen, Aufträge starten, Schleifenschlüsse entscheiden
+token-days = Für
+token-make = Zugriffstoken erstellen
+token-made = Nur jetzt sichtbar. Programme senden es als Authorization: Bearer …
+token-assistant = Eintrag für ein Programm, in dem ein Assistent läuft:
 
 ## Personen
 

@@ -62,6 +62,22 @@ action = Action
 session-end-of = End session of { $who }, { $device }
 session-end = End
 session-this = This one
+session-token = Access token “{ $label }”, until { $when }
+
+## Access tokens
+
+tokens = Access tokens
+tokens-what = A program or an assistant with a token acts in your name until the token expires. End it above at any time; a new password ends all.
+token-for = For which program
+token-example = Assistant of the office
+token-may = It may
+token-role-viewer = look only
+token-role-operator = look, and start jobs and captures
+token-role-reviewer = look, start jobs and decide loop closures
+token-days = For
+token-make = Make access token
+token-made = Shown only now. Programs send it as Authorization: Bearer …
+token-assistant = Entry for a program that hosts an assistant:
 
 ## People
 

@@ -18,7 +18,7 @@ def shown(text):
 
 
 def test_every_program_is_run_by_a_test():
-    assert {path.stem for path in FOLDER.glob("*.py")} == {*LOCAL, REMOTE}
+    assert {path.stem for path in FOLDER.glob("*.py")} == {*LOCAL, *REMOTE}
 
 
 def test_the_page_of_the_first_program_shows_what_it_prints(processed):
@@ -34,5 +34,6 @@ def test_a_program_runs_and_prints_what_its_page_shows(name, here):
     assert shown(page_path(name).read_text("utf-8")) == shown(page(name, printed))
 
 
-def test_the_page_of_the_client_shows_it():
-    assert page_path(REMOTE).read_text("utf-8") == page(REMOTE, "")
+@pytest.mark.parametrize("name", REMOTE)
+def test_the_page_of_a_client_shows_it(name):
+    assert page_path(name).read_text("utf-8") == page(name, "")

@@ -3,7 +3,7 @@
 import { forgetKept } from "../address.js";
 import { become, request } from "../http.js";
 
-/** @import {Changes, NewKey, NewPerson, NewWebhook} from "../http_types" */
+/** @import {Changes, NewAccessToken, NewKey, NewPerson, NewWebhook} from "../http_types" */
 
 /**
  * @param {string} who
@@ -33,6 +33,8 @@ export const changePassword = (old, fresh) =>
 export const listMySessions = () => request("GET /api/me/sessions");
 export const endMySession = (/** @type {string} */ session_id) =>
   request("DELETE /api/me/sessions/{session_id}", { path: { session_id } });
+export const makeAccessToken = (/** @type {NewAccessToken} */ token) =>
+  request("POST /api/me/tokens", { body: token });
 export const listPeople = () => request("GET /api/people");
 export const addPerson = (/** @type {NewPerson} */ person) =>
   request("POST /api/people", { body: person });

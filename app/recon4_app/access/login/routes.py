@@ -43,7 +43,7 @@ SIGNED_IN = Depends(needs(Permission.LOOK))
 WITH_SESSION = Depends(needs(Permission.SHARED))
 """Guests, too."""
 INTERACTIVE = Depends(interactive_login)
-"""Rejects paired phones."""
+"""Rejects paired phones and programs."""
 
 Text = Annotated[str, Field(max_length=1000)]
 

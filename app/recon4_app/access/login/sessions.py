@@ -30,8 +30,8 @@ from recon4_app.access.database import (
 )
 from recon4_app.access.login.accounts import lookup_key
 from recon4_app.access.people import MAY, Permission, Person, Role
-from recon4_app.access.tuning import SESSION_TIMES
-from recon4_app.errors import NoRoom, NotFound
+from recon4_app.access.tuning import ACCESS_TOKEN, SESSION_TIMES
+from recon4_app.errors import Conflict, NoRoom, NotFound
 
 GUEST_NAME = "guest: "
 """Begins the name of a guest; no account has a colon in its name."""
@@ -84,11 +84,15 @@ class Session:
     """Id of the guest link that began it; empty = a login or a phone."""
     project: str = ""
     """The only project that a guest may see; empty = all."""
+    access_token: str = ""
+    """Name of the token of a program; ``person`` made it, ``role`` is its own. Empty = none."""
     until_s: float = math.inf
-    """When the guest link expires, seconds since 1970."""
+    """When the guest link or the token expires, seconds since 1970."""
 
     def over(self, now_s: float) -> bool:
         """Whether the session has expired."""
+        if self.access_token:
+            return now_s >= self.until_s
         life = PHONE_LIFE if self.phone else LIVES[self.role]
         old = now_s - self.began_s > life.whole_s or now_s - self.seen_s > life.idle_s
         return old or now_s >= self.until_s
@@ -125,10 +129,30 @@ class Sessions:
         token, now_s = new_token(), self._clock()
         row = session_row(token, now_s, address=address, agent=agent)
         row |= {"person": lookup_key(name), "phone_role": phone_role}
-        longest_s = max(life.whole_s for life in LIVES.values())
         with writing(self._engine) as connection:
-            old = SESSIONS.delete().where(SESSIONS.c.began_s < now_s - longest_s)
-            connection.execute(old)
+            connection.execute(SESSIONS.delete().where(_outdated(now_s)))
+            connection.execute(SESSIONS.insert().values(**row))
+        return token
+
+    def issue(self, name: str, role: Role, *, label: str, days: int, address: str) -> str:
+        """Make a token for a program of a person, with a role of its own.
+
+        Returns:
+            The token, which is stored nowhere.
+
+        Raises:
+            Conflict: If the person has too many.
+        """
+        token, now_s = new_token(), self._clock()
+        row = session_row(token, now_s, address=address, agent="")
+        row |= {"person": lookup_key(name), "phone_role": role, "access_token": label}
+        row |= {"until_s": now_s + days * 24 * HOUR_S}
+        mine = (SESSIONS.c.person == lookup_key(name)) & SESSIONS.c.access_token.is_not(None)
+        with writing(self._engine) as connection:
+            connection.execute(SESSIONS.delete().where(_outdated(now_s)))
+            count = sa.select(sa.func.count()).select_from(SESSIONS).where(mine)
+            if connection.execute(count).scalar_one() >= ACCESS_TOKEN.max_of_a_person:
+                raise Conflict(CodedText("tokens-too-many", limit=ACCESS_TOKEN.max_of_a_person))
             connection.execute(SESSIONS.insert().values(**row))
         return token
 
@@ -235,7 +259,7 @@ class Sessions:
 
     def _select(self, condition: sa.ColumnElement[bool]) -> list[Session]:
         own = ("id", "began_s", "proved_s", "seen_s", "address", "agent")
-        link = GUEST_LINKS.c
+        link, token = GUEST_LINKS.c, SESSIONS.c.access_token
         guest = SESSIONS.c.guest_link.is_not(None)
         join = sa.join(SESSIONS, PEOPLE, SESSIONS.c.person == PEOPLE.c.key)
         join = sa.outerjoin(join, GUEST_LINKS, SESSIONS.c.guest_link == link.id)
@@ -246,10 +270,11 @@ class Sessions:
                 (guest, Role.GUEST.value),
                 else_=sa.func.coalesce(SESSIONS.c.phone_role, PEOPLE.c.role),
             ).label("role"),
-            SESSIONS.c.phone_role.is_not(None).label("phone"),
+            (SESSIONS.c.phone_role.is_not(None) & token.is_(None)).label("phone"),
+            sa.func.coalesce(token, "").label("access_token"),
             sa.func.coalesce(link.id, "").label("guest_link"),
             sa.func.coalesce(link.project, "").label("project"),
-            sa.func.coalesce(link.until_s, math.inf).label("until_s"),
+            sa.func.coalesce(link.until_s, SESSIONS.c.until_s, math.inf).label("until_s"),
         )
         query = query.select_from(join).where(condition, ~PEOPLE.c.disabled, ~guest | LINK_OPENS)
         with self._engine.connect() as connection:
@@ -261,6 +286,14 @@ class Sessions:
             changed: Any = connection.execute(statement)
             self._cached.clear()
             return int(changed.rowcount)
+
+
+def _outdated(now_s: float) -> sa.ColumnElement[bool]:
+    """Sessions that have expired, whatever their role."""
+    longest_s = max(life.whole_s for life in LIVES.values())
+    columns = SESSIONS.c
+    old_login = columns.access_token.is_(None) & (columns.began_s < now_s - longest_s)
+    return sa.or_(old_login, columns.until_s <= now_s)
 
 
 def session_row(token: str, now_s: float, *, address: str, agent: str) -> dict[str, object]:

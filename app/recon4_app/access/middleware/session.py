@@ -28,6 +28,9 @@ OPEN_PATHS = PAIRING | GUESTS | {"/login", "/api/login", "/api/setup", "/healthz
 """Paths answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
 
+MCP_PATH = "/mcp"
+"""Where assistants are answered."""
+
 TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
 
 
@@ -70,13 +73,13 @@ class SessionMiddleware:
             await self._app(scope, receive, send)
             return
         access: Access = scope["app"].state.parts.access
-        token = cookie(scope, cookie_names(prefix_of(scope)).session)
-        authenticated = await find(access, token)
+        token, program = presented(scope)
+        authenticated = await find(access, token, program=program)
         state = scope["state"]
         state.update(person=NOBODY, signed_in_s=float("inf"), session=None)
         if authenticated is not None:
             session = authenticated.session
-            signed_in_s = access.sessions.age_s(session)
+            signed_in_s = float("inf") if program else access.sessions.age_s(session)
             state.update(person=authenticated.person, signed_in_s=signed_in_s, session=session)
             state["form_token"] = form_token(token)
         if (rejection := self._judge(scope, authenticated)) is not None:
@@ -100,7 +103,8 @@ class SessionMiddleware:
         if wait_s := self._wait_s(authenticated.session):
             retry = {"Retry-After": str(int(wait_s) + 1)}
             return Rejection(429, "TooMany", CodedText("requests-too-many"), retry)
-        if scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
+        by_page = not authenticated.session.access_token  # a page of another site has no token
+        if by_page and scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
             given = Headers(scope=scope).get(FORM_HEADER, "")
             if not hmac.compare_digest(given.encode(), scope["state"]["form_token"].encode()):
                 detail = CodedText("token-stale", header=FORM_HEADER)
@@ -182,13 +186,33 @@ async def cancelled(running: asyncio.Future[None]) -> None:
         await asyncio.wait({running}, timeout=SESSION_WATCH.cancel_again_s)
 
 
-async def find(access: Access, token: str) -> AuthenticatedSession | None:
-    """The session of a token; the database is queried in a thread."""
+async def find(access: Access, token: str, *, program: bool) -> AuthenticatedSession | None:
+    """The session of a token; the database is queried in a thread.
+
+    Args:
+        access: Has the sessions.
+        token: As it was presented.
+        program: Whether it came in the header of programs. A cookie never opens what a program's
+            token does, nor the other way round.
+    """
     if not TOKEN.fullmatch(token):
         return None
-    return access.sessions.cached_sessions(token) or await asyncio.to_thread(
+    found = access.sessions.cached_sessions(token) or await asyncio.to_thread(
         access.sessions.find, token
     )
+    return found if found and bool(found.session.access_token) is program else None
+
+
+def presented(scope: Scope) -> tuple[str, bool]:
+    """The token of a request, and whether it is in the header of programs.
+
+    The cookie of a request with a bearer token is not read. Other schemes are for a proxy.
+    """
+    given = [line.split(maxsplit=1) for line in Headers(scope=scope).getlist("authorization")]
+    bearers = [words for words in given if words and words[0].lower() == "bearer"]
+    if not bearers:
+        return cookie(scope, cookie_names(prefix_of(scope)).session), False
+    return (bearers[0][-1].strip() if len(bearers) == 1 else ""), True
 
 
 def cookie(scope: Scope, name: str) -> str:
@@ -204,12 +228,12 @@ def cookie(scope: Scope, name: str) -> str:
 
 def sign_in_first(scope: Scope) -> Rejection:
     """Redirect a browser to the login; answer a program with status 401."""
-    accept = Headers(scope=scope).get("accept", "")
+    accept, path = Headers(scope=scope).get("accept", ""), route_path(scope)
     page = scope["type"] == "http" and scope["method"] == "GET" and "text/html" in accept
     if not page:
-        return Rejection(401, "Unknown", CodedText("sign-in-first"))
+        headers = {"WWW-Authenticate": "Bearer"} if path == MCP_PATH else {}
+        return Rejection(401, "Unknown", CodedText("sign-in-first"), headers)
     # A paired phone knows no password: the pairing page offers both.
-    path = route_path(scope)
     there = "/pair" if path == "/live" else f"/login#next={quote(path)}"
     return Rejection(
         303, "Unknown", CodedText("sign-in-page"), {"Location": public_path(scope, there)}
