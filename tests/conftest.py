@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.chromium import CHROMIUM, FLAGS
+from tests.file_order import mixed
 from tests.made_once import made_once
 from tests.short_capture import cut_capture, process_short
 
@@ -57,6 +58,13 @@ def pytest_collection() -> Generator[None, object, object]:
     gc.freeze()
     gc.enable()
     return collected
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Workers of a run take the files in an order that keeps the processor busy."""
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        items[:] = mixed(items, lambda item: item.path.relative_to(ROOT))
 
 
 @pytest.fixture(scope="session", autouse=True)
