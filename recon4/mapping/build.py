@@ -114,30 +114,17 @@ def build_map(
         OutOfRange: If the trajectory does not cover the frames.
         StoreError: If the folder cannot be written (`NoSpace` when the disk is full).
     """
-    progress, grid, rig = progress or Silent(), Grid.of(settings), inputs.frames.rig
-    noise_m = settings.range_noise_m or surface_noise_m(rig)
+    progress = progress or Silent()
+    grid = Grid.of(settings)
     with placing_folder(out) as folder:
-        buckets, cells = TileBuckets(folder, grid, burst=means.burst), CellRuns(folder)
-        starts = take_placed(folder, buckets, cells)
-        if starts is None:
-            starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
-            keep_placed(folder, buckets, cells, starts=starts)
-        structure = find_structure(cells, inputs.trajectory.T_a_b.t)
-        del cells
-        paths = SensorPaths.of(starts, inputs.trajectory, rig)
-        parts = inputs.covariances, inputs.corrections, structure
-        recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, *parts)
+        buckets = TileBuckets(folder, grid, burst=means.burst)
+        recipe = _placed(inputs, folder, buckets, settings=settings, progress=progress)
+        paths = SensorPaths.of(recipe.t_ns, inputs.trajectory, inputs.frames.rig)
         with TileWriter(out, _fields(recipe), tile_m=grid.tile_m, paths=paths) as writer:
             done = _finish_tiles(buckets, recipe, writer, means=means, progress=progress)
-            writer.notes = MapNotes(
-                voxel_m=settings.voxel_m,
-                crs=inputs.crs,
-                sensors=tuple(sensor.name for sensor in rig.sensors),
-                removed=dict(done.removed),
-                classes=dict(done.classes),
-                corrected=_counts(inputs.corrections, done.corrected),
-            )
-    progress.event(MapBuilt(points=len(made := TileSet.open(out)), removed=dict(done.removed)))
+            writer.notes = _notes(inputs, settings, done)
+    made = TileSet.open(out)
+    progress.event(MapBuilt(points=len(made), removed=dict(done.removed)))
     return made
 
 
@@ -154,6 +141,36 @@ def _fields(recipe: Recipe) -> list[str]:
     left_out |= set() if recipe.covariances else {DEVIATION}
     left_out |= set(SURFACE_FIELDS) if recipe.settings.surface == "raw" else set()
     return [name for name in FIELDS if name not in left_out]
+
+
+def _placed(
+    inputs: MapInputs,
+    folder: Path,
+    buckets: TileBuckets,
+    *,
+    settings: MapSettings,
+    progress: Progress,
+) -> Recipe:
+    """Put all points into their buckets, unless a run that was stopped did.
+
+    Returns:
+        How their tiles are made.
+    """
+    cells = CellRuns(folder)
+    starts = take_placed(folder, buckets, cells)
+    if starts is None:
+        starts = _distribute(inputs, buckets, cells, settings=settings, progress=progress)
+        keep_placed(folder, buckets, cells, starts=starts)
+    return Recipe(
+        Grid.of(settings),
+        settings,
+        inputs.intensity,
+        starts,
+        settings.range_noise_m or surface_noise_m(inputs.frames.rig),
+        inputs.covariances,
+        inputs.corrections,
+        find_structure(cells, inputs.trajectory.T_a_b.t),
+    )
 
 
 def _distribute(
@@ -234,6 +251,18 @@ def _finish_tiles(
             counts.corrected.update(part.corrected)
             counts.classes.update(part.classes)
     return counts
+
+
+def _notes(inputs: MapInputs, settings: MapSettings, done: TileCounts) -> MapNotes:
+    """What the map says of itself."""
+    return MapNotes(
+        voxel_m=settings.voxel_m,
+        crs=inputs.crs,
+        sensors=tuple(sensor.name for sensor in inputs.frames.rig.sensors),
+        removed=dict(done.removed),
+        classes=dict(done.classes),
+        corrected=_counts(inputs.corrections, done.corrected),
+    )
 
 
 def _counts(corrections: ClassVolumes | None, changed: Counter[int]) -> tuple[int, ...]:
