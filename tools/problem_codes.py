@@ -17,7 +17,7 @@ from fluent.syntax import FluentParser
 from fluent.syntax import ast as fluent
 
 from recon4.errors import Recon4Error
-from recon4.locales.coded import FILES
+from recon4.locales.coded import FILES, KINDS
 from recon4.locales.languages import ENGLISH, ROOT
 from recon4.locales.texts import messages_of, readable
 from recon4_app.error_responses import FRAMEWORK_CODES
@@ -62,6 +62,8 @@ def statuses_of_codes() -> dict[str, set[int]]:
     found: dict[str, set[int]] = defaultdict(set)
     for status, code in FRAMEWORK_CODES.items():
         found[code].add(status)
+    for kind, code in KINDS.items():
+        found[code].add(status_of[kind.__name__])
     for room in ("recon4", "app"):
         for path in (REPOSITORY / room).rglob("*.py"):
             for error, code in _raised(ast.parse(path.read_text("utf-8"))):

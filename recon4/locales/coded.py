@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from types import MappingProxyType
 
+from recon4 import errors
 from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
@@ -25,6 +26,24 @@ STEPS = ("projects",)
 """Files with the names of stages and steps."""
 UNCODED = "message"
 """Code of a text that has none; its value ``detail`` is the text."""
+
+KINDS: Mapping[type, str] = MappingProxyType(
+    {
+        errors.ConfigError: "kind-configuration",
+        errors.RecordingError: "kind-recording",
+        errors.UnknownFormat: "kind-unknown-format",
+        errors.EmptyRecording: "kind-empty-recording",
+        errors.CorruptFile: "kind-corrupt-file",
+        errors.OutOfRange: "kind-out-of-range",
+        errors.MapTooLarge: "kind-map-too-large",
+        errors.CalibrationError: "kind-calibration",
+        errors.GraphError: "kind-graph",
+        errors.GeoreferenceError: "kind-georeference",
+        errors.StoreError: "kind-store",
+        errors.NoSpace: "kind-no-space",
+    }
+)
+"""Codes of errors that state none of their own; each quotes the message as ``detail``."""
 
 
 class CodedText(str):
@@ -79,14 +98,22 @@ class StoredText:
 
 
 def coded(error: BaseException) -> CodedText:
-    """The message of an error with its code; `UNCODED` if it has none."""
-    return as_coded(error.args[0] if error.args else "", str(error))
+    """The message of an error with its code: its own, or that of the kind of error.
+
+    An error that states no code often quotes a library. What kind it is can be said in every
+    language; the message itself is the value ``detail``, in English.
+    """
+    text = error.args[0] if error.args else ""
+    if isinstance(text, CodedText):
+        return text
+    kinds = (KINDS[one] for one in type(error).__mro__ if one in KINDS)
+    return CodedText(next(kinds, UNCODED), detail=str(error))
 
 
 def text_of(error: BaseException) -> str:
-    """The message of an error: a `CodedText` if it has a code."""
-    text = error.args[0] if error.args else ""
-    return text if isinstance(text, CodedText) else str(error)
+    """The message of an error: a `CodedText` if it has a code, or is of a kind that has one."""
+    text = coded(error)
+    return text if text.code != UNCODED else str(error)
 
 
 def as_coded(text: object, english: str = "") -> CodedText:

@@ -227,6 +227,18 @@ webhooks-too-many = es gibt schon { $limit } Webhooks: einen entfernen
 ## Der Server im Ganzen
 
 message = Meldung auf Englisch: { $detail }
+kind-configuration = Eine Angabe stimmt nicht (Meldung auf Englisch): { $detail }
+kind-recording = Die Aufzeichnung lässt sich nicht lesen (Meldung auf Englisch): { $detail }
+kind-unknown-format = Dieses Format kennt recon4 nicht (Meldung auf Englisch): { $detail }
+kind-empty-recording = Die Aufzeichnung enthält keine Punkte (Meldung auf Englisch): { $detail }
+kind-corrupt-file = Eine Datei ist beschädigt oder hat ein anderes Format (Meldung auf Englisch): { $detail }
+kind-out-of-range = Ein Zeitpunkt liegt außerhalb der Trajektorie (Meldung auf Englisch): { $detail }
+kind-map-too-large = Die Karte ist zu groß für den Speicher (Meldung auf Englisch): { $detail }
+kind-calibration = Die Messungen bestimmen keine Kalibrierung (Meldung auf Englisch): { $detail }
+kind-graph = Der Posengraph ist nicht lösbar (Meldung auf Englisch): { $detail }
+kind-georeference = Koordinatensystem, Transformation oder Position sind nicht brauchbar (Meldung auf Englisch): { $detail }
+kind-store = Eine Datei des Projekts oder des Servers ist nicht brauchbar (Meldung auf Englisch): { $detail }
+kind-no-space = Die Platte ist voll (Meldung auf Englisch): { $detail }
 internal-error = interner Fehler { $number }: das Protokoll des Servers nennt unter dieser Nummer die Ursache
 address-unknown = diese Adresse gibt es auf diesem Server nicht
 method-not-allowed = diese Adresse nimmt diese Methode nicht an

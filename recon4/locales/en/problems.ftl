@@ -227,6 +227,18 @@ webhooks-too-many = there are { $limit } webhooks already: remove one
 ## The server as a whole
 
 message = { $detail }
+kind-configuration = { $detail }
+kind-recording = { $detail }
+kind-unknown-format = { $detail }
+kind-empty-recording = { $detail }
+kind-corrupt-file = { $detail }
+kind-out-of-range = { $detail }
+kind-map-too-large = { $detail }
+kind-calibration = { $detail }
+kind-graph = { $detail }
+kind-georeference = { $detail }
+kind-store = { $detail }
+kind-no-space = { $detail }
 internal-error = internal error { $number }: the server log has the cause under this number
 address-unknown = there is no such address on this server
 method-not-allowed = this address does not take that method

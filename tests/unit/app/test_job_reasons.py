@@ -80,7 +80,7 @@ def test_the_queue_of_an_earlier_version_is_read(tmp_path):
         (ZeroDivisionError(), "job-program-error"),
         (NoSpace(CodedText("export-disk-full", reserve=2, free=1)), "export-disk-full"),
         (OSError(28, "no space"), "job-disk-full"),
-        (ConfigError("voxel_m"), None),
+        (ConfigError("voxel_m"), "kind-configuration"),
     ],
 )
 def test_a_worker_hands_over_code_and_values(tmp_path, error, code):
@@ -95,7 +95,7 @@ def test_a_worker_hands_over_code_and_values(tmp_path, error, code):
     folder.finish(run(folder, work))
     outcome = folder.outcome()
 
-    assert (outcome.reason.code if outcome.reason else None) == code
+    assert outcome.reason and outcome.reason.code == code
     assert outcome.note and type(outcome.note) is str
 
 

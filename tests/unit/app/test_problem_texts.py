@@ -8,8 +8,19 @@ import pytest
 from pydantic import BaseModel, Field, ValidationError, model_validator
 from starlette.requests import HTTPConnection
 
-from recon4.errors import ConfigError, WrongSettings
-from recon4.locales.coded import FILES, CodedText, as_coded, coded, codes, said, stored_text
+from recon4 import errors
+from recon4.errors import ConfigError, CorruptFile, StoreError, WrongSettings
+from recon4.locales.coded import (
+    FILES,
+    KINDS,
+    CodedText,
+    as_coded,
+    coded,
+    codes,
+    said,
+    stored_text,
+    text_of,
+)
 from recon4.locales.languages import ENGLISH, ROOT, languages
 from recon4.locales.texts import messages_of, texts
 from recon4_app.compute_pool.messages import decode_error, encode_error
@@ -38,7 +49,8 @@ def test_a_websocket_closes_with_a_reason_in_the_language_that_ends_after_a_whol
     assert close_reason(NotFound(CodedText("project-unknown", name="a")), browser).startswith(
         "kein"
     )
-    assert close_reason(ConfigError("x" + "ü" * 99), browser) == "x" + "ü" * 61
+    english = HTTPConnection({"type": "http", "headers": []})
+    assert close_reason(ConfigError("x" + "ü" * 99), english) == "x" + "ü" * 61
 
 
 def test_no_code_is_in_two_files_or_a_text_of_all_pages():
@@ -67,13 +79,24 @@ def test_words_of_the_server_are_those_of_the_pages():
     assert "mostly a date or year; a repetition." in weak
 
 
-def test_an_error_without_a_code_is_quoted():
-    error = coded(ConfigError("voxel_m: expected a length"))
+def test_an_error_without_a_code_of_its_own_has_that_of_its_kind():
+    error = coded(CorruptFile("walk.laz: not a sound LAS/LAZ file"))
 
-    assert error.code == "message" and error == "voxel_m: expected a length"
-    assert error.said("de") == "Meldung auf Englisch: voxel_m: expected a length"
+    assert error.code == "kind-corrupt-file" and error == "walk.laz: not a sound LAS/LAZ file"
+    assert error.values == {"detail": "walk.laz: not a sound LAS/LAZ file"}
+    assert error.said("de").startswith("Eine Datei ist beschädigt") and error.endswith("LAZ file")
     assert coded(WrongSettings({"a": "b"})).values == {"detail": "b"}
+    damaged = said(text_of(StoreError("map.json: no")), "de")
+    assert damaged.endswith("nicht brauchbar (Meldung auf Englisch): map.json: no")
+    assert coded(OSError("elsewhere")).code == "message" and text_of(OSError("it")) == "it"
     assert as_coded(error) is error
+
+
+def test_every_kind_of_error_has_a_code():
+    kinds = {one for one in vars(errors).values() if isinstance(one, type)}
+
+    base_or_no_failure = {errors.Recon4Error, errors.Cancelled, errors.Path}
+    assert kinds - base_or_no_failure - {WrongSettings} == set(KINDS)
 
 
 def test_the_error_of_a_helper_process_keeps_its_code():
