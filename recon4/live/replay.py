@@ -1,7 +1,8 @@
 """Replays a recording to the ports of a recorder as its sensors sent it; needs no hardware.
 
-Timestamps are shifted to the present. Samples of ``imu.csv`` and ``gnss.csv`` beside the capture go
-out as JSON datagrams; scans of a bag or log do too.
+Timestamps are shifted to the present, also those inside the packets of all families of LiDARs.
+Samples of ``imu.csv`` and ``gnss.csv`` beside the capture go out as JSON datagrams; scans of a bag
+or log do too.
 """
 
 from __future__ import annotations
@@ -14,8 +15,7 @@ import socket
 import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass
-from itertools import chain
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -26,16 +26,9 @@ from recon4.live.tuning import REPLAY
 from recon4.model.ports import PORTS
 from recon4.model.rig import Rig
 from recon4.progress import Progress
-from recon4.recording.formats.datagrams import address_text
-from recon4.recording.formats.pcap import read_pcap
-from recon4.recording.kinds import capture_files
-from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE
-from recon4.recording.report import ImportReport
+from recon4.recording.packet_replay import CapturedDatagram, captured_datagrams
 from recon4.recording.scan_replay import datagrams_of_scans, has_scans
-from recon4.units import HOUR_US
 
-_STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
-"""Packet size -> offset of its microseconds past the hour."""
 _STAMP = re.compile(rb'("t_ns"\s*:\s*)(\d{1,19})(?=[\s,}])')
 """The time of a JSON object."""
 _SAMPLE_DELAY_NS = {"imu.csv": 2_000_000, "gnss.csv": 50_000_000}
@@ -51,6 +44,7 @@ class ReplayDatagram:
     source: str
     port: int
     payload: bytes
+    """Packets of LiDARs have the times of the replay."""
     is_json: bool = False
     """The payload is JSON with an absolute ``t_ns``."""
 
@@ -89,21 +83,20 @@ def replay(
         RecordingError: If there is nothing to send.
         ConfigError: If the address is invalid or cannot be reached.
     """
-    rounds = _rounds(recording, repetitions, rig)
-    first = next(rounds, None)
+    first = next(datagrams_of(recording, rig), None)
     if first is None:
         raise EmptyRecording(f"{recording.name}: no UDP datagram found")
-    first_ns = second_ns = first[0].t_ns
+    first_ns = second_ns = first.t_ns
     began_ns = time.time_ns()
     shift_ns = (stretched(began_ns, speed) - first_ns) // 1000 * 1000
     sent = 0
     progress.start("replay", 0, "s")
     with _Senders(target) as senders:
-        for datagram, later_ns in chain((first,), rounds):
+        for datagram, later_ns in _rounds(recording, repetitions, rig, shift_ns=shift_ns):
             t_ns = datagram.t_ns + later_ns
             _wait_until(began_ns + round((t_ns - first_ns) / speed))
             for altered in alter(datagram):
-                senders.send(shifted_in_time(altered, shift_ns + later_ns))
+                senders.send(_at_present(altered, shift_ns + later_ns))
                 sent += 1
             if t_ns - second_ns >= 1_000_000_000:
                 second_ns = t_ns
@@ -111,25 +104,29 @@ def replay(
     return sent
 
 
-def datagrams_of(recording: Path, rig: Rig | None = None) -> Iterator[ReplayDatagram]:
+def datagrams_of(
+    recording: Path, rig: Rig | None = None, *, shift_ns: int = 0
+) -> Iterator[ReplayDatagram]:
     """All datagrams of a recording in order of time.
 
     Args:
         recording: As for `replay`.
         rig: As for `replay`.
+        shift_ns: Added to the times inside packets of LiDARs [ns].
     """
     if has_scans(recording, rig):
         for sent in datagrams_of_scans(recording, rig):
             yield ReplayDatagram(sent.t_ns, "127.0.0.1", sent.port, sent.payload, is_json=True)
         return
-    yield from _captured(recording)
+    yield from _captured(recording, shift_ns)
 
 
-def _captured(recording: Path) -> Iterator[ReplayDatagram]:
+def _captured(recording: Path, shift_ns: int) -> Iterator[ReplayDatagram]:
     """Datagrams of capture files, and samples of the CSV files beside them."""
-    files = capture_files(recording)
     folder = recording if recording.is_dir() else recording.parent
-    parts = [_datagrams(file) for file in files]
+    parts: list[Iterator[ReplayDatagram]] = [
+        map(_sent, part) for part in captured_datagrams(recording, shift_ns)
+    ]
     for name, port in (("imu.csv", PORTS.imu), ("gnss.csv", PORTS.gnss)):
         if (folder / name).exists():
             parts.append(_samples(folder / name, port))
@@ -137,13 +134,13 @@ def _captured(recording: Path) -> Iterator[ReplayDatagram]:
 
 
 def _rounds(
-    recording: Path, repetitions: int, rig: Rig | None
+    recording: Path, repetitions: int, rig: Rig | None, *, shift_ns: int
 ) -> Iterator[tuple[ReplayDatagram, int]]:
     """Every datagram of every round, with the time offset of the round [ns]."""
     later_ns = 0
     for _ in range(repetitions):
         first_ns = last_ns = None
-        for datagram in datagrams_of(recording, rig):
+        for datagram in datagrams_of(recording, rig, shift_ns=shift_ns + later_ns):
             first_ns = datagram.t_ns if first_ns is None else first_ns
             last_ns = datagram.t_ns
             yield datagram, later_ns
@@ -152,18 +149,12 @@ def _rounds(
         later_ns += (last_ns - first_ns) // 1000 * 1000 + REPLAY.between_ns
 
 
-def shifted_in_time(datagram: ReplayDatagram, shift_ns: int) -> ReplayDatagram:
-    """The datagram with all its timestamps shifted by ``shift_ns``."""
+def _at_present(datagram: ReplayDatagram, shift_ns: int) -> ReplayDatagram:
+    """The datagram with the times of JSON shifted by ``shift_ns``; those of packets are already."""
     payload = datagram.payload
-    at = _STAMP_AT.get(len(payload))
     if datagram.is_json:
         payload = b"\n".join(_later(line, shift_ns) for line in payload.splitlines())
-    elif at is not None:
-        stamp_us = int.from_bytes(payload[at : at + 4], "little")
-        if stamp_us < HOUR_US:
-            later = ((stamp_us + shift_ns // 1000) % HOUR_US).to_bytes(4, "little")
-            payload = payload[:at] + later + payload[at + 4 :]
-    return ReplayDatagram(datagram.t_ns + shift_ns, datagram.source, datagram.port, payload)
+    return replace(datagram, t_ns=datagram.t_ns + shift_ns, payload=payload)
 
 
 def _later(line: bytes, shift_ns: int) -> bytes:
@@ -171,14 +162,9 @@ def _later(line: bytes, shift_ns: int) -> bytes:
     return _STAMP.sub(lambda found: found[1] + b"%d" % (int(found[2]) + shift_ns), line, count=1)
 
 
-def _datagrams(file: Path) -> Iterator[ReplayDatagram]:
-    for batch in read_pcap(file, ImportReport()):
-        columns = (batch.t_ns, batch.source, batch.port)
-        rows = zip(*(column.tolist() for column in columns), strict=True)
-        for row, (t_ns, source, port) in enumerate(rows):
-            payload = batch.payload(row)
-            is_json = len(payload) not in _STAMP_AT and payload.startswith(b"{")
-            yield ReplayDatagram(t_ns, address_text(source), port, payload, is_json)
+def _sent(captured: CapturedDatagram) -> ReplayDatagram:
+    is_json = not captured.of_lidar and captured.payload.startswith(b"{")
+    return ReplayDatagram(captured.t_ns, captured.source, captured.port, captured.payload, is_json)
 
 
 def _samples(path: Path, port: int) -> Iterator[ReplayDatagram]:

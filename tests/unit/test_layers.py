@@ -61,7 +61,7 @@ MAY_IMPORT = {
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}
     | {"recon4.system.processes", "recon4.system.stopping"}
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
-    | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
+    | {f"recon4.recording.{name}" for name in ("packet_replay", "scan_capture", "scan_replay")}
     | {"recon4.recording.formats.datagrams", "recon4.recording.formats.pcap"}
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured_channels")}
     | {"recon4.recording.packets.sensor_clock", "recon4.recording.packets.velodyne.models"}

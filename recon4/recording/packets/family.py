@@ -219,6 +219,19 @@ class PacketFamily(Protocol):
         """
         ...
 
+    def restamped(
+        self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]
+    ) -> Payloads | None:
+        """Packets as if they were sent later, as a replay sends them: their times and the sums over
+        them change, nothing else; None = most are no packets of this family, or have no time.
+
+        Args:
+            payloads: Packets of one sender to one port, of one size; damaged ones stay, (N, size).
+            shift_ns: Added to their times, a whole number of microseconds [ns].
+            companions: Files beside the recording.
+        """
+        ...
+
 
 def no_sender(payloads: Payloads) -> list[str]:
     """Nothing in the packets says which sensor sent them: the names of the senders, (N,)."""

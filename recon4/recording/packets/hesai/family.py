@@ -33,6 +33,7 @@ from recon4.recording.packets.hesai.layouts import (
 )
 from recon4.recording.packets.hesai.mirrors import MirrorTable, mirrors_of, read_mirrors
 from recon4.recording.packets.hesai.models import MODELS, RETURN_MODES, HesaiModel, model_of
+from recon4.recording.packets.hesai.restamped import restamped_data, restamped_jt16
 from recon4.recording.packets.hesai.tuning import HESAI_PACKETS
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport, warning
@@ -144,6 +145,22 @@ class Hesai:
             )
             packets = HesaiPackets(model, packets.layout, packets.header, packets.mode)
         return HesaiFormat(packets, _directions(model, sensor), sensor)
+
+    def restamped(
+        self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]
+    ) -> Payloads | None:
+        """Points, and inertial samples of a JT16, later; None = most are neither."""
+        del companions
+        if not HEADER <= payloads.shape[1] <= HESAI_PACKETS.longest:
+            return None
+        found = _data_packets(payloads)
+        if found is None:
+            is_imu = self._samples(payloads) is not None
+            return restamped_jt16(payloads, shift_ns=shift_ns) if is_imu else None
+        sound = _sound(payloads, found)
+        if 2 * sound.sum() <= len(payloads):
+            return None
+        return restamped_data(payloads, sound, found.layout, shift_ns=shift_ns)
 
     def _samples(self, payloads: Payloads) -> Recognized | None:
         """Packets of a JT16 that hold no points."""

@@ -40,6 +40,7 @@ from recon4.recording.packets.livox.models import (
 )
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.recognition import likely_model, likely_models
+from recon4.recording.packets.livox.restamped import restamped
 from recon4.recording.packets.livox.sound import (
     has_crc,
     has_header,
@@ -181,6 +182,17 @@ class LivoxFamily:
             )
         return LivoxFormat(sensor, layout, model)
 
+    def restamped(
+        self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]
+    ) -> Payloads | None:
+        """Points and inertial samples, later; None = most are neither."""
+        del companions
+        for sdk in (1, 2):
+            sound = _sound(payloads, sdk)
+            if 2 * sound.sum() > len(payloads):
+                return restamped(payloads, sound, sdk, shift_ns=shift_ns)
+        return None
+
 
 def imu_packets(datagrams: Datagrams, sdk: int) -> tuple[Payloads, Times]:
     """The IMU packets among datagrams, (N, size), and when they arrived [ns], (N,)."""
@@ -209,6 +221,17 @@ def _usual_layout(head: Datagrams) -> PointLayout | None:
         layouts = [layout_of(payload) for payload in head.payloads(rows, size)]
         found.update(layout for layout in layouts if layout is not None)
     return found.most_common(1)[0][0] if found else None
+
+
+def _sound(payloads: Payloads, sdk: int) -> NDArray[np.bool_]:
+    """Which payloads of one size are packets of a protocol: points or inertial samples, (N,)."""
+    size, data_type = (SDK1_IMU_SIZE, SDK1_IMU_TYPE) if sdk == 1 else (SDK2_IMU_SIZE, SDK2_IMU_TYPE)
+    kinds = [(one.size, one.data_type, one.shots) for one in LAYOUTS if one.sdk == sdk]
+    sound = np.zeros(len(payloads), np.bool_)
+    for its_size, its_type, points in (*kinds, (size, data_type, 1)):
+        if payloads.shape[1] == its_size:
+            sound |= has_header(payloads, sdk, its_type, points=points)
+    return sound & has_stamp(payloads, sdk) if sound.any() else sound
 
 
 def _are_imu(head: Datagrams) -> bool:

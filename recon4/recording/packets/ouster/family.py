@@ -40,6 +40,7 @@ from recon4.recording.packets.ouster.metadata_choice import (
     sound_head,
     usual_serial,
 )
+from recon4.recording.packets.ouster.restamped import restamped
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import warning
 
@@ -108,6 +109,12 @@ class OusterFamily:
             )
         _say(sensor, fit, found, columns=turning.columns)
         return OusterPackets(sensor, fit.metadata, turning)
+
+    def restamped(
+        self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]
+    ) -> Payloads | None:
+        """Points and inertial samples, later; None = most are neither."""
+        return restamped(payloads, companions, shift_ns=shift_ns)
 
 
 def _recognized_part(head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:

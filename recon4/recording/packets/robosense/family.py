@@ -55,6 +55,7 @@ from recon4.recording.packets.robosense.packets import (
     stamps,
     variants_of,
 )
+from recon4.recording.packets.robosense.restamped import restamped
 from recon4.recording.packets.robosense.solid import (
     SOLID_MODELS,
     SolidModel,
@@ -255,6 +256,13 @@ class RoboSenseFamily:
             return SpinningFormat(sensor, MODELS[name])
         known = ", ".join([*MODELS, *SOLID_MODELS])
         raise ConfigError(f"no packet decoder for RoboSense model {name!r}; decoded: {known}")
+
+    def restamped(
+        self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]
+    ) -> Payloads | None:
+        """Points and inertial samples, later; None = of no model."""
+        del companions
+        return restamped(payloads, shift_ns=shift_ns)
 
 
 ROBOSENSE = RoboSenseFamily()

@@ -17,13 +17,15 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.units import SECOND_NS
 
-_STAMP = np.dtype([("high", ">u2"), ("seconds", ">u4"), ("rest", ">u4")])
-_DATE = np.dtype(
+STAMP = np.dtype([("high", ">u2"), ("seconds", ">u4"), ("rest", ">u4")])
+"""Seconds, and µs or ns of the second."""
+DATE = np.dtype(
     [
         *[(name, "u1") for name in ("year", "month", "day", "hour", "minute", "second")],
         *[("ms", ">u2"), ("us", ">u2")],
     ]
 )
+"""A time as a date; years after 2000."""
 
 
 class PacketReturns(IntEnum):
@@ -91,13 +93,13 @@ def stamps(payloads: Payloads, model: RoboSenseModel) -> tuple[Times, NDArray[np
     """Times of the first shots on the clock of the sensor [ns], (N,), and whether they can be."""
     raw = np.ascontiguousarray(payloads[:, model.stamp_at : model.stamp_at + 10])
     if model.stamp == "date":
-        return _dates_ns(raw.view(_DATE)[:, 0])
+        return _dates_ns(raw.view(DATE)[:, 0])
     return stamps_of(raw, ns=model.stamp == "ns")
 
 
 def stamps_of(raw: NDArray[np.uint8], *, ns: bool) -> tuple[Times, NDArray[np.bool_]]:
     """Seconds of 6 bytes and µs or ns of 4 bytes as times [ns], and whether they can be."""
-    stamp = raw.view(_STAMP)[:, 0]
+    stamp = raw.view(STAMP)[:, 0]
     unit_ns = 1 if ns else 1000
     rest_ns = stamp["rest"].astype(np.int64) * unit_ns
     right = (stamp["high"] == 0) & (stamp["seconds"] <= LATEST_S) & (rest_ns < SECOND_NS)

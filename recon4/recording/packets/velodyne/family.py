@@ -45,6 +45,7 @@ from recon4.recording.packets.velodyne.models import (
     velodyne_model,
 )
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder, utc_offset_ns
+from recon4.recording.packets.velodyne.restamped import restamped
 from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
 from recon4.recording.packets.velodyne.wide_models import VLS128, VLS128_PRODUCT
 from recon4.recording.packets.velodyne.wide_packets import WideFormat, dual_packets, sound_wide
@@ -102,6 +103,13 @@ class VelodyneFamily:
         """
         wide = sensor.sensor.model in (HDL64, VLS128.name)
         return WideFormat(sensor) if wide else VelodyneFormat(sensor)
+
+    def restamped(
+        self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]
+    ) -> Payloads | None:
+        """Data and position packets, later; None = of another size."""
+        del companions
+        return restamped(payloads, shift_ns=shift_ns)
 
 
 VELODYNE = VelodyneFamily()

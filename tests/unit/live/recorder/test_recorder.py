@@ -13,7 +13,7 @@ from recon4.live.findings import findings
 from recon4.live.newest_messages import Newest
 from recon4.live.recorder import capture_file
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
-from recon4.live.replay import ReplayDatagram, replay, shifted_in_time
+from recon4.live.replay import replay
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.pcap import read_pcap
@@ -131,22 +131,6 @@ def test_too_much_waiting_for_the_disk_is_dropped_and_counted(tmp_path, monkeypa
 
     assert file.state().dropped + file.state().datagrams == 30
     assert file.state().dropped >= 20
-
-
-def test_stamps_of_replayed_packets_are_moved_across_the_hour():
-    _, payloads = spin(1)
-    stamp_us = int.from_bytes(payloads[0, 1200:1204].tobytes(), "little")
-
-    sent = ReplayDatagram(0, "10.0.0.1", 2368, payloads[0].tobytes())
-
-    later = shifted_in_time(sent, 3_599_000_000_000)
-
-    assert int.from_bytes(later.payload[1200:1204], "little") == (stamp_us + 3_599_000_000) % (
-        3_600_000_000
-    )
-    assert later.payload[:1200] == payloads[0].tobytes()[:1200]
-    sample = ReplayDatagram(0, "10.0.0.1", 8309, b'{"t_ns": 7, "gx_rad_s": 1}', is_json=True)
-    assert json.loads(shifted_in_time(sample, 5).payload) == {"t_ns": 12, "gx_rad_s": 1}
 
 
 def test_a_replay_comes_in_at_the_speed_it_was_recorded_with_its_samples(session, tmp_path):
