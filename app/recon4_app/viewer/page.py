@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import json
 import re
 from dataclasses import replace
 from functools import cache
@@ -13,6 +14,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from recon4.locales.coded import said
+from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts
 from recon4_app.deps import Server
 from recon4_app.network.behind import public_path
@@ -72,6 +74,27 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   pressForStretch();
   if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
+// viser writes its own notices in English: their text nodes get the words of the page's language.
+addEventListener('DOMContentLoaded', () => {
+  const words = JSON.parse(document.getElementById('notices').textContent);
+  if (!words.length) return;
+  const said = (text) => {
+    for (const [[before, after], own] of words)
+      if (after === undefined ? text === before :
+          text.startsWith(before) && text.endsWith(after))
+        return own.replace('VALUE', () => text.slice(before.length, -after.length));
+    return text;
+  };
+  const say = (root) => {
+    const texts = document.createTreeWalker(root, NodeFilter.SHOW_TEXT);
+    for (let node = texts.currentNode; node; node = texts.nextNode())
+      if (node.nodeType === Node.TEXT_NODE && said(node.data) !== node.data)
+        node.data = said(node.data);
+  };
+  new MutationObserver((changes) => {
+    for (const { target, addedNodes } of changes) [target, ...addedNodes].forEach(say);
+  }).observe(document.body, { childList: true, subtree: true, characterData: true });
+});
 // The list of keys, by its key or button.
 addEventListener('DOMContentLoaded', () => {
   const keys = document.getElementById('keys');
@@ -188,6 +211,7 @@ def with_shims(page: str, project: ProjectView, language: str) -> str:
         f'<div id="frame-caption">{html.escape(frame_caption(project, say))}</div>'
         f'<button id="show-keys" type="button" aria-label="{html.escape(say("list-of-keys"))}">'
         f"?</button>{list_of_keys(say)}"
+        f'<script type="application/json" id="notices">{notices(say)}</script>'
     )
     return page[:head] + drawing() + SHIMS + page[head:body] + badge + page[body:]
 
@@ -204,6 +228,20 @@ def _cover_words(say: Texts) -> str:
     opening = html.escape(say("opening-since", seconds="SECONDS"))
     again = html.escape(say("trying-again", problem="PROBLEM"))
     return f'data-opening="{opening}" data-again="{again}" {_data(say, silent="server-silent")}'
+
+
+def notices(say: Texts) -> str:
+    """What viser writes in English, and the same in the language, as JSON; none in English.
+
+    A text that quotes a value is in two parts, before and after it.
+    """
+    if say.language == ENGLISH:
+        return "[]"
+    quoted = {"browser": "VALUE"}
+    english = words(ENGLISH)
+    names = (name for name in english.names() if name.startswith("viser-"))
+    pairs = [(english(name, **quoted).split("VALUE"), say(name, **quoted)) for name in names]
+    return json.dumps(pairs).replace("<", "\\u003c")
 
 
 def list_of_keys(say: Texts) -> str:

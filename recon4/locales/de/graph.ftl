@@ -25,6 +25,28 @@ hotkey-play = Abspielen oder anhalten
 hotkey-list = Diese Liste
 cap-escape = Esc
 
+## Meldungen von viser
+
+viser-connecting = Verbindet…
+viser-connected = Verbunden
+viser-inactive = Nicht verbunden
+viser-rejected = Verbindung abgelehnt
+viser-software = Grafik ohne Grafikkarte
+viser-software-why = WebGL rechnet auf dem Prozessor, nicht auf der Grafikkarte; das ist langsamer. Wenn das nicht gewollt ist: in den Einstellungen des Browsers die Hardwarebeschleunigung einschalten.
+viser-no-webgl = WebGL fehlt
+viser-no-webgl-why = Ohne WebGL gibt es keinen Betrachter. Vielleicht ist die Hardwarebeschleunigung ausgeschaltet: die Einstellungen des Browsers prüfen.
+viser-old-browser = Veralteter Browser
+viser-old-browser-why = Dieser Browser ({ $browser }) ist veraltet; das kann Fehler verursachen. Besser aktualisieren.
+viser-unknown-browser = Unbekannter Browser
+viser-unknown-browser-why = Die Version dieses Browsers ist nicht zu erkennen; vielleicht fehlt ihm etwas.
+viser-expand = Bedienfeld aufklappen
+viser-collapse = Spalte einklappen
+viser-collapse-area = Bedienfelder einklappen
+viser-settings = Einstellungen und Diagnose
+viser-share = Teilen
+viser-share-not = Teilen (erst mit Verbindung)
+viser-return = Zurück zur Bedienung
+
 ## Bedienung
 
 controls = Bedienung

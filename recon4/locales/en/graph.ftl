@@ -25,6 +25,28 @@ hotkey-play = Play or stop
 hotkey-list = This list
 cap-escape = Escape
 
+## Notices of viser, as it writes them
+
+viser-connecting = Connecting...
+viser-connected = Connected
+viser-inactive = Inactive
+viser-rejected = Connection rejected
+viser-software = Software WebGL rendering detected
+viser-software-why = WebGL is running in software mode, not on your GPU. Performance may be degraded. If this is unexpected, check that hardware acceleration is enabled in your browser settings.
+viser-no-webgl = WebGL unavailable
+viser-no-webgl-why = WebGL is unavailable. This may be caused by hardware acceleration being disabled — check your browser settings.
+viser-old-browser = Unsupported browser
+viser-old-browser-why = Your browser ({ $browser }) is outdated, which may cause problems. Consider updating.
+viser-unknown-browser = Could not detect browser version
+viser-unknown-browser-why = Your browser version could not be detected. It may not be supported.
+viser-expand = Expand panel
+viser-collapse = Collapse column
+viser-collapse-area = Collapse panel area
+viser-settings = Configuration & diagnostics
+viser-share = Share
+viser-share-not = Share (needs connection)
+viser-return = Return to GUI
+
 ## Controls
 
 controls = Controls
