@@ -144,6 +144,30 @@ addEventListener('DOMContentLoaded', () => {
 """
 
 
+NOTICES = (
+    "connecting",
+    "connected",
+    "inactive",
+    "rejected",
+    "software",
+    "software-why",
+    "no-webgl",
+    "no-webgl-why",
+    "old-browser",
+    "old-browser-why",
+    "unknown-browser",
+    "unknown-browser-why",
+    "expand",
+    "collapse",
+    "collapse-area",
+    "settings",
+    "share",
+    "share-not",
+    "return",
+)
+"""What viser writes of itself: texts `viser-…`, in English as it has them."""
+
+
 @router.get("/projects/{project_id}/viewer/", response_class=HTMLResponse, include_in_schema=False)
 def viewer_page(project_id: str, request: Request, server: Server) -> Response:
     """Serve the page; its WebSocket goes to the same path without the trailing slash.
@@ -239,8 +263,10 @@ def notices(say: Texts) -> str:
         return "[]"
     quoted = {"browser": "VALUE"}
     english = words(ENGLISH)
-    names = (name for name in english.names() if name.startswith("viser-"))
-    pairs = [(english(name, **quoted).split("VALUE"), say(name, **quoted)) for name in names]
+    pairs = [
+        (english(f"viser-{one}", **quoted).split("VALUE"), say(f"viser-{one}", **quoted))
+        for one in NOTICES
+    ]
     return json.dumps(pairs).replace("<", "\\u003c")
 
 
