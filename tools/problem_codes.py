@@ -33,6 +33,7 @@ TITLES = {
     "problems": "Problems of requests",
     "endings": "Reasons why jobs ended",
     "references": "What is said of references",
+    "recordings": "What is said of recordings",
 }
 
 

@@ -20,8 +20,9 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
 
-FILES = ("problems", "endings", "references")
-"""Files of the texts with a code: problems of requests, reasons why jobs ended, references."""
+FILES = ("problems", "endings", "references", "recordings")
+"""Files of the texts with a code: problems of requests, reasons why jobs ended, what is said of
+references, and of recordings."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
 UNCODED = "message"
@@ -188,6 +189,9 @@ def _functions(texts: Texts) -> Functions:
         kind = "level" if as_float(walls) < 0.0 else "walls" if as_float(level) < 0.0 else "both"
         return texts(f"word-agreeing-{kind}", walls=as_float(walls), level=as_float(level))
 
+    def rate(hz: float) -> str:
+        return texts("word-rate", hz=as_float(hz)) if as_float(hz) > 0.0 else ""
+
     def numbers(written: str) -> str:
         return "; ".join(localized(one, texts.language) for one in written.split())
 
@@ -195,6 +199,7 @@ def _functions(texts: Texts) -> Functions:
         "AGREEING": agreeing,
         "COUNTED": counted,
         "NUMBERS": numbers,
+        "RATE": rate,
         "QUOTED": lambda value: repr(str(value)),
         "WORDS": words,
         "NAMED": named,

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import capture_files
 from recon4.recording.packets.family import Companion
@@ -14,7 +15,9 @@ from recon4.recording.scan_capture import ScanStreams, scan_streams
 from recon4.recording.tuning import LISTED
 from recon4.recording.tuning_heads import PROBE
 
-SCAN_CAPTURE = "capture of scans (pcap)"
+SCAN_CAPTURE = CodedText("recording-scans")
+_SAMPLES = {"samples": "samples", "IMU": "imu", "GNSS": "gnss"}
+"""Kind of a stream -> word of what it sends."""
 
 
 def describe_capture(
@@ -30,8 +33,6 @@ def describe_capture(
     most = PROBE.whole_packets if info.bytes <= PROBE.whole_bytes else PROBE.head_packets
     scans = [scan_pcap(file, max_packets=most, companions=companions) for file in files]
     streams = [stream for scan in scans for stream in scan]
-    names = {"samples": "other packets of a LiDAR", "IMU": "IMU samples", "GNSS": "GNSS samples"}
-    samples = [s for s in streams if s.kind in names]
     scanners = scan_streams(files)
     lidars = [_packet_sensor(s) for s in streams if s.kind == "data"]
     lidars += [_scanner(s, scanners) for s in streams if (s.source, s.port) in scanners.scans]
@@ -42,9 +43,14 @@ def describe_capture(
         t_last_ns=max((s.t_end_ns for s in streams), default=0),
         estimated=not all(s.whole for s in streams),
         sensors=tuple(lidars),
-        samples=tuple(f"{s.source}:{s.port}: {_total(s)} {names[s.kind]}" for s in samples),
+        samples=tuple(_samples(s) for s in streams if s.kind in _SAMPLES),
         unread=tuple(s.text for s in _others(streams, scanners)),
     )
+
+
+def _samples(stream: PacketStream) -> CodedText:
+    sender, what = f"{stream.source}:{stream.port}", _SAMPLES[stream.kind]
+    return CodedText("samples-sender", sender=sender, count=_total(stream), what=what)
 
 
 def _others(streams: Sequence[PacketStream], scanners: ScanStreams) -> list[PacketStream]:

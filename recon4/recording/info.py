@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError
+from recon4.locales.coded import CodedText
+from recon4.locales.texts import Shown
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
@@ -29,6 +31,7 @@ from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
 from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.gnss.files import read_gnss
+from recon4.recording.gnss.records import Dating
 from recon4.recording.info_head import RecordingHead, judge_samples, kind_of_walk, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
@@ -45,7 +48,7 @@ from recon4.recording.lidar_choice import shared_topics
 from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
 from recon4.recording.mandeye.info import describe_walk
-from recon4.recording.nearby_samples import samples_beside
+from recon4.recording.nearby_samples import missing_samples
 from recon4.recording.open import KINDS, open_recording
 from recon4.recording.openers.frames import frames_model
 from recon4.recording.openers.request import OpenRequest
@@ -86,7 +89,7 @@ def describe(
     given = path
     path, kind = located_kind(path)
     info = RecordingInfo(
-        path=path.relative_to(given.parent).as_posix(), kind=str(kind), bytes=_size(path)
+        path=path.relative_to(given.parent).as_posix(), kind=kind.text, bytes=_size(path)
     )
     if kind in PLANAR or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path, kind)):
         if kind is RecordingKind.PCAP:
@@ -147,7 +150,7 @@ def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
             t_first_ns=bag.t_first_ns,
             t_last_ns=bag.t_last_ns,
             sensors=sensors,
-            samples=tuple(_topic_line(t, bag.seconds, describing) for t in other if t.messages),
+            samples=tuple(_topic_samples(t, bag.seconds, describing) for t in other if t.messages),
             gaps=gaps,
             missing=lines.missing if lines else (),
         )
@@ -198,15 +201,17 @@ def _gaps(name: str, t_ns: Times) -> list[TimeGap]:
     return [TimeGap(name, int(t_ns[k]), float(steps[k]) / 1e9) for k in wide]
 
 
-def _topic_line(topic: BagTopic, seconds: float, describing: set[str]) -> str:
-    names = {IMU: "IMU", NAVSATFIX: "GNSS positions", ODOMETRY: "poses (kept for comparison)"}
-    names |= dict.fromkeys(TRANSFORMS, "transforms between frames")
-    names |= dict.fromkeys(PACKET_MESSAGES, "other packets of a LiDAR")
-    rate = f", {topic.messages / seconds:.1f} a second" if seconds > 0 else ""
-    what = names.get(topic.type, f"{topic.type}, not read")
-    if topic.name in describing:
-        what = "describes a LiDAR"
-    return f"{topic.name}: {what}, {topic.messages}{rate}"
+def _topic_samples(topic: BagTopic, seconds: float, describing: set[str]) -> CodedText:
+    words = {IMU: "imu", NAVSATFIX: "gnss", ODOMETRY: "odometry"}
+    words |= dict.fromkeys(TRANSFORMS, "transforms")
+    words |= dict.fromkeys(PACKET_MESSAGES, "packets")
+    rate_hz = topic.messages / seconds if seconds > 0 else 0.0
+    counted: dict[str, Shown] = {"topic": topic.name, "messages": topic.messages}
+    counted["rate_hz"] = rate_hz
+    what = "describes" if topic.name in describing else words.get(topic.type, "")
+    if not what:
+        return CodedText("samples-topic-unread", type=topic.type, **counted)
+    return CodedText("samples-topic", what=what, **counted)
 
 
 # -- 2-D lasers
@@ -233,10 +238,10 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
         t_first_ns=first,
         t_last_ns=last,
         sensors=(sensor,),
-        samples=("poses by the robot's odometry",) if scans.odometry is not None else (),
+        samples=(CodedText("samples-robot"),) if scans.odometry is not None else (),
         gaps=tuple(g for g in _gaps(path.name, scans.t_ns) if g.seconds > LASERS.gap_s),
         derived=tuple(report.derived),
-        missing=() if scans.odometry is not None else ("odometry",),
+        missing=() if scans.odometry is not None else (CodedText("missing-odometry"),),
         lost=tuple(report.lost()),
         repaired=tuple(report.repaired()),
         findings=tuple(report.findings),
@@ -250,11 +255,11 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
     frames = list_frames(path)
     fields = tuple(cloud_fields(frames.files[0]))
     absent = [
-        text
-        for text, aliases in (
+        word
+        for word, aliases in (
             ("intensity", INTENSITY_FIELDS),
             ("ring", RING_FIELDS),
-            ("time per point", TIME_FIELDS),
+            ("time", TIME_FIELDS),
         )
         if not find_field(fields, aliases)
     ]
@@ -272,36 +277,46 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
         t_last_ns=int(frames.t_ns[-1]) + frames.period_ns,
         sensors=(sensor,),
         gaps=tuple(folder_gaps(frames, path.name, tuned(IngestTuning, settings).gap_s)),
-        missing=tuple(f"field: {text}" for text in absent),
+        missing=tuple(CodedText("missing-field", field=word) for word in absent),
         findings=time_warnings(frames),
     )
 
 
 # -- samples
 
+_GNSS_SAMPLES = {
+    Dating.UTC: "samples-gnss",
+    Dating.DAY: "samples-gnss-undated",
+    Dating.WEEK: "samples-gnss-weekless",
+}
+"""Code of samples by what their times are."""
+
 
 def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> RecordingInfo:
     report = ImportReport()
+    values: dict[str, Shown] = {}
     if kind is RecordingKind.IMU_CSV:
-        t_ns, what = read_imu_csv(path, report).t_ns, "IMU samples"
+        t_ns, code = read_imu_csv(path, report).t_ns, "samples-imu"
+        values["what"] = "imu"
     elif kind is RecordingKind.GNSS_FILE:
         file = read_gnss(path, report)
-        t_ns, what = file.samples.t_ns, file.text
+        t_ns, code = file.samples.t_ns, _GNSS_SAMPLES[file.dating]
+        values |= {"format": file.format, "what": "gnss"}
     elif pose_format(path) == "tum":
         walk = read_tum(path, report)
-        t_ns, what = walk.t_ns, "poses (TUM)"
+        t_ns, code = walk.t_ns, "samples-tum"
         if tum_hint(walk):
             report.warn(FindingKind.QUATERNION_ORDER)
     else:
-        return replace(info, samples=("poses (KITTI)",), missing=("times of the poses",))
+        missing = (CodedText("missing-times"),)
+        return replace(info, samples=(CodedText("samples-kitti"),), missing=missing)
     first, last = int(t_ns.min()), int(t_ns.max())
-    rate = f", {(len(t_ns) - 1) * 1e9 / (last - first):.1f} a second" if last > first else ""
-    text = f"{len(t_ns)} {what}{rate}"
+    values["rate_hz"] = (len(t_ns) - 1) * 1e9 / (last - first) if last > first else 0.0
     return replace(
         info,
         t_first_ns=first,
         t_last_ns=last,
-        samples=(text,),
+        samples=(CodedText(code, count=len(t_ns), **values),),
         derived=tuple(report.derived),
         lost=tuple(report.lost()),
         findings=tuple(report.findings),
@@ -356,19 +371,17 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         if request.fields is not None:
             raise
         to_complete = error if isinstance(error, RigToComplete) else None
-        missing.append(f"rig: {error}")
+        missing.append(CodedText("missing-rig", error=str(error), what="rig"))
     except RecordingError as error:
-        missing.append(str(error))
+        missing.append(CodedText("missing-contents", error=str(error)))
     samples = [*info.samples]
-    texts = " ".join(samples)
-    if head.imu and "IMU" not in texts:
-        samples.append("IMU in the packets of the LiDAR")
-    if rig is not None and not head.imu and "IMU" not in texts:
-        beside = samples_beside(path, RecordingKind.IMU_CSV)
-        missing.append(f"IMU ({beside or 'an IMU file can be given beside it'})")
-    if not head.gnss and "GNSS" not in texts:
-        beside = samples_beside(path, RecordingKind.GNSS_FILE)
-        missing.append("GNSS positions" + f" ({beside})" * bool(beside))
+    there = {text.values.get("what") for text in samples}
+    if head.imu and "imu" not in there:
+        samples.append(CodedText("samples-in-packets", what="imu"))
+    if rig is not None and not head.imu and "imu" not in there:
+        missing.append(missing_samples(path, RecordingKind.IMU_CSV))
+    if not head.gnss and "gnss" not in there:
+        missing.append(missing_samples(path, RecordingKind.GNSS_FILE))
     sensors = _with_rotation(info.sensors, rig, head)
     report.count("clock_jumps_back", len(head.jumps))
     return replace(

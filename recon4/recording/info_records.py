@@ -8,6 +8,7 @@ import numpy as np
 
 from recon4.findings.derived import derived_text, said_derived
 from recon4.findings.wording import whole_text
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.model.derived import Derived
 from recon4.model.finding import Finding
@@ -42,7 +43,7 @@ class RecordingInfo:
     """Contents of a recording."""
 
     path: str
-    kind: str
+    kind: CodedText
     bytes: int
     walk: Derived | None = None
     """Kind of walk it is mapped as, and why; None = it cannot be mapped."""
@@ -52,14 +53,14 @@ class RecordingInfo:
     estimated: bool = False
     """Whether only the head of a large file was read; counts and end are estimates then."""
     sensors: tuple[SensorInfo, ...] = ()
-    samples: tuple[str, ...] = ()
-    """Description of IMU, GNSS and poses with their rates."""
+    samples: tuple[CodedText, ...] = ()
+    """IMU, GNSS and poses with their rates."""
     unread: tuple[str, ...] = ()
     """Senders of packets that are not read, and why."""
     gaps: tuple[TimeGap, ...] = ()
     derived: tuple[Derived, ...] = ()
     """What recon4 derives or chooses because the recording does not say it."""
-    missing: tuple[str, ...] = ()
+    missing: tuple[CodedText, ...] = ()
     lost: tuple[str, ...] = ()
     """Counts of data that is not used, in words; of a large recording, at its head."""
     repaired: tuple[str, ...] = ()
@@ -76,8 +77,13 @@ class RecordingInfo:
 
     def to_json(self, language: str = ENGLISH) -> dict[str, object]:
         """The contents as a record; what is derived also as text in a language."""
-        derived = [said_derived(one, language) for one in self.derived]
-        return asdict(self) | {"derived": derived, "walk": self.walk_text(language)}
+        return asdict(self) | {
+            "kind": self.kind.said(language),
+            "samples": [one.said(language) for one in self.samples],
+            "derived": [said_derived(one, language) for one in self.derived],
+            "missing": [one.said(language) for one in self.missing],
+            "walk": self.walk_text(language),
+        }
 
     def walk_text(self, language: str = ENGLISH) -> str:
         """Kind of walk it is mapped as, and why, in words; empty = it cannot be mapped."""
@@ -86,7 +92,7 @@ class RecordingInfo:
     def lines(self, language: str = ENGLISH) -> list[str]:
         """The contents as text; what is derived and warned of in a language."""
         about = "about " if self.estimated else ""
-        lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
+        lines = [f"{self.path}: {self.kind.said(language)}, {self.bytes / 1e6:.1f} MB"]
         absolute = self.t_first_ns > FRAME_TIMES.earliest_ns
         if absolute or self.t_last_ns > self.t_first_ns:
             start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
@@ -94,7 +100,7 @@ class RecordingInfo:
         lines += [f"walk      {self.walk_text(language)}"] if self.walk else []
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about, language)
-        lines += [f"samples   {text}" for text in self.samples]
+        lines += [f"samples   {one.said(language)}" for one in self.samples]
         lines += [f"not read  {text}" for text in self.unread]
         for gap in self.gaps[:10]:
             since_s = (gap.t_ns - self.t_first_ns) / 1e9
@@ -105,7 +111,7 @@ class RecordingInfo:
         if len(self.gaps) > 10:
             lines.append(f"gap       … {len(self.gaps)} in all")
         lines += [f"derived   {derived_text(one, language)}" for one in self.derived]
-        lines += [f"missing   {text}" for text in self.missing]
+        lines += [f"missing   {one.said(language)}" for one in self.missing]
         lines += [f"lost      {text}" for text in self.lost]
         lines += [f"repaired  {text}" for text in self.repaired]
         lines += [f"warning   {whole_text(one, language)}" for one in self.findings]

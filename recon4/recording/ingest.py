@@ -308,7 +308,7 @@ def _dated(file: GnssFile | None, written: _IngestSpan, report: ImportReport) ->
     if file.dating is not Dating.UTC and len(samples):
         report.derive(
             DerivedKind.POSITIONS_DATED,
-            what=file.what,
+            format=file.format,
             day=day_of(int(samples.t_ns[0])).isoformat(),
             dateless=file.dating is Dating.DAY,
             weekless=file.dating is Dating.WEEK,

@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 from recon4.errors import EmptyRecording, RecordingError, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.recording.folders import natural
 from recon4.recording.formats.bags import STORAGE_SUFFIXES
 from recon4.recording.formats.carmen import is_carmen
@@ -34,7 +35,7 @@ from recon4.recording.sources import Sources
 
 
 class RecordingKind(StrEnum):
-    """Kinds of recordings; the value is shown to users."""
+    """Kinds of recordings; the value is their text in English."""
 
     PCAP = "packets of LiDARs (pcap)"
     LVX = "packets of Livox LiDARs (LVX)"
@@ -49,6 +50,11 @@ class RecordingKind(StrEnum):
     LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
     MANDEYE = "walk of a MANDEYE device (LAZ and CSV)"
     LIDAR_FILE = "description of a LiDAR (JSON, CSV, YAML, XML or DAT)"
+
+    @property
+    def text(self) -> CodedText:
+        """The same with its code, ``recording-NAME``."""
+        return CodedText(f"recording-{self.name.lower()}", formats=CLOUD_FORMATS)
 
 
 CAPTURES = (RecordingKind.PCAP, RecordingKind.LVX)

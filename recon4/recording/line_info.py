@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import RecordingError
+from recon4.locales.coded import CodedText
+from recon4.locales.texts import Shown
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.formats.columns import (
@@ -81,7 +83,8 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
             report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
     if tables.imu is not None:
         imu_ns = read_imu_csv(tables.imu, report).t_ns
-        samples.append(f"{tables.imu.name}: {len(imu_ns)} IMU samples")
+        beside: dict[str, Shown] = {"file": tables.imu.name, "count": len(imu_ns), "what": "imu"}
+        samples.append(CodedText("samples-beside-lines", **beside))
     return replace(
         info,
         t_first_ns=seen.t_first_ns,
@@ -107,14 +110,14 @@ def _read_lines(path: Path, report: ImportReport) -> _Seen:
     return seen
 
 
-def _absent(tables: LineTables, has_head: bool) -> tuple[str, ...]:
+def _absent(tables: LineTables, has_head: bool) -> tuple[CodedText, ...]:
     absent = {
-        "2-D laser (laser2d.csv or laser2d.npz)": tables.laser2d is None,
-        "IMU (imu.csv)": tables.imu is None,
-        "angles of the head (column head_deg; or head_rate_deg_s in the rig file)": not has_head,
+        CodedText("missing-laser-table"): tables.laser2d is None,
+        CodedText("missing-imu-table", what="imu"): tables.imu is None,
+        CodedText("missing-head-column"): not has_head,
     }
     found = tuple(text for text, is_absent in absent.items() if is_absent)
-    return (*found, "rig: one with a sensor of kind profiler (page: field Rig; command: --rig)")
+    return (*found, CodedText("missing-profiler-rig", what="rig"))
 
 
 def _profiler(name: str, seen: _Seen, part: float) -> SensorInfo:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.bags import JOINT_STATES, TEXT, Bag, BagTopic
 from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.profiler_rigs import profiler_rig
@@ -22,7 +23,7 @@ class LineTopics:
 
     sensors: tuple[tuple[BagTopic, str, str], ...]
     """Topic, kind of sensor, and what its messages are."""
-    missing: tuple[str, ...]
+    missing: tuple[CodedText, ...]
     """What the rig has and the bag lacks."""
 
 
@@ -39,12 +40,13 @@ def line_topics(bag: Bag) -> LineTopics | None:
         if sensor.topic in filled:
             found.append((filled[sensor.topic], names[sensor.kind], contents[sensor.kind]))
         else:
-            missing.append(f"{names[sensor.kind]} ({sensor.topic})")
+            missing.append(CodedText("missing-topic", kind=sensor.kind, topic=sensor.topic))
         if not sensor.head_topic:
             continue
         if sensor.head_topic in filled:
             head = filled[sensor.head_topic]
             found.append((head, *_MOVES.get(head.type, ("head", "angles"))))
         else:
-            missing.append(f"angles of the head ({sensor.head_topic}, {JOINT_STATES})")
+            expected = {"topic": sensor.head_topic, "type": JOINT_STATES}
+            missing.append(CodedText("missing-head-topic", **expected))
     return LineTopics(tuple(found), tuple(missing))

@@ -7,6 +7,7 @@ from itertools import islice
 from pathlib import Path
 
 from recon4.errors import RecordingError
+from recon4.locales.coded import CodedText
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.limits import LIMITS
 from recon4.recording.sources import Sources
@@ -35,13 +36,13 @@ def unread_samples(sources: Sources) -> list[str]:
     return texts
 
 
-def samples_beside(recording: Path, kind: RecordingKind) -> str:
-    """What to do with samples of a kind beside a recording; empty = there are none."""
-    option = {RecordingKind.IMU_CSV: "--imu", RecordingKind.GNSS_FILE: "--gnss"}[kind]
+def missing_samples(recording: Path, kind: RecordingKind) -> CodedText:
+    """That a recording has no samples of a kind, and which file beside it has them."""
+    name = {RecordingKind.IMU_CSV: "imu", RecordingKind.GNSS_FILE: "gnss"}[kind]
     file = nearby_samples([recording], kind)
     if file is None:
-        return ""
-    return f"{file.name} beside it has them: page: IMU and GNSS files; command: {option} FILE"
+        return CodedText(f"missing-{name}", what=name)
+    return CodedText(f"missing-{name}-given", file=file.name, what=name)
 
 
 def nearby_samples(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:

@@ -87,16 +87,10 @@ export class RecordingLook extends HTMLElement {
   }
 }
 
-/** A kind of recording; in parentheses it may name formats. */
-function kindText(/** @type {string} */ kind) {
-  const [, name = kind, formats = ""] = kind.match(/^(.*?)( \(.*\))?$/) ?? [];
-  return `${wordOf("recording-kind", name)}${formats}`;
-}
-
 function summary(/** @type {RecordingSummary} */ found) {
   const { kind, bytes: size, seconds: duration, warnings } = found;
   const about = found.estimated ? t("recording-about") : "";
-  const facts = [kindText(kind), bytes(size), duration > 0 ? `${about}${seconds(duration)}` : ""];
+  const facts = [kind, bytes(size), duration > 0 ? `${about}${seconds(duration)}` : ""];
   return html`<p><strong>${facts.filter(Boolean).join(" · ")}</strong></p>
     <dl class="found">
       ${rowsOf(found, about).map(

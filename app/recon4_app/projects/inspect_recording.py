@@ -12,6 +12,7 @@ from recon4.untrusted.names import is_unnameable
 from recon4_app.projects.tuning import INSPECTION
 
 if TYPE_CHECKING:
+    from recon4.locales.coded import CodedText
     from recon4.recording.info_records import SensorInfo
 
 
@@ -94,22 +95,25 @@ def inspect_recording(
 
     info = describe(path, near=beside)
     suited = _suited(beside)
-    samples = " ".join(info.samples)
-    located = "GNSS" in samples or "GNSS" in suited
+    located = "gnss" in {text.values.get("what") for text in info.samples} or "GNSS" in suited
     return RecordingSummary(
         path=str(path),
-        kind=info.kind,
+        kind=info.kind.said(language),
         bytes=info.bytes,
         seconds=max(0.0, info.seconds),
         estimated=info.estimated,
         sensors=tuple(map(_summary_of, info.sensors)),
-        samples=info.samples,
+        samples=tuple(text.said(language) for text in info.samples),
         derived=tuple(
             derived_text(one, language)
             for one in info.derived
             if one.kind is not DerivedKind.RIG_CHOSEN or "rig" not in suited
         ),
-        missing=tuple(text for text in info.missing if not _is_in(text, suited)),
+        missing=tuple(
+            text.said(language)
+            for text in info.missing
+            if text.values.get("what") not in {name.lower() for name in suited}
+        ),
         warnings=(
             *(whole_text(finding, language) for finding in info.findings),
             *_gap_warnings([gap.seconds for gap in info.gaps]),
@@ -158,15 +162,8 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
     return found
 
 
-def _needs_rig(missing: tuple[str, ...]) -> bool:
-    return any(text.startswith("rig") for text in missing)
-
-
-def _is_in(text: str, beside: dict[str, str]) -> bool:
-    """Whether a missing input is among the files beside the recording."""
-    return any(text.startswith(kind) for kind in beside) or (
-        text.startswith("rig") and "rig" in beside
-    )
+def _needs_rig(missing: tuple[CodedText, ...]) -> bool:
+    return any(text.values.get("what") == "rig" for text in missing)
 
 
 def _gap_warnings(seconds: list[float]) -> list[str]:

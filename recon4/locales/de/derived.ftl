@@ -331,6 +331,8 @@ POSITIONS-CHOSEN =
 POSITIONS-DATED =
     .text1-if-dateless = { $what }, ohne Datum: die erste ist vom { $day }, wie die Punkte sagen.
     .text2-if-weekless = { $what }, ohne GPS-Woche: die erste ist vom { $day }, wie die Punkte sagen.
+    .text3-if-dateless = GNSS-Positionen ({ $format }), ohne Datum: die erste ist vom { $day }, wie die Punkte sagen.
+    .text4-if-weekless = GNSS-Positionen ({ $format }), ohne GPS-Woche: die erste ist vom { $day }, wie die Punkte sagen.
 
 POSITIONS-UNIT =
     .text1 = Positionen waren in Radiant (Breite { DECIMAL($lat_rad, digits: 6) }, Länge { DECIMAL($lon_rad, digits: 6) }), jetzt in Grad.

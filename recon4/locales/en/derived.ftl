@@ -328,6 +328,8 @@ POSITIONS-CHOSEN =
 POSITIONS-DATED =
     .text1-if-dateless = { $what }, without a date: the first is of { $day }, as the points say.
     .text2-if-weekless = { $what }, without a GPS week: the first is of { $day }, as the points say.
+    .text3-if-dateless = GNSS positions ({ $format }), without a date: the first is of { $day }, as the points say.
+    .text4-if-weekless = GNSS positions ({ $format }), without a GPS week: the first is of { $day }, as the points say.
 
 POSITIONS-UNIT =
     .text1 = Positions were in radians (latitude { DECIMAL($lat_rad, digits: 6) }, longitude { DECIMAL($lon_rad, digits: 6) }), now in degrees.

@@ -107,7 +107,7 @@ def read_sbet(path: Path, report: ImportReport) -> GnssFile:
         quality,
         np.column_stack([rows[:, _Sbet.ROLL], rows[:, _Sbet.PITCH], heading]),
     )
-    return GnssFile(samples, "GNSS positions and attitudes (SBET)", Dating.WEEK)
+    return GnssFile(samples, "SBET", Dating.WEEK)
 
 
 def _rows(path: Path, columns: int) -> Array:

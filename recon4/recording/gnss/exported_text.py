@@ -131,7 +131,7 @@ def read_exported_text(path: Path, report: ImportReport) -> GnssFile:
             f"{rows.t_ns[0] / SECOND_NS:.3f}: export GPSTime with Week"
         )
     samples = gnss_samples(table.utc(rows), rows.table(), rows.quality)
-    return GnssFile(samples, "GNSS positions (exported as text)", table.dating)
+    return GnssFile(samples, "Inertial Explorer", table.dating)
 
 
 @dataclass(frozen=True, slots=True)

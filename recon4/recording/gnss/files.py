@@ -62,7 +62,7 @@ def read_gnss(path: Path, report: ImportReport | None = None) -> GnssFile:
     found = _format_of(path)
     if found is not None:
         return found.read(path, report)
-    return GnssFile(read_gnss_csv(path, report), "GNSS samples")
+    return GnssFile(read_gnss_csv(path, report), "CSV")
 
 
 def _format_of(path: Path) -> GnssFormat | None:

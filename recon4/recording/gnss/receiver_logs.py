@@ -151,7 +151,7 @@ def read_receiver_log(path: Path, report: ImportReport) -> GnssFile:
     dated = name != "NMEA" or log.nmea.is_dated
     return GnssFile(
         found[name].samples(gps=name.startswith("NovAtel")),
-        f"GNSS positions ({name})",
+        name,
         Dating.UTC if dated else Dating.DAY,
     )
 

@@ -36,15 +36,9 @@ class GnssFile:
 
     samples: GnssSamples
     """Times as ``dating`` says."""
-    what: str
-    """Format, in words."""
+    format: str
+    """Name of the format, and of its variant."""
     dating: Dating = Dating.UTC
-
-    @property
-    def text(self) -> str:
-        """Format, and what its times are."""
-        missing = {Dating.DAY: ", without a date", Dating.WEEK: ", without a GPS week"}
-        return self.what + missing.get(self.dating, "")
 
     def dated(self, near_ns: int) -> GnssSamples:
         """The samples on UTC, on the day or in the week nearest to a time.

@@ -104,8 +104,7 @@ def read_rtklib(path: Path, report: ImportReport) -> GnssFile:
     if header.time == "JST":
         t_ns = t_ns - 9 * HOUR_NS
     table[:, :3] = _geodetic(table[:, :3], header, path.name)
-    what = f"GNSS positions (RTKLIB, {header.time})"
-    return GnssFile(gnss_samples(t_ns, table, rows.quality), what)
+    return GnssFile(gnss_samples(t_ns, table, rows.quality), f"RTKLIB, {header.time}")
 
 
 def _names(line: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.mandeye.folder import list_walk
 from recon4.recording.mandeye.read import walk_streams
@@ -34,8 +35,11 @@ def describe_walk(info: RecordingInfo, folder: Path) -> RecordingInfo:
         for stream in streams
     )
     with_imu = sum(part.imu is not None for part in walk.parts)
-    samples = [f"IMU samples in {with_imu} files imu*.csv"] if with_imu else []
-    samples += [f"GNSS positions in {len(walk.positions)} files"] if walk.positions else []
+    samples = []
+    if with_imu:
+        samples.append(CodedText("samples-imu-files", files=with_imu, what="imu"))
+    if walk.positions:
+        samples.append(CodedText("samples-gnss-files", files=len(walk.positions), what="gnss"))
     last = first + round(seconds * 1e9)
     return replace(
         info,

@@ -29,7 +29,8 @@ from recon4_app.errors import NotFound
 from recon4_app.network.close_codes import close_reason
 
 OTHERS = languages()[1:]
-SAME = {"webhook-url"}
+SAME = {"webhook-url", "recording-bag1", "recording-bag2", "missing-contents", "missing-imu-table"}
+SAME |= {"missing-topic", "samples-sender", "samples-topic", "word-topic-imu"}
 """Codes whose text is the same in German."""
 
 

@@ -17,6 +17,7 @@ from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import derived_in
 from recon4.recording.info_records import RecordingInfo
+from recon4.recording.kinds import RecordingKind
 from recon4.recording.report import ImportReport
 from tests.source_trees import sources, trees_with
 
@@ -144,7 +145,7 @@ def test_a_record_is_said_in_any_language():
 
 
 def test_info_says_it_as_lines_and_as_a_record_with_its_text():
-    info = RecordingInfo(path="a", kind="pcap", bytes=0, derived=(UNIT,))
+    info = RecordingInfo(path="a", kind=RecordingKind.PCAP.text, bytes=0, derived=(UNIT,))
 
     assert info.lines("de")[-1] == f"derived   {derived_text(UNIT, 'de')}"
     assert info.to_json("de")["derived"] == [said_derived(UNIT, "de")]

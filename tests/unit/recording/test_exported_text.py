@@ -120,4 +120,4 @@ def test_damaged_lines_are_counted_and_tables_are_no_exports(tmp_path):
     table = tmp_path / "gnss.csv"
     table.write_text("time,latitude,longitude,height\n1.0,49.2,16.6,250.0\n")
     assert not is_gnss_file(table)
-    assert read_gnss(tmp_path / "walk.txt").text.endswith("(exported as text)")
+    assert read_gnss(tmp_path / "walk.txt").format == "Inertial Explorer"

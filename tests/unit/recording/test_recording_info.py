@@ -163,3 +163,16 @@ def test_the_command_speaks_the_language_that_its_confinement_forgets(pcap, monk
 
     assert commands.main(["info", str(pcap)]) == 0
     assert "derived   Kein Rig angegeben: ein VLP-16" in capsys.readouterr().out
+
+
+def test_each_kind_of_recording_has_a_code_whose_english_text_is_its_value():
+    assert [(kind.text, kind.text.code) for kind in RecordingKind] == [
+        (kind.value, f"recording-{kind.name.lower()}") for kind in RecordingKind
+    ]
+
+
+def test_what_is_there_and_what_is_missing_is_said_in_a_language(tmp_path):
+    said = describe(imu_csv(tmp_path / "imu.csv")).to_json("de")
+
+    assert said["kind"] == "Messwerte einer IMU (CSV)"
+    assert said["samples"] == ["100 IMU-Messwerte, 100,0 je Sekunde"]

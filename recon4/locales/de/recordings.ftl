@@ -1,0 +1,68 @@
+### Was eine Aufzeichnung enthält, und was ihr fehlt.
+
+## Arten von Aufzeichnungen
+
+recording-pcap = Pakete von LiDARs (pcap)
+recording-lvx = Pakete von Livox-LiDARs (LVX)
+recording-bag1 = rosbag1
+recording-bag2 = rosbag2
+recording-frames = Einzelscans ({ $formats })
+recording-imu_csv = Messwerte einer IMU (CSV)
+recording-gnss_file = GNSS-Positionen (CSV, RTKLIB, SBET, UBX, NovAtel, NMEA)
+recording-poses = Posen (TUM oder KITTI)
+recording-carmen = CARMEN-Protokoll eines 2-D-Lasers
+recording-line_tables = Linienscans (CSV oder NPZ)
+recording-laser_table = Scans eines 2-D-Lasers (CSV oder NPZ)
+recording-mandeye = Begehung mit einem MANDEYE-Gerät (LAZ und CSV)
+recording-lidar_file = Beschreibung eines LiDARs (JSON, CSV, YAML, XML oder DAT)
+recording-scans = Mitschnitt von Scans (pcap)
+
+## Messwerte
+
+samples-imu = { $count } IMU-Messwerte{ RATE($rate_hz) }
+samples-gnss = { $count } GNSS-Positionen ({ $format }){ RATE($rate_hz) }
+samples-gnss-undated = { $count } GNSS-Positionen ({ $format }), ohne Datum{ RATE($rate_hz) }
+samples-gnss-weekless = { $count } GNSS-Positionen ({ $format }), ohne GPS-Woche{ RATE($rate_hz) }
+samples-tum = { $count } Posen (TUM){ RATE($rate_hz) }
+samples-kitti = Posen (KITTI)
+samples-robot = Posen aus der Odometrie des Roboters
+samples-in-packets = IMU in den Paketen des LiDARs
+samples-beside-lines = { $file }: { $count } IMU-Messwerte
+samples-imu-files = IMU-Messwerte in { $files } Dateien imu*.csv
+samples-gnss-files = GNSS-Positionen in { $files } Dateien
+samples-sender = { $sender }: { $count } { WORDS($what, of: "sender") }
+samples-topic = { $topic }: { WORDS($what, of: "topic") }, { $messages }{ RATE($rate_hz) }
+samples-topic-unread = { $topic }: { $type }, nicht gelesen, { $messages }{ RATE($rate_hz) }
+word-sender-samples = andere Pakete eines LiDARs
+word-sender-imu = IMU-Messwerte
+word-sender-gnss = GNSS-Messwerte
+word-topic-imu = IMU
+word-topic-gnss = GNSS-Positionen
+word-topic-odometry = Posen (zum Vergleich behalten)
+word-topic-transforms = Transformationen zwischen Koordinatensystemen
+word-topic-packets = andere Pakete eines LiDARs
+word-topic-describes = beschreibt ein LiDAR
+word-rate = , { DECIMAL($hz, digits: 1) } je Sekunde
+
+## Was fehlt
+
+missing-odometry = Odometrie
+missing-times = Zeiten der Posen
+missing-field = Feld: { WORDS($field, of: "field") }
+missing-imu = IMU (eine IMU-Datei kann dazu angegeben werden)
+missing-imu-given = IMU ({ $file } daneben enthält sie: Seite: IMU- und GNSS-Dateien; Befehl: --imu DATEI)
+missing-gnss = GNSS-Positionen
+missing-gnss-given = GNSS-Positionen ({ $file } daneben enthält sie: Seite: IMU- und GNSS-Dateien; Befehl: --gnss DATEI)
+missing-rig = Rig: { $error }
+missing-contents = { $error }
+missing-laser-table = 2-D-Laser (laser2d.csv oder laser2d.npz)
+missing-imu-table = IMU (imu.csv)
+missing-head-column = Winkel des Kopfes (Spalte head_deg; oder head_rate_deg_s in der Rig-Datei)
+missing-profiler-rig = Rig: eines mit einem Sensor der Art profiler (Seite: Feld Rig; Befehl: --rig)
+missing-topic = { WORDS($kind, of: "sensor-kind") } ({ $topic })
+missing-head-topic = Winkel des Kopfes ({ $topic }, { $type })
+word-field-intensity = Intensität
+word-field-ring = Ring
+word-field-time = Zeit je Punkt
+word-sensor-kind-profiler = Profiler
+word-sensor-kind-laser2d = 2-D-Laser
