@@ -19,7 +19,7 @@ from recon4.executors.executor import Finished, Result, Say, Task
 from recon4.executors.tuning import CLUSTER
 
 if TYPE_CHECKING:
-    from distributed import Client
+    from distributed import Client, Worker
 
 _LINES = "recon4-lines-"
 """Topic of the lines that a run's tasks say; its number follows."""
@@ -70,10 +70,9 @@ class Cluster:
         self, function: Callable[[Task, Say], Result], tasks: Sequence[Task], say: Say
     ) -> Iterator[Finished[Task, Result]]:
         """Yield each task as soon as it has ended; one whose worker dies is run again elsewhere."""
-        from distributed import Event, as_completed
+        from distributed import as_completed
 
         client, topic = self._connected, _LINES + uuid.uuid4().hex
-        stop = Event(topic, client)
         client.subscribe_topic(topic, lambda event: say(*event[1]))
         # A task writes files, so the same one is never run twice at a time: no copies of it.
         futures = [client.submit(_on_worker, function, task, topic, pure=False) for task in tasks]
@@ -84,10 +83,10 @@ class Cluster:
                 future.release()  # else it is run again when its worker dies later
                 yield ended
         finally:
-            with suppress(OSError, TimeoutError):  # the scheduler is gone
-                stop.set()  # a task that still runs stops at its next line
-                client.cancel(futures, force=True)
-                client.unsubscribe_topic(topic)
+            if client.status == "running":  # else it has cancelled all that it wanted
+                with suppress(OSError, TimeoutError):  # the scheduler is gone
+                    client.cancel(futures, force=True)  # what still runs stops at its next line
+                    client.unsubscribe_topic(topic)
 
     @property
     def size(self) -> int:
@@ -224,17 +223,27 @@ def _look(probe: str, token: str) -> tuple[str, bool]:
 
 
 def _on_worker(function: Callable[[Task, Say], Result], task: Task, topic: str) -> Result:
-    from distributed import Event, get_worker
+    from distributed import get_worker
 
-    worker, stop = get_worker(), Event(topic)
+    worker = get_worker()
+    key = worker.get_current_task()
 
     def say(name: str, line: str) -> None:
-        if stop.is_set():
+        if not _is_wanted(worker, key):
             raise Cancelled("stopped by the program that sent the task")
         if line:
             worker.log_event(topic, (name, line))
 
     return function(task, say)
+
+
+def _is_wanted(worker: Worker, key: Any) -> bool:
+    """Whether a task is to go on: its program has neither cancelled it nor ended.
+
+    Asked of this process, not of the scheduler, which may be out of reach.
+    """
+    state = worker.state.tasks.get(key)
+    return state is not None and state.state == "executing"
 
 
 def _finished(task: Task, future: Any) -> Finished[Task, Any]:

@@ -73,6 +73,17 @@ def test_who_leaves_early_stops_what_runs(cluster, tmp_path):
     wait_for(stopped.exists, "the task stops")
 
 
+def test_the_work_of_a_program_that_is_gone_stops(remote, tmp_path):
+    address, folder = remote
+    begun, stopped = threading.Event(), tmp_path / "stopped"
+    with workers_of(address, files_in(folder), tmp_path) as cluster:
+        tasks = cluster.run(until_stopped, ["", str(stopped)], lambda *_: begun.set())
+        assert next(tasks).task == ""
+        assert begun.wait(20)
+
+    wait_for(stopped.exists, "the task stops")
+
+
 @pytest.mark.study
 def test_a_task_that_kills_every_worker_is_given_up_and_the_others_are_done(cluster):
     (ended,) = cluster.run(always_die, ["poison"], ignore)
