@@ -7,6 +7,7 @@ It gets a line of JSON for each part and answers with one. Its program is
 from __future__ import annotations
 
 import atexit
+import faulthandler
 import os
 import select
 import shutil
@@ -35,6 +36,7 @@ def main() -> None:
     """Make parts until there are no more."""
     lifeline, project, folder = int(sys.argv[1]), Path(sys.argv[2]), Path(sys.argv[3])
     die_with_parent(lifeline)
+    faulthandler.enable()  # a crash in native code says where
     replies = os.dup(1)
     os.dup2(2, 1)  # what a library prints is no reply
     _confine(project, folder)

@@ -8,11 +8,13 @@ from __future__ import annotations
 import atexit
 import os
 import select
+import socket
 import subprocess
 import sys
 import threading
 import time
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import msgspec
@@ -77,11 +79,19 @@ def make_part(task: PartTask, say: Say) -> str:
     maker = _taken(project.resolve(), folder)
     try:
         failure = maker.make(order, say)
+        for line in maker.said():
+            say(str(task.item), f"{worker_name()}: {line}")
     except BaseException:
         maker.end()
         raise
     _give_back(maker)
     return failure
+
+
+@cache
+def worker_name() -> str:
+    """Computer and number of this process."""
+    return f"{socket.gethostname()} {os.getpid()}"
 
 
 def _other_versions(wanted: dict[str, str]) -> str:
@@ -99,6 +109,7 @@ class _Maker:
 
     def __init__(self, project: Path, folder: Path) -> None:
         self.serves = project, folder
+        self._noise, self._is_mute = b"", False
         read, self._lifeline = os.pipe()
         command = [sys.executable, "-P", "-m", "recon4.orders.maker", str(read)]
         try:
@@ -106,7 +117,7 @@ class _Maker:
                 [*command, str(project), str(folder)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
                 pass_fds=(read,),
                 env=allowed_environment(os.environ) | ONE_THREAD,
                 start_new_session=True,
@@ -131,6 +142,14 @@ class _Maker:
             self.end()
             return f"the process that made it was ended: {str(error)[: ORDERS.failure]}"
 
+    def said(self) -> list[str]:
+        """Lines that it has written beside its reply, as a crash does; each only once."""
+        while self._hear(0.0):
+            pass
+        lines = self._noise.decode("utf-8", "replace").splitlines()
+        self._noise = b""
+        return [line for line in lines if line.strip()]
+
     def _reply(self, say: Say) -> bytes:
         """The next line, whatever the process does with its output."""
         assert self._process.stdout is not None
@@ -139,14 +158,26 @@ class _Maker:
         while not line.endswith(b"\n"):
             if time.monotonic() > latest_s or len(line) > ORDERS.reply_bytes:
                 raise TimeoutError(f"no reply within {ORDERS.within_s:.0f} s")
-            if select.select([descriptor], [], [], ORDERS.looks_every_s)[0]:
+            if not self._hear(ORDERS.looks_every_s, descriptor):
+                say("", "")
+            elif select.select([descriptor], [], [], 0.0)[0]:
                 more = os.read(descriptor, ORDERS.reply_bytes)
                 if not more:
                     raise EOFError
                 line += more
-            else:
-                say("", "")
         return line
+
+    def _hear(self, within_s: float, *others: int) -> bool:
+        """Read what it says beside its replies; whether there is something on any descriptor."""
+        assert self._process.stderr is not None
+        muted = self._is_mute or self._process.stderr.closed
+        beside = [] if muted else [self._process.stderr.fileno()]
+        ready = select.select([*beside, *others], [], [], within_s)[0]
+        if beside and beside[0] in ready:
+            more = os.read(beside[0], ORDERS.reply_bytes)
+            self._is_mute = not more
+            self._noise = (self._noise + more)[: ORDERS.said_bytes]
+        return bool(ready)
 
     def end(self) -> None:
         """End it at once."""

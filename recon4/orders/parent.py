@@ -17,11 +17,13 @@ from pathlib import Path
 from typing import BinaryIO
 
 from recon4.errors import Recon4Error
-from recon4.executors.executor import Executor
-from recon4.orders.on_worker import PartTask, make_part
+from recon4.executors.executor import Executor, Finished
+from recon4.orders.on_worker import PartTask
 from recon4.orders.order import Answer, Order, OrderRefused, receive, send
 from recon4.orders.tuning import ORDERS
+from recon4.orders.work_log import PartReport, WorkerRecord, WorkLog, report_part
 from recon4.store.package_versions import versions
+from recon4.untrusted.names import visible
 
 GONE = (OSError, TimeoutError, CancelledError, RuntimeError)
 """Errors of an executor whose scheduler does not answer any more."""
@@ -50,6 +52,7 @@ def run_with_workers(
     *,
     started: Callable[[subprocess.Popen[bytes]], object],
     log: Callable[[str], object],
+    who: Callable[[tuple[WorkerRecord, ...]], object] = lambda workers: None,
 ) -> int:
     """Run a program to its end, and have its orders made meanwhile.
 
@@ -57,7 +60,8 @@ def run_with_workers(
         program: The program; its input is a lifeline that ends it with this process.
         executor: Open.
         started: Receives the process.
-        log: Receives lines about failures of workers.
+        log: Receives lines of workers and about them, without control characters.
+        who: Receives who works, after each change and in any thread.
 
     Returns:
         Its exit code; negative = the signal that killed it.
@@ -79,7 +83,7 @@ def run_with_workers(
         finally:
             os.close(orders)
             os.close(answers)
-        server = _Server(receiver, sender, program.project, executor, log)
+        server = _Server(receiver, sender, program.project, executor, WorkLog(who, log))
         with process:
             started(process)
             thread = threading.Thread(target=server.run, args=(process.kill,), daemon=True)
@@ -111,7 +115,7 @@ class _Server:
     sender: BinaryIO
     project: Path
     executor: Executor
-    log: Callable[[str], object]
+    work: WorkLog
     refused: str = ""
     """What was wrong with a message; empty = nothing."""
 
@@ -126,25 +130,53 @@ class _Server:
         except OrderRefused as error:
             self.refused = str(error)
             end()
-        except (BrokenPipeError, ValueError):
+        except BrokenPipeError:
             pass  # it has ended before all was made
+        except BaseException:
+            if not self.sender.closed:  # else it has ended, and nobody waits for an answer
+                end()
+                raise
 
     def _answers(self, order: Order) -> Generator[Answer, None, None]:
         """An answer for each part; those of which nothing is heard any more have failed."""
         tasks = _tasks(order, self.project)
         left, why = set(range(len(tasks))), "not heard of again"
+
+        def say(name: str, line: str) -> None:
+            self._heard(order, name, line)
+
+        self.work.order()
         try:
-            for ended in self.executor.run(make_part, tasks, _say):
-                failure = ended.failure or ended.result or ""
+            for ended in self.executor.run(report_part, tasks, say):
+                failure = visible(self._failure(ended), most=ORDERS.failure)
                 if failure:
-                    self.log(f"{order.kind} {ended.task.numbers}: {failure}")
+                    self.work.log(f"{order.kind} {ended.task.numbers}: {failure}")
                 left.discard(ended.task.item)
-                yield Answer(item=ended.task.item, failure=failure[: ORDERS.failure])
+                yield Answer(item=ended.task.item, failure=failure)
         except GONE as error:
             why = f"the scheduler is gone: {error}"
-            self.log(why)
+            self.work.log(why)
+        finally:
+            self.work.over()
         for item in sorted(left):
             yield Answer(item=item, failure=why[: ORDERS.failure])
+
+    def _failure(self, ended: Finished[PartTask, PartReport]) -> str:
+        """Why a part could not be made; empty if it is made."""
+        item = str(ended.task.item)
+        if ended.result is None:
+            self.work.lost(item)
+            return ended.failure
+        self.work.ends(item, ended.result)
+        return ended.result.failure
+
+    def _heard(self, order: Order, item: str, line: str) -> None:
+        """A line of a worker: who begins a part, what its maker said, or nothing."""
+        worker, _, said = line.partition(": ")
+        if said:
+            self.work.log(visible(line, most=ORDERS.failure))
+        elif worker:
+            self.work.begins(item, worker, f"{order.kind} {order.items[int(item)]}")
 
 
 def _tasks(order: Order, project: Path) -> list[PartTask]:
@@ -154,7 +186,3 @@ def _tasks(order: Order, project: Path) -> list[PartTask]:
         PartTask(item, str(order.kind), below, order.folder, numbers, here)
         for item, numbers in enumerate(order.items)
     ]
-
-
-def _say(name: str, line: str) -> None:
-    """Parts say nothing; their results do."""

@@ -22,6 +22,8 @@ class OrderLimits(Struct, frozen=True, kw_only=True):
     """Letters of the reason of a failure."""
     reply_bytes: int = 1 << 14
     """Of a maker."""
+    said_bytes: int = 1 << 12
+    """What a maker writes beside a reply is kept up to this length."""
     within_s: float = 1800.0
     """Longest time for one part; a maker that takes longer is ended [s]."""
     idle_s: float = 60.0

@@ -126,6 +126,21 @@ def test_damaged_files_of_a_folder_are_a_failure_and_no_crash_of_the_worker(tmp_
     assert on_worker._idle[0].alive
 
 
+def test_what_a_maker_says_beside_its_reply_is_told_up_to_a_limit(tmp_path, monkeypatch):
+    (tmp_path / "artifacts" / "a").mkdir(parents=True)
+    allowed = on_worker.allowed_environment
+    verbose = {"PYTHONVERBOSE": "1"}  # hundreds of kilobytes
+    monkeypatch.setattr(on_worker, "allowed_environment", lambda given: allowed(given) | verbose)
+    lines: list[str] = []
+
+    failure = make_part(task(tmp_path), lambda name, line: lines.append(line))
+
+    assert failure.startswith("StoreError")
+    said = [line for line in lines if line.startswith(f"{on_worker.worker_name()}: import ")]
+    assert len(said) > 10
+    assert len("".join(lines)) < 3 * on_worker.ORDERS.said_bytes
+
+
 def test_who_stops_waiting_ends_the_maker(tmp_path, monkeypatch):
     (tmp_path / "artifacts" / "a").mkdir(parents=True)
     often = structs.replace(on_worker.ORDERS, looks_every_s=0.001)  # before it has begun

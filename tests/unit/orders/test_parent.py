@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import struct
 from pathlib import Path
 
 import pytest
 
 from recon4.executors.executor import Finished, InOrder
+from recon4.orders.on_worker import worker_name
 from recon4.orders.parent import Program, TakenOver, run_with_workers
+from recon4.orders.work_log import PartReport, WorkerRecord
 from tests.ordered_maps import bytes_of, make_map
 
 ROOT = Path(__file__).parents[3]
@@ -36,9 +39,9 @@ def _importable(monkeypatch):
         monkeypatch.setenv(name, "1")
 
 
-def run(project: Path, what: str, executor, log=print) -> int:
+def run(project: Path, what: str, executor, *, log=print, who=lambda workers: None) -> int:
     program = Program("tests.order_programs", (what,), project)
-    return run_with_workers(program, executor, started=lambda process: None, log=log)
+    return run_with_workers(program, executor, started=lambda process: None, log=log, who=who)
 
 
 @pytest.mark.parametrize(
@@ -48,8 +51,9 @@ def run(project: Path, what: str, executor, log=print) -> int:
 )
 def test_a_confined_process_has_its_tiles_made_and_the_bytes_are_the_same(executor, tmp_path):
     log: list[str] = []
+    seen: list[tuple[WorkerRecord, ...]] = []
 
-    code = run(tmp_path, "map", executor, log.append)
+    code = run(tmp_path, "map", executor, log=log.append, who=seen.append)
 
     (there,) = (tmp_path / "artifacts").iterdir()
     assert code == 0
@@ -57,6 +61,32 @@ def test_a_confined_process_has_its_tiles_made_and_the_bytes_are_the_same(execut
     assert [line for line in log if "scheduler" in line] == (
         [] if isinstance(executor, InOrder) else ["the scheduler is gone: connection closed"]
     )
+    ((last,), (first,)) = seen[-1], seen[0]
+    tiles = len(json.loads((there / "tiles.json").read_text("utf-8"))["tiles"])
+    assert (last.name, last.part, last.failed) == (worker_name(), "", 0)
+    assert last.made >= tiles if isinstance(executor, InOrder) else last.made == 1
+    assert (first.part[:8], first.made) == ("map-tile", 0)
+
+
+class Says:
+    """A worker whose maker says this, and which fails with it, too."""
+
+    def __init__(self, line):
+        self.line = line
+
+    def run(self, function, tasks, say):
+        for task in tasks:
+            say(str(task.item), f"computer 7: {self.line}")
+            yield Finished(task, PartReport("computer 7", 0.5, self.line))
+
+
+def test_what_workers_say_reaches_no_terminal_with_its_control_characters(tmp_path):
+    log: list[str] = []
+
+    run(tmp_path, "map", Says("\x1b[2Jdone"), log=log.append)
+
+    assert "computer 7: <U+001B>[2Jdone" in log
+    assert not [line for line in log if not line.isprintable()]
 
 
 HOSTILE = {
