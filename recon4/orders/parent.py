@@ -72,7 +72,8 @@ def run_with_workers(
     ordered, orders = os.pipe()
     answers, answered = os.pipe()
     command = [sys.executable, "-P", "-m", program.module, str(orders), str(answers)]
-    with os.fdopen(ordered, "rb") as receiver, os.fdopen(answered, "wb") as sender:
+    # Without a buffer: to close one that the other side has not read would fail.
+    with os.fdopen(ordered, "rb") as receiver, os.fdopen(answered, "wb", buffering=0) as sender:
         try:
             process = subprocess.Popen(
                 [*command, str(program.project), *program.arguments],
@@ -86,11 +87,7 @@ def run_with_workers(
         server = _Server(receiver, sender, program.project, executor, WorkLog(who, log))
         with process:
             started(process)
-            thread = threading.Thread(target=server.run, args=(process.kill,), daemon=True)
-            thread.start()
-            code = _ended(process)
-        # What it had ordered is of no use any more: the executor ends it when it is closed.
-        thread.join(ORDERS.looks_every_s)
+            code = server.serve(process)
     if server.refused:
         raise TakenOver(
             f"the confined process sent what is no order ({server.refused}) and was ended: a file "
@@ -118,6 +115,15 @@ class _Server:
     work: WorkLog
     refused: str = ""
     """What was wrong with a message; empty = nothing."""
+
+    def serve(self, process: subprocess.Popen[bytes]) -> int:
+        """Serve a process until it has ended; its exit code."""
+        thread = threading.Thread(target=self.run, args=(process.kill,), daemon=True)
+        thread.start()
+        code = _ended(process)
+        # What it had ordered is of no use any more: the executor ends it when it is closed.
+        thread.join(ORDERS.looks_every_s)
+        return code
 
     def run(self, end: Callable[[], object]) -> None:
         """Serve; ``end`` ends a process that sends what is no order."""
