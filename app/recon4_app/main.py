@@ -44,7 +44,7 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.exports import map_routes
 from recon4_app.exports import routes as export_routes
 from recon4_app.exports.kept import KeptExports
-from recon4_app.jobs import choices
+from recon4_app.jobs import choices, worker_choice_routes
 from recon4_app.jobs import routes as job_routes
 from recon4_app.jobs.store import JobStore
 from recon4_app.jobs.supervisor import Supervisor
@@ -175,6 +175,7 @@ def _routes() -> list[BaseRoute]:
         comparison_routes,
         report_file,
         job_routes,
+        worker_choice_routes,
     ):
         router.include_router(part.router)
     more = (choices, server_routes, metrics_routes, docs_pages)

@@ -36,7 +36,15 @@ from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_t
 from recon4.store.sqlite_files import connect, connect_read_only
 from recon4.store.unfinished import UNFINISHED
 
-SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls", "metrics.token", "backups/access-")
+SECRETS = (
+    SIGNING_KEY,
+    TRUSTED_KEYS,
+    "access.sqlite",
+    "tls",
+    "cluster",
+    "metrics.token",
+    "backups/access-",
+)
 """Beginnings of the names of files that are secret, or say whom the server trusts: keys, password
 hashes, sessions, the token of the metrics; also copies of them and damaged ones. Backed up and
 restored only on request, so that a foreign backup makes no key and no token valid."""

@@ -36,6 +36,8 @@ STATE_FILES = (
     TRUSTED_KEYS,
     APPROVALS,
     "tls",
+    "cluster",
+    "workers.json",
     "uploads",
     "backups",
 )

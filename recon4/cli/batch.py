@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.terminal import is_progress, write
-from recon4.cli.workers import SchedulerOption, TlsOption, certificates_in
+from recon4.cli.workers import SchedulerOption, TlsOption, certificates_of
 
 if TYPE_CHECKING:
     from recon4.batch.table import BatchRow
@@ -70,7 +70,7 @@ def _executor(workers: int, scheduler: str, *, tls: Path | None, out: Path) -> E
     from recon4.executors.executor import InOrder
 
     if scheduler:
-        return workers_of(scheduler, certificates_in(tls), out.absolute())
+        return workers_of(scheduler, certificates_of(tls), out.absolute())
     return workers_here(workers) if workers != 1 else InOrder()
 
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.terminal import write
-from recon4.cli.workers import SchedulerOption, TlsOption, certificates_in
-from recon4.errors import ConfigError
+from recon4.cli.workers import SchedulerOption, TlsOption, certificates_of
+from recon4.errors import ConfigError, StoreError
 
 if TYPE_CHECKING:
     from recon4.system.doctor import Check
@@ -33,6 +33,7 @@ def doctor(
     checks = examine(folder)
     if scheduler:
         checks += [_examine_cluster(scheduler, tls, folder)]
+    checks += _examine_chosen(folder)
     if as_json:
         write(json.dumps([asdict(check) for check in checks], indent=1, ensure_ascii=False))
     else:
@@ -59,9 +60,32 @@ def _examine_cluster(scheduler: str, tls: Path | None, shared: Path) -> Check:
     from recon4.executors.cluster import workers_of
     from recon4.system.doctor import Check
 
-    cluster = workers_of(scheduler, certificates_in(tls), shared.absolute())
+    cluster = workers_of(scheduler, certificates_of(tls), shared.absolute())
     try:
         with cluster:
             return Check("cluster", f"{cluster.size} workers", ok=True)
     except ConfigError as error:
         return Check("cluster", scheduler, ok=False, advice=str(error))
+
+
+def _examine_chosen(root: Path) -> list[Check]:
+    """The workers that the administrator of a server chose for its jobs, if it is one's folder."""
+    from recon4.executors.chosen import chosen_cluster, read_choice
+    from recon4.review.trusted_keys import STATE
+    from recon4.system.doctor import Check
+
+    state, what = root.absolute() / STATE, "workers of jobs"
+    if not state.is_dir():
+        return []
+    try:
+        chosen = read_choice(state)
+        if not chosen.used:
+            return [Check(what, "threads", ok=True)]
+        cluster = chosen_cluster(state, chosen, root.absolute())
+        if chosen.count:
+            return [Check(what, f"{chosen.count} here", ok=True)]
+        with cluster:
+            dashboard = f"dashboard: {cluster.dashboard}" if cluster.dashboard else ""
+            return [Check(what, f"{cluster.size} workers", ok=True, advice=dashboard)]
+    except (ConfigError, StoreError) as error:
+        return [Check(what, "cannot be used", ok=False, advice=str(error))]

@@ -39,17 +39,17 @@ _OF_WORKERS = ("workers", "scheduler", "tls")
 """Options that are for the parent."""
 
 
-def certificates_in(folder: Path | None) -> Certificates:
+def certificates_of(folder: Path | None) -> Certificates:
     """The files of the option ``--tls``.
 
     Raises:
         ConfigError: If no folder is given.
     """
-    from recon4.executors.cluster import Certificates
+    from recon4.executors.chosen import certificates_in
 
     if folder is None:
         raise ConfigError("command: --scheduler needs --tls FOLDER with its certificates")
-    return Certificates(folder / "ca.pem", folder / "client.pem", folder / "client-key.pem")
+    return certificates_in(folder)
 
 
 def chosen_workers(workers: int, scheduler: str, *, tls: Path | None, out: Path) -> Executor | None:
@@ -71,7 +71,7 @@ def chosen_workers(workers: int, scheduler: str, *, tls: Path | None, out: Path)
     if scheduler:
         from recon4.executors.cluster import workers_of
 
-        return workers_of(scheduler, certificates_in(tls), out.absolute())
+        return workers_of(scheduler, certificates_of(tls), out.absolute())
     if workers:
         from recon4.executors.cluster import workers_here
 

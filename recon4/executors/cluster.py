@@ -94,6 +94,13 @@ class Cluster:
         return len(self._connected.scheduler_info(n_workers=-1)["workers"])
 
     @property
+    def dashboard(self) -> str:
+        """Address of the dashboard of the scheduler; empty = it has none."""
+        client = self._connected
+        has_one = "dashboard" in client.scheduler_info(n_workers=0).get("services", {})
+        return str(client.dashboard_link) if has_one else ""
+
+    @property
     def _connected(self) -> Client:
         assert self._client is not None, "used outside of its with block"
         return self._client
@@ -152,7 +159,7 @@ def workers_of(scheduler: str, certificates: Certificates, shared: Path) -> Clus
         )
     for path in (certificates.authority, certificates.certificate, certificates.key):
         if not path.is_file():
-            raise ConfigError(f"command: no such certificate or key: {path}")
+            raise ConfigError(f"no such certificate or key: {path}")
 
     def connect(opened: ExitStack) -> Client:
         from distributed import Client, Security

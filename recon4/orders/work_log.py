@@ -51,7 +51,7 @@ def report_part(task: PartTask, say: Say) -> PartReport:
 
 @dataclass(slots=True)
 class WorkLog:
-    """Who works: told by several threads."""
+    """Who works; several threads report to it."""
 
     changed: Callable[[tuple[WorkerRecord, ...]], object]
     """Receives all workers after each change."""

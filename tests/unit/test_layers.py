@@ -38,8 +38,11 @@ MAY_IMPORT = {
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/executors": {"recon4.errors", "recon4.executors"},
+    "recon4/executors/chosen.py": {"recon4.errors", "recon4.executors", "recon4.locales"}
+    | {"recon4.store.atomic", "recon4.store.json_files"},
     "recon4/orders": {"recon4.errors", "recon4.orders", "recon4.executors.executor"}
-    | {"recon4.store.package_versions", "recon4.sandbox", "recon4.system.processes"},
+    | {"recon4.store.package_versions", "recon4.sandbox", "recon4.system.processes"}
+    | {"recon4.untrusted.names"},
     "recon4/orders/child.py": {"recon4"},
     "recon4/orders/maker.py": {"recon4.orders", "recon4.sandbox", "recon4.system.processes"}
     | {"recon4.recording.formats.scratch", "recon4.mapping.tile_files"},

@@ -27,6 +27,7 @@ import "./session_list.js";
 import { withPassword } from "./recent_login.js";
 import { showTrustedKeys } from "./trusted_keys.js";
 import { showWebhooks } from "./webhooks.js";
+import { showWorkers } from "./workers.js";
 import { t } from "../shared/texts.js";
 
 /** @import {Account, Changes, Entry, Role} from "../shared/http_types" */
@@ -152,3 +153,4 @@ byId("without").hidden = (await attempt(byId("message"), readCurrentUser))?.logi
 await reload();
 await showTrustedKeys(() => readLog());
 await showWebhooks(() => readLog());
+await showWorkers(() => readLog());

@@ -33,6 +33,7 @@ import { askFirst, askOnce } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
+import "./job_workers.js";
 import "./export_panel.js";
 import { FindingList } from "../shared/finding_list.js";
 import { t, wordOf } from "../shared/texts.js";
@@ -83,7 +84,10 @@ function draw() {
   );
   const status = only("job-status");
   status.hidden = !open;
-  if (view) status.view = view;
+  if (view) {
+    status.view = view;
+    only("job-workers").view = view;
+  }
   drawMessage();
   drawFigures();
   drawFiles();

@@ -7,6 +7,7 @@ declare global {
     "folder-browser": import("../projects/folder_browser.js").FolderBrowser;
     "job-log": import("../projects/project_tools.js").JobLog;
     "job-status": import("../projects/job_status.js").JobStatus;
+    "job-workers": import("../projects/job_workers.js").JobWorkersPart;
     "map-verdict": import("../shared/map_verdict.js").MapVerdict;
     "new-job": import("../projects/new_job.js").NewJob;
     "page-head": import("../shared/page_head.js").PageHead;

@@ -709,7 +709,13 @@ export interface JobView {
   run_progress: number;
   run_eta_s: number | null;
   resumable: boolean;
+  workers: JobWorkers;
   remedy: RemedyLink | null;
+}
+
+export interface JobWorkers {
+  workers: Array<WorkerRecord>;
+  problem: string;
 }
 
 export type Judge = "odometry" | "search" | "free space" | "neighboring places" | "verification" | "robust solve" | "GNSS" | "person";
@@ -1882,6 +1888,33 @@ export interface WorkView {
   waits: boolean;
 }
 
+export interface WorkerChoice {
+  count?: number;
+  scheduler?: string;
+  dashboard?: string;
+}
+
+export interface WorkerChoiceView {
+  count: number;
+  scheduler: string;
+  dashboard: string;
+  folder: string;
+  has_certificates: boolean;
+}
+
+export interface WorkerRecord {
+  name: string;
+  part: string;
+  made: number;
+  failed: number;
+  seconds: number;
+}
+
+export interface WorkerTestView {
+  ok: boolean;
+  text: string;
+}
+
 export interface Operations {
   "DELETE /api/keys/{fingerprint}": {
     path: { fingerprint: string };
@@ -2302,6 +2335,9 @@ export interface Operations {
     path: { webhook_id: string };
     response: Array<WebhookDelivery>;
   };
+  "GET /api/workers": {
+    response: WorkerChoiceView;
+  };
   "GET /healthz": {
     response: Record<string, string>;
   };
@@ -2611,6 +2647,9 @@ export interface Operations {
     path: { webhook_id: string };
     response: Webhook;
   };
+  "POST /api/workers/test": {
+    response: WorkerTestView;
+  };
   "PUT /api/projects/{project_id}/notes/{note_id}/photo": {
     path: { project_id: string; note_id: string };
     body: NotePhoto;
@@ -2620,5 +2659,9 @@ export interface Operations {
     path: { project_id: string };
     body: ControlState;
     response: ControlState;
+  };
+  "PUT /api/workers": {
+    body: WorkerChoice;
+    response: WorkerChoiceView;
   };
 }

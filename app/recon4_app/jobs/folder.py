@@ -10,6 +10,7 @@ log.txt         output of the worker
 room            reserved bytes, freed for the outcome when the disk is full
 tmp             the worker's temporary files; emptied when it has ended
 made            the file of an export
+workers.json    who makes parts of it on other processes (`recon4_app.jobs.ordering_parent`)
 outcome.json    how it ended, written last and atomically
 """
 
@@ -29,8 +30,9 @@ from typing import Literal
 import msgspec
 
 from recon4.delivery.kinds import ExportedFile
+from recon4.orders.work_log import WorkerRecord
 from recon4.recording.files_near import files_near
-from recon4.store.atomic import make_folders, write_json
+from recon4.store.atomic import make_folders, write_json, write_text
 from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock
 from recon4_app.jobs.model import Inputs
@@ -76,6 +78,16 @@ class Limits:
     """Disk space that must stay free; otherwise the worker does not begin."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JobWorkers:
+    """Who makes parts of a job that can be divided."""
+
+    workers: tuple[WorkerRecord, ...] = ()
+    """Those that have made a part, or make one."""
+    problem: str = ""
+    """Why the workers that an administrator chose are not used, in English; empty = nothing."""
+
+
 @dataclass(frozen=True, slots=True)
 class JobFolder:
     """One job's folder."""
@@ -99,7 +111,7 @@ class JobFolder:
             if path.is_dir() and not path.is_symlink():  # none of ours but the temporary files
                 shutil.rmtree(path)
         sweep_unfinished(self.path)
-        for name in ("pid", "heartbeat", "outcome.json"):
+        for name in ("pid", "heartbeat", "outcome.json", "workers.json"):
             (self.path / name).unlink(missing_ok=True)
         near = [str(file) for path in inputs.recordings for file in files_near(Path(path))]
         request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
@@ -183,6 +195,10 @@ class JobFolder:
                 return number
         return None
 
+    def mark_worker(self) -> None:
+        """Write that this process is the worker, and the first of its group."""
+        write_text(self.path / "pid", str(os.getpid()))
+
     def keep_room(self) -> None:
         """Reserve the disk space that the outcome needs."""
         with (self.path / "room").open("wb") as file:
@@ -200,6 +216,13 @@ class JobFolder:
             return msgspec.json.decode(_start(self.path / "outcome.json"), type=Outcome)
         except (OSError, msgspec.DecodeError, RecursionError):
             return None
+
+    def workers(self) -> JobWorkers:
+        """Who makes parts of it; nobody if the file is missing or malformed."""
+        try:
+            return msgspec.json.decode(_start(self.path / "workers.json"), type=JobWorkers)
+        except (OSError, msgspec.DecodeError, RecursionError):
+            return JobWorkers()
 
     def log_since(self, offset: int) -> tuple[str, int]:
         """Whole lines of the log from a byte offset on, and the offset for the next call."""

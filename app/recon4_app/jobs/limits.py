@@ -49,10 +49,15 @@ def worker_policy(folder: JobFolder) -> Policy:
 def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     """Confine this process to the policy of its job, before it opens a file of a user."""
     restart_with_one_thread()
-    os.nice(WORKER_LIMITS.niceness)
+    give_way()
     faulthandler.enable()  # a crash in native code writes its stack to the log
     project, _ = folder.request()
     project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
     compile_kernels_once(folder.path / "heartbeat")
     cached = use_private_cache(folder.temporary / "caches")
     return confine(policy.adding(read=cached))
+
+
+def give_way() -> None:
+    """Run this process at the low priority of workers."""
+    os.nice(max(0, WORKER_LIMITS.niceness - os.nice(0)))

@@ -17,6 +17,8 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from recon4.errors import StoreError
+from recon4.executors.chosen import read_choice
 from recon4.locales.coded import CodedText
 from recon4_app.errors import Conflict
 from recon4_app.jobs.events import read_events
@@ -232,12 +234,23 @@ class Supervisor:
             attempt = job.attempt + 1
             self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
             if lock is not None:
-                self._workers[job.id] = _spawn(self._module(job), folder.path, lock)
+                self._workers[job.id] = _spawn(self._program(job, lock), folder.path, lock)
         return True
 
-    def _module(self, job: Job) -> str:
-        """The program that does a job."""
-        return WORKERS.get(job.kind, self._settings.worker_module)
+    def _program(self, job: Job, lock: int) -> tuple[str, ...]:
+        """The module that does a job, and arguments behind its folder."""
+        module = WORKERS.get(job.kind, self._settings.worker_module)
+        if job.kind is not JobKind.PROCESS or not self._has_workers():
+            return (module,)
+        return ("recon4_app.jobs.ordering_parent", module, str(lock))
+
+    def _has_workers(self) -> bool:
+        """Whether an administrator chose workers for parts of jobs."""
+        try:
+            return read_choice(self._settings.state).used
+        except StoreError:
+            log.exception("the choice of workers cannot be read: jobs run without")
+            return False
 
     def _watch(self, job: Job) -> bool:
         changed = self._tail(job).read()
@@ -311,11 +324,12 @@ def now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def _spawn(worker: str, folder: Path, lock: int) -> subprocess.Popen[bytes]:
+def _spawn(program: tuple[str, ...], folder: Path, lock: int) -> subprocess.Popen[bytes]:
     """Start a worker that holds the lock from its start and survives the server."""
+    worker, *arguments = program
     with (folder / "log.txt").open("ab") as output:
         return subprocess.Popen(
-            [sys.executable, "-P", "-m", worker, str(folder)],
+            [sys.executable, "-P", "-m", worker, str(folder), *arguments],
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,

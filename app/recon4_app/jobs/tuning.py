@@ -113,3 +113,15 @@ class SupervisorTimes(Struct, frozen=True, kw_only=True):
 
 
 SUPERVISOR_TIMES = SupervisorTimes()
+
+
+class OrderingTuning(Struct, frozen=True, kw_only=True):
+    """Jobs whose parts workers make."""
+
+    every_s: float = 0.5
+    """Who works is written at most this often [s]."""
+    tested_within_s: float = 120.0
+    """Longest time of a test of the workers [s]."""
+
+
+ORDERING = OrderingTuning()

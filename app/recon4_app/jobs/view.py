@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from recon4_app.deps import ServerParts
 from recon4_app.errors import STORAGE, RemedyLink
-from recon4_app.jobs.folder import Outcome
+from recon4_app.jobs.folder import JobWorkers, Outcome
 from recon4_app.jobs.model import Job, JobKind, JobState
 from recon4_app.jobs.status import JobStatus
 
@@ -25,6 +25,8 @@ class JobView:
     """Remaining time of the whole run [s], None = not known yet."""
     resumable: bool
     """Whether it ended early and can be run again."""
+    workers: JobWorkers
+    """Who makes parts of it on other processes or computers."""
     remedy: RemedyLink | None
     """The page where what the note of a failed job advises is done, if it is another one."""
 
@@ -33,13 +35,15 @@ def job_view(server: ServerParts, job: Job, language: str) -> JobView:
     """A job and its progress, in a language."""
     status, run = server.supervisor.status(job), server.supervisor.run_progress(job)
     failed = job.state is JobState.FAILED
-    outcome = server.supervisor.folder(job.id).outcome() if failed else None
+    folder = server.supervisor.folder(job.id)
+    outcome = folder.outcome() if failed else None
     return JobView(
         job=job.said(language),
         status=status,
         fraction=status.fraction,
         run_progress=run.fraction,
         run_eta_s=run.eta_s,
+        workers=JobWorkers() if job.state is JobState.QUEUED else folder.workers(),
         resumable=_is_resumable(job, outcome),
         remedy=STORAGE.link(language) if outcome is not None and outcome.no_space else None,
     )

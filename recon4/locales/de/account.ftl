@@ -180,3 +180,15 @@ approve-as = Zulassen als { $role }
 show-new-code = Neuen Code zeigen
 qr-left = Für ein Telefon, als { $role }, noch { $seconds } s
 phone-signed-in = { $name } unter { $address } ist angemeldet als { $role }
+
+## Arbeitsprozesse
+
+workers = Arbeitsprozesse der Aufträge
+workers-what = Die Karte kostet am meisten Rechenzeit. Prozesse von Dask können ihre Kacheln rechnen, hier oder auf anderen Rechnern; die Karte hat dieselben Bytes. Die Wahl gilt für Aufträge, die ab jetzt beginnen.
+workers-here = Prozesse dieses Rechners, 0 = keine
+workers-scheduler = Scheduler von Dask, tls://RECHNER:PORT
+workers-dashboard = Sein Dashboard, für Administratoren
+workers-saved = Gespeichert; jetzt prüfen
+workers-tested = Wird geprüft…
+certificates-there = Die Zertifikate für einen Scheduler liegen in
+certificates-missing = Ein Scheduler braucht die Zertifikate ca.pem, client.pem und client-key.pem in

@@ -3,6 +3,7 @@
 job-stopped = auf Wunsch beendet; fertige Stufen bleiben
 job-stopped-early = auf Wunsch beendet
 job-out-of-memory = der Speicher reicht nicht: der Auftrag hat die Grenze des Servers erreicht; andere Programme schließen oder weniger Punkte verarbeiten (ein größeres map.voxel_m, eine kürzere Aufzeichnung), dann fortsetzen
+job-taken-over = eine Datei hat den Prozess übernommen, der sie las; er wurde beendet: diese Aufzeichnung nicht verwenden
 job-program-error = { $error } im Programm; das Protokoll hat die Einzelheiten
 job-row-damaged = diese Zeile von jobs.sqlite ist beschädigt: { $detail }
 job-disk-full = beim Schreiben von { $file } wurde die Platte voll; Platz schaffen und erneut starten: fertige Stufen bleiben

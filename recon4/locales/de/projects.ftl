@@ -376,3 +376,14 @@ setting-changed = { $count } geändert
 setting-unchanged = Keine geändert
 setting-default = Standard { $value }
 setting-empty = leer
+
+## Arbeitsprozesse eines Auftrags
+
+workers = Arbeitsprozesse
+workers-unused = Dieser Rechner macht alle Teile selbst: { $problem }
+workers-dashboard = Dashboard des Schedulers
+worker = Prozess
+worker-now = Macht
+worker-idle = gerade nichts
+worker-made = Fertige Teile
+worker-failed = { $count } misslungen

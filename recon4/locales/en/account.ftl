@@ -180,3 +180,15 @@ approve-as = Approve as { $role }
 show-new-code = Show a new code
 qr-left = For one phone, as { $role }, { $seconds } s left
 phone-signed-in = { $name } at { $address } is signed in as { $role }
+
+## Workers
+
+workers = Workers of jobs
+workers-what = The map is the dearest part of a job. Processes of Dask can make its tiles, here or on other computers; the map has the same bytes. The choice holds for jobs that begin from now on.
+workers-here = Processes of this computer, 0 = none
+workers-scheduler = Scheduler of Dask, tls://HOST:PORT
+workers-dashboard = Its dashboard, shown to admins
+workers-saved = Saved; now test them
+workers-tested = Testing…
+certificates-there = The certificates for a scheduler are in
+certificates-missing = A scheduler needs the certificates ca.pem, client.pem and client-key.pem in

@@ -3,6 +3,7 @@
 job-stopped = stopped on request; finished stages are kept
 job-stopped-early = stopped on request
 job-out-of-memory = out of memory: the job reached the server's memory limit; close other programs, or process fewer points (a larger map.voxel_m, a shorter recording), then resume
+job-taken-over = a file took over the process that read it, which was ended: do not use this recording
 job-program-error = { $error } in the program; the log has the traceback
 job-row-damaged = this row of jobs.sqlite is damaged: { $detail }
 job-disk-full = no space left on the disk while writing { $file }; make room and start again: finished stages are kept

@@ -376,3 +376,14 @@ setting-changed = { $count } changed
 setting-unchanged = None changed
 setting-default = default { $value }
 setting-empty = empty
+
+## Workers of a job
+
+workers = Workers
+workers-unused = This computer makes all parts: { $problem }
+workers-dashboard = Dashboard of the scheduler
+worker = Worker
+worker-now = Makes
+worker-idle = nothing now
+worker-made = Parts made
+worker-failed = { $count } failed

@@ -4,6 +4,7 @@ import { forgetKept } from "../address.js";
 import { become, request } from "../http.js";
 
 /** @import {Changes, NewAccessToken, NewKey, NewPerson, NewWebhook} from "../http_types" */
+/** @import {WorkerChoice} from "../http_types" */
 
 /**
  * @param {string} who
@@ -54,6 +55,10 @@ export const addTrustedKey = (/** @type {NewKey} */ key) =>
   request("POST /api/keys", { body: key });
 export const removeTrustedKey = (/** @type {string} */ fingerprint) =>
   request("DELETE /api/keys/{fingerprint}", { path: { fingerprint } });
+export const readWorkers = () => request("GET /api/workers");
+export const chooseWorkers = (/** @type {WorkerChoice} */ choice) =>
+  request("PUT /api/workers", { body: choice });
+export const testWorkers = () => request("POST /api/workers/test");
 export const listWebhooks = () => request("GET /api/webhooks");
 export const addWebhook = (/** @type {NewWebhook} */ webhook) =>
   request("POST /api/webhooks", { body: webhook });
