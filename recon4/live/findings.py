@@ -72,7 +72,11 @@ def findings(
 def rates(rig: Rig, status: Status) -> dict[str, float]:
     """Datagrams per second of each sensor of a rig, of its IMU and its GNSS receiver."""
     senders = status.senders
-    found = {s.name: sum(_rate(s, one) for one in _mine(s, senders)) for s in rig.sensors}
+    taken = _taken(rig, senders)
+    found = {
+        s.name: sum(_rate(s, one) for one in _mine(s, senders) or taken.get(s.name, []))
+        for s in rig.sensors
+    }
     imu = _imu_senders(rig, senders)
     if imu or (_needs_imu(rig) and not _with_imu(rig)):
         found["IMU"] = sum(one.per_s for one in imu)
@@ -104,6 +108,26 @@ def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:
     ]
 
 
+def _taken(rig: Rig, senders: list[Sender]) -> dict[str, list[Sender]]:
+    """Sensor -> the one sender of another address that the reader takes for it.
+
+    `recon4.recording.packets.capture` takes any full stream that is left; here it has to be the
+    only one on the port of the LiDAR, so that no other can be meant.
+    """
+    claimed = [one for sensor in rig.sensors for one in _mine(sensor, senders)]
+    least = CAPTURE_WARNINGS.taken_ratio * max((one.data_per_s for one in senders), default=0.0)
+    found: dict[str, list[Sender]] = {}
+    for sensor in rig.sensors:
+        if sensor.kind != "lidar" or not sensor.address or _mine(sensor, senders):
+            continue
+        left = [one for one in senders if one.port == sensor.port and one not in claimed]
+        full = [one for one in left if one.data_per_s > 0.0 and one.data_per_s >= least]
+        if len(full) == 1:
+            found[sensor.name] = full
+            claimed += full
+    return found
+
+
 def _addresses(sensor: Sensor) -> set[str]:
     """Where the packets of a sensor come from, or those of its replay on this computer."""
     return {sensor.address, loopback_address(sensor.address)} - {""}
@@ -129,7 +153,16 @@ def _disk(status: Status, say: Texts) -> list[CaptureFinding]:
 
 
 def _sensors(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
-    silent_s = {s.name: _silent_s(_mine(s, status.senders), status) for s in rig.sensors}
+    taken = _taken(rig, status.senders)
+    silent_s = {
+        s.name: _silent_s(_mine(s, status.senders) or taken.get(s.name, []), status)
+        for s in rig.sensors
+    }
+    elsewhere = [
+        CaptureFinding("info", _sent_elsewhere(s, taken[s.name][0], say))
+        for s in rig.sensors
+        if s.name in taken
+    ]
     silent = {
         name: seconds for name, seconds in silent_s.items() if seconds >= CAPTURE_WARNINGS.silent_s
     }
@@ -142,11 +175,20 @@ def _sensors(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
             return [CaptureFinding("error", say("none-sends", what=what, arrives=arrives))]
         text = say("none-sends-anything", what=what, time=_seconds(shortest, say))
         return [CaptureFinding("error", text)]
-    return [
+    return elsewhere + [
         CaptureFinding("error", say("sensor-silent", sensor=_title(sensor, say), time=time))
         for sensor in rig.sensors
         if sensor.name in silent and (time := _seconds(silent[sensor.name], say))
     ]
+
+
+def _sent_elsewhere(sensor: Sensor, sender: Sender, say: Texts) -> str:
+    return say(
+        "sensor-elsewhere",
+        sensor=_title(sensor, say),
+        source=sender.source,
+        address=sensor.address,
+    )
 
 
 def _title(sensor: Sensor, say: Texts) -> str:
@@ -213,13 +255,14 @@ def _strangers(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor)
     found = []
+    taken = {one.source for some in _taken(rig, status.senders).values() for one in some}
     for port, sensors in ports.items():
         there = [one for one in status.senders if one.port == port and one.per_s > 0]
         there.sort(key=lambda one: -_rate(sensors[0], one))
         known = set[str]().union(*map(_addresses, sensors)) or {
             one.source for one in there[: len(sensors)]
         }
-        strangers = sorted({one.source for one in there if one.source not in known})
+        strangers = sorted({one.source for one in there if one.source not in known | taken})
         mixed = [one for one in there if one.per_s - one.data_per_s > 0]
         if strangers:
             some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")

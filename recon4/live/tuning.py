@@ -24,6 +24,9 @@ class CaptureWarningTuning(Struct, frozen=True, kw_only=True):
     degraded_error_m: float = 0.08
     degraded_offset_m: float = 0.25
     """Matches below this ratio, residuals [m] and offsets of LiDARs [m] above these."""
+    taken_ratio: float = 0.2
+    """A stream of another address is taken for a LiDAR if it has more than this ratio of the
+    packets of the largest one, as `CAPTURE_STREAMS.foreign_ratio` of the reader."""
 
 
 CAPTURE_WARNINGS = CaptureWarningTuning()

@@ -9,6 +9,7 @@ none-sends-anything = No { $what } sends anything for { $time }: check power and
 what-lidar = LiDAR
 what-scanner = scanner
 sensor-silent = { $sensor } silent for { $time }
+sensor-elsewhere = { $sensor } sends from { $source }, not { $address }. It is used; correct the rig
 title-laser2d = 2-D laser
 title-profiler = Profiler
 title-lidar = { $name } LiDAR

@@ -5,9 +5,11 @@ import pytest
 from recon4.live.findings import findings, rates
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import DiskState, FileState, RecentFrames
+from recon4.live.tuning import CAPTURE_WARNINGS
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_counts import count_fate, count_text
 from recon4.model.rig import load_rig, parse_rig
+from recon4.recording.packets.tuning import CAPTURE_STREAMS
 from recon4.recording.report import warning
 from tests import live_messages
 from tests.live_messages import fix, notes, pose, sender
@@ -70,15 +72,32 @@ def test_a_silent_lidar_is_named_with_how_long(senders, text):
     assert ("error", text) in found_in(status(*senders))
 
 
-def test_datagrams_from_an_unexpected_address_are_named_not_reported_as_silence():
+def test_lidars_at_other_addresses_are_taken_as_the_reader_takes_them():
     strangers = (sender(2368, source="10.0.0.7"), sender(2369, source="10.0.0.8"))
+
+    assert found_in(status(*strangers, IMU), rig=WITH_ADDRESSES) == [
+        (
+            "info",
+            f"{name} LiDAR sends from {source}, not {address}. It is used; correct the rig",
+        )
+        for name, source, address in (
+            ("horizontal", "10.0.0.7", "10.0.0.1"),
+            ("vertical", "10.0.0.8", "10.0.0.2"),
+        )
+    ]
+    assert rates(WITH_ADDRESSES, status(*strangers, IMU))["vertical"] > 0
+    assert CAPTURE_WARNINGS.taken_ratio == CAPTURE_STREAMS.foreign_ratio
+
+
+def test_two_strangers_on_one_port_are_named_and_none_is_taken():
+    strangers = (sender(2368, source="10.0.0.7"), sender(2368, source="10.0.0.8"))
 
     found = found_in(status(*strangers, IMU), rig=WITH_ADDRESSES)
 
     assert (
         "error",
         "No LiDAR of the rig sends: horizontal is expected from 10.0.0.1, but data packets for "
-        "port 2368 come from 10.0.0.7: correct the address in the rig or in the sensor",
+        "port 2368 come from 10.0.0.7, 10.0.0.8: correct the address in the rig or in the sensor",
     ) in found
     assert not any("No LiDAR sends anything" in text for _, text in found)
 
@@ -102,8 +121,8 @@ def test_datagrams_that_are_no_data_packets_are_named_not_reported_as_silence():
     ) in found
 
 
-def test_another_sender_on_the_port_of_a_silent_sensor_does_not_hide_it():
-    stranger = sender(2369, 754.0, source="10.0.0.9")
+def test_a_trickle_on_the_port_of_a_silent_sensor_does_not_hide_it():
+    stranger = sender(2369, 70.0, source="10.0.0.9")
 
     found = found_in(status(FIRST, stranger, IMU), rig=WITH_ADDRESSES)
 
