@@ -50,9 +50,11 @@ demo: $(VENV)/installed-run site
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
 # The kernels take one processor for a minute, which comes first: what needs none takes the other.
+# What both runs of tests need, as a finished project, is made once.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
-	@$(MAKE) --no-print-directory -j3 $(SYNC) kernels bytecode site types format lint unit e2e
+	@made=$$(mktemp -d) && trap 'rm -rf "$$made"' EXIT && export RECON4_MADE_ONCE="$$made" && \
+	$(MAKE) --no-print-directory -j3 $(SYNC) kernels bytecode site types format lint unit e2e
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
 quick:

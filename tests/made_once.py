@@ -1,4 +1,7 @@
-"""Folders that all processes of a test run share, each made once."""
+"""Folders that all processes of a test run share, each made once.
+
+`make test` runs pytest twice, side by side: both share the folder that ``RECON4_MADE_ONCE`` names.
+"""
 
 from __future__ import annotations
 
@@ -15,11 +18,13 @@ def made_once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path],
 
     Args:
         factory: Where temporary folders of this run lie.
-        name: Of the folder, unique in the run.
+        name: Of the folder, unique in all runs.
         make: Makes the folder at the path it is given.
     """
     base = factory.getbasetemp()
-    if "PYTEST_XDIST_WORKER" in os.environ:
+    if shared := os.environ.get("RECON4_MADE_ONCE"):
+        base = Path(shared)
+    elif "PYTEST_XDIST_WORKER" in os.environ:
         base = base.parent  # of all workers
     folder = base / name
     with (base / f"{name}.lock").open("w") as lock:
