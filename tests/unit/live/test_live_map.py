@@ -1,5 +1,7 @@
 """A walk through the live map: followed, lost, and found again."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from msgspec import structs
@@ -23,12 +25,17 @@ def walk(tmp_path_factory):
 @pytest.fixture(scope="module")
 def followed(walk):
     """``followed(60)`` has been pushed the first 60 multiframes, which is done once for all."""
-    follower, copies, start = Follower(walk), {}, 0
-    for rows in FOLLOWED:
-        for row in range(start, rows):
-            follower.push(row)
-        copies[rows], start = follower.copy(), rows
-    return lambda rows: copies[rows].copy()
+    follower, copies = Follower(walk), {}
+
+    def after(rows):
+        for earlier, later in pairwise((0, *FOLLOWED)):
+            if later <= rows and later not in copies:
+                for row in range(earlier, later):
+                    follower.push(row)
+                copies[later] = follower.copy()
+        return copies[rows].copy()
+
+    return after
 
 
 @pytest.mark.study
