@@ -53,7 +53,7 @@ demo: $(VENV)/installed-run site
 # What both runs of tests need, as a finished project, is made once.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
-	@made=$$(mktemp -d) && trap 'rm -rf "$$made"' EXIT && export RECON4_MADE_ONCE="$$made" && \
+	@made=$$(mktemp -d) && trap 'rm -rf "$$made"' EXIT && trap 'exit 130' INT TERM && export RECON4_MADE_ONCE="$$made" && \
 	$(MAKE) --no-print-directory -j3 $(SYNC) kernels bytecode site types format lint unit e2e
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
