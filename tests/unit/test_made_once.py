@@ -1,4 +1,4 @@
-"""What tests share is made once, by whoever asks first."""
+"""What tests share is made once, for all runs beside each other."""
 
 import pytest
 
