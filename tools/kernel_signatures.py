@@ -16,11 +16,13 @@ import numpy as np
 from numba import types
 from numba.core import event
 
+from recon4.classes.clusters import cells_of_class, connected, evidence
 from recon4.comparison.m3c2 import differences
 from recon4.comparison.records import M3C2Scales
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.signatures import SIGNATURES, kernel_name, spelled
 from recon4.live.mapper.live_map import LiveMap
+from recon4.mapping.class_corrections import ClassVolumes
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.rig import Sensor
@@ -106,6 +108,7 @@ def _lidars(folder: Path) -> None:
     made = read_artifacts(project)
     tiles = TileSet.open(made["map"])
     find_double_walls(tiles)
+    _things(tiles)
     list(differences(tiles, tiles, SE3.identity(), scales=M3C2Scales()))
     plane = SlicePlane.horizontal(1.0)
     paper = RasterGrid(extent(tiles, plane), PIXEL_M)
@@ -149,6 +152,13 @@ def _backpack(folder: Path) -> None:
     grid = OccupancyGrid(0.1, 0.4, 0.6)
     grid.add_scan(points, at)
     crossing_ratio(grid, [(points, at)])
+
+
+def _things(tiles: TileSet) -> None:
+    """Clusters of the points of the first class that there is."""
+    code = next(iter(tiles.class_counts()))
+    cells = cells_of_class(tiles, code, ClassVolumes(()))
+    evidence(tiles, cells, connected(cells.key))
 
 
 def _packets() -> None:

@@ -2,7 +2,8 @@
 
 A correction is a volume in the frame of the map that a person looked at. It keeps where the body
 was when it measured some of the points, its anchors: by their poses in another map of the same walk
-the volume follows its points, or does not apply where they no longer lie together.
+the volume follows its points, or does not apply where they no longer lie together. Of clusters each
+one has anchors of its own: they lie anywhere in the map, and move apart with it.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +23,7 @@ from recon4.mapping.class_corrections import ClassVolume, ClassVolumes
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.mapping.tuning import TILES
+from recon4.model.cell_clusters import CellCluster, Clusters, cluster_of, moved_cluster
 from recon4.model.class_corrections import Anchor, ClassCorrection, Reclassified
 from recon4.model.classes import CLASSES, PointClass
 from recon4.model.trajectory import Times, Trajectory
@@ -39,6 +42,8 @@ class CountedPoints:
     """Times of some of the points that change, every tenth of a second at most once [ns], (T,)."""
     away_m: float
     """From the volume to the bounds of the map; 0 = they meet [m]."""
+    clusters_ns: tuple[Times, ...] = ()
+    """The same as ``t_ns`` for each cluster of the volume; empty for other volumes."""
 
     @property
     def points(self) -> int:
@@ -71,6 +76,8 @@ class PlacedCorrection:
     """How far the points have moved at most [m]."""
     apart_m: float
     """How far they have moved against each other [m]; infinite = the walk no longer has them."""
+    lost: int = 0
+    """Clusters of it that are left out, because their points no longer lie together."""
 
 
 def count_points(
@@ -93,18 +100,27 @@ def count_points(
         )
     new, pending = ClassVolume.of(what), ClassVolumes.of(before)
     changed, inside = np.zeros(256, np.int64), np.zeros(256, np.int64)
-    slots: set[int] = set()
+    slots: list[NDArray[np.int64]] = [np.empty((0, 2), np.int64)]
     for tile, columns in _parts_in(tiles, new):
         p_map = columns["xyz"].astype(np.float64) + tile.origin_m
-        within = contains(what.volume, p_map)
+        part_of = _parts_of(what.volume, p_map)
+        within = part_of >= 0
         classes = columns["classification"][within].copy()
         pending.apply(classes, p_map[within])
         inside += np.bincount(classes, minlength=256)
         hit = new.changes[classes]
         changed += np.bincount(classes[hit], minlength=256)
-        slots |= set((columns["t_ns"][within][hit] // CORRECTIONS.slot_ns).tolist())
-    t_ns = np.array(sorted(slots), np.int64) * CORRECTIONS.slot_ns + CORRECTIONS.slot_ns // 2
-    return CountedPoints(_counted(changed), _counted(inside), t_ns, _away_m(tiles, what.volume))
+        slot = columns["t_ns"][within][hit] // CORRECTIONS.slot_ns
+        slots.append(np.unique(np.stack([part_of[within][hit], slot], axis=1), axis=0))
+    found = np.unique(np.concatenate(slots), axis=0)
+    many = len(what.volume.clusters) if isinstance(what.volume, Clusters) else 0
+    return CountedPoints(
+        _counted(changed),
+        _counted(inside),
+        _middles_ns(found),
+        _away_m(tiles, what.volume),
+        tuple(_middles_ns(found[found[:, 0] == k]) for k in range(many)),
+    )
 
 
 def correction_of(
@@ -118,15 +134,27 @@ def correction_of(
         trajectory: ``T_map_body`` of that map.
         map_key: Its key.
     """
-    many = min(CORRECTIONS.anchors, len(counted.t_ns))
-    rows = np.unique(np.linspace(0, len(counted.t_ns) - 1, many).round().astype(np.intp))
-    t_ns = np.unique(np.clip(counted.t_ns[rows], trajectory.t_ns[0], trajectory.t_ns[-1]))
+    t_ns = _some(counted.t_ns, CORRECTIONS.anchors, trajectory)
+    if isinstance(what.volume, Clusters):
+        led = [
+            msgspec.structs.replace(one, seen_ns=tuple(times.tolist()))
+            for one, found in zip(what.volume.clusters, counted.clusters_ns, strict=True)
+            if len(times := _some(found, CORRECTIONS.cluster_anchors, trajectory))
+        ]
+        what = replace(what, volume=Clusters(clusters=tuple(led), edge_m=what.volume.edge_m))
+        t_ns = np.unique(np.array([t for one in led for t in one.seen_ns], np.int64))
     poses = trajectory.at(t_ns)
     anchors = tuple(
         Anchor(t_ns=int(t), T_map_body=(*map(float, pose.t), *map(float, pose.quat_xyzw())))
         for t, pose in zip(t_ns, (poses[k] for k in range(len(t_ns))), strict=True)
     )
     return ClassCorrection(what=what, points=counted.points, map_key=map_key, anchors=anchors)
+
+
+def _some(t_ns: Times, most: int, trajectory: Trajectory) -> Times:
+    """Times spread over those given, within a trajectory, (T,)."""
+    rows = np.unique(np.linspace(0, len(t_ns) - 1, min(most, len(t_ns))).round().astype(np.intp))
+    return np.unique(np.clip(t_ns[rows], trajectory.t_ns[0], trajectory.t_ns[-1]))
 
 
 def place_correction(correction: ClassCorrection, trajectory: Trajectory) -> PlacedCorrection:
@@ -139,20 +167,61 @@ def place_correction(correction: ClassCorrection, trajectory: Trajectory) -> Pla
     t_ns = np.array([one.t_ns for one in correction.anchors], np.int64)
     if not len(trajectory) or t_ns[0] < trajectory.t_ns[0] or t_ns[-1] > trajectory.t_ns[-1]:
         return PlacedCorrection(None, np.inf, np.inf)
-    volume = correction.what.volume
-    corners = _wide(corners_of(volume))
     places = np.array([one.T_map_body for one in correction.anchors])
-    T_old_body = SE3.from_quat(places[:, 3:], places[:, :3])
-    T_new_old = trajectory.at(t_ns) @ T_old_body.inverse()
-    there = np.array([T_new_old[k] @ corners for k in range(len(t_ns))])
-    T = align_points(there.mean(axis=0), corners)
-    apart_m = float(np.linalg.norm(there - T @ corners, axis=2).max())
-    moved_m = float(np.linalg.norm(there - corners, axis=2).max())
+    T_new_old = trajectory.at(t_ns) @ SE3.from_quat(places[:, 3:], places[:, :3]).inverse()
+    volume = correction.what.volume
+    if isinstance(volume, Clusters):
+        return _place_clusters(correction.what, volume, T_new_old, t_ns=t_ns)
+    T, moved_m, apart_m = _led(corners_of(volume), T_new_old)
     if apart_m > CORRECTIONS.apart_m:
         return PlacedCorrection(None, moved_m, apart_m)
     if moved_m < CORRECTIONS.still_m:
         return PlacedCorrection(correction.what, moved_m, apart_m)
     return PlacedCorrection(replace(correction.what, volume=moved(volume, T)), moved_m, apart_m)
+
+
+def _place_clusters(
+    what: Reclassified, volume: Clusters, T_new_old: SE3, *, t_ns: Times
+) -> PlacedCorrection:
+    """Lead each cluster by its own anchors; those that came apart are left out."""
+    kept: list[CellCluster] = []
+    ways: list[tuple[float, float]] = []
+    lost: list[tuple[float, float]] = []
+    for one in volume.clusters:
+        mine = T_new_old[np.isin(t_ns, one.seen_ns)]
+        alone = Clusters(clusters=(one,), edge_m=volume.edge_m)
+        T, moved_m, apart_m = _led(corners_of(alone), mine)
+        if apart_m > CORRECTIONS.apart_m:
+            lost.append((moved_m, apart_m))
+            continue
+        kept.append(one if moved_m < CORRECTIONS.still_m else moved_cluster(one, T))
+        ways.append((moved_m, apart_m))
+    moved_m, apart_m = np.max(ways or lost, axis=0).tolist()
+    if not kept:
+        return PlacedCorrection(None, moved_m, apart_m, len(lost))
+    placed = replace(what, volume=Clusters(clusters=tuple(kept), edge_m=volume.edge_m))
+    return PlacedCorrection(placed, moved_m, apart_m, len(lost))
+
+
+def _led(corners: Array, T_new_old: SE3) -> tuple[SE3, float, float]:
+    """Where anchors lead the corners of a volume: the motion, how far they move and come apart."""
+    wide = _wide(corners)
+    there = np.array([T_new_old[k] @ wide for k in range(len(T_new_old))])
+    T = align_points(there.mean(axis=0), wide)
+    apart_m = float(np.linalg.norm(there - T @ wide, axis=2).max())
+    return T, float(np.linalg.norm(there - wide, axis=2).max()), apart_m
+
+
+def _parts_of(volume: Volume, p_map: Array) -> NDArray[np.int64]:
+    """Number of the cluster of each point, 0 in other volumes, -1 outside, (N,)."""
+    if isinstance(volume, Clusters):
+        return cluster_of(volume, p_map)
+    return contains(volume, p_map).astype(np.int64) - 1
+
+
+def _middles_ns(found: NDArray[np.int64]) -> Times:
+    """Middles of the slots in rows of part and slot, each once [ns], (T,)."""
+    return np.unique(found[:, 1]) * CORRECTIONS.slot_ns + CORRECTIONS.slot_ns // 2
 
 
 def _parts_in(tiles: TileSet, one: ClassVolume) -> Iterator[tuple[Tile, Columns]]:

@@ -94,6 +94,8 @@ class CorrectionTuning(Struct, frozen=True, kw_only=True):
     """Times of points are kept this far apart [ns]."""
     anchors: int = 9
     """Most poses that lead a correction into another map."""
+    cluster_anchors: int = 3
+    """Most poses that lead a cluster: it is small, and a correction has hundreds of them."""
     still_m: float = 0.0005
     """A volume stays as it is if its points moved by less [m]."""
     apart_m: float = 0.10
@@ -104,3 +106,42 @@ class CorrectionTuning(Struct, frozen=True, kw_only=True):
 
 
 CORRECTIONS = CorrectionTuning()
+
+
+class LikenessTuning(Struct, frozen=True, kw_only=True):
+    """Clusters that are like one that a person picked."""
+
+    cell_m: float = 0.1
+    """Edge of the cells that clusters consist of [m]."""
+    shift_m: float = 5e-5
+    """Borders of cells lie this far from whole steps of stored coordinates [m]: no point is on
+    one."""
+    reach_m: float = 0.3
+    """A point of the cluster is at most so far from the place that was picked [m]."""
+    ground_m: float = 0.3
+    """Edge of the cells of the ground [m]."""
+    block: int = 1 << 19
+    """Points that are read at once."""
+    most_cells: int = 4_000_000
+    """Cells of a class in a map: some 300 MB and 30 s."""
+    beams: int = 300_000
+    """Beams that are asked what they see through."""
+    least_beams: int = 5
+    """With fewer beams through or onto a cluster that is unknown."""
+    margin_m: float = 0.3
+    """Cells nearer to the end of a beam are not seen through [m]."""
+    farthest_m: float = 30.0
+    """Longer beams are not asked [m]."""
+    cells_ratio: float = 2.5
+    """Clusters with this many times the cells of the picked one have the difference 1."""
+    length_ratio: float = 0.4
+    least_length_m: float = 0.3
+    """Extents that differ by such a part, and by as much at least [m], have the difference 1."""
+    over_ground_m: float = 0.4
+    """Heights above the ground with the difference 1 [m]."""
+    planarity: float = 0.3
+    seen_through: float = 0.3
+    """Values with the difference 1."""
+
+
+LIKENESS = LikenessTuning()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from getpass import getuser
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -14,7 +14,7 @@ from recon4.cli.terminal import write
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
-    from recon4.model.class_corrections import ClassCorrection
+    from recon4.model.class_corrections import ClassCorrection, Reclassified
     from recon4.review.correction_files import ListedCorrection
 
 classify = typer.Typer()
@@ -98,15 +98,41 @@ def _counted(
     before = list(not_in_map(decided, corrections_in_map(read_summary(project))).corrections)
     made: list[ClassCorrection] = []
     for one in listed:
-        trial = try_correction(artifacts, one.what, [*before, *made])
+        what = _resolved(artifacts, one, [*before, *made])
+        trial = try_correction(artifacts, what, [*before, *made])
         if trial.refused is not None:
             raise ConfigError(f"{one.where}: {trial.refused.text}; nothing was changed")
         assert trial.correction is not None
         now = ", ".join(f"{count} {title}" for title, count in trial.now.items())
-        to = titles_of([one.what.to])[0]
+        to = titles_of([what.to])[0]
         write(f"{one.where}: {trial.points} points, now: {now} -> {to}")
         made.append(trial.correction)
     return made, len(rows)
+
+
+def _resolved(
+    artifacts: Mapping[str, Path], one: ListedCorrection, before: Sequence[ClassCorrection]
+) -> Reclassified:
+    """A correction with its volume; of all that is like a thing, say where that is.
+
+    Raises:
+        ConfigError: If nothing is there.
+    """
+    from recon4.model.class_corrections import Reclassified, titles_of
+    from recon4.review.class_corrections import propose_alike
+
+    if isinstance(one.what, Reclassified):
+        return one.what
+    try:
+        found = propose_alike(artifacts, one.what.picked, before)
+    except ConfigError as error:
+        raise ConfigError(f"{one.where}: {error}; nothing was changed") from error
+    chosen = [each for each in found.clusters if each.difference <= one.what.most_different]
+    write(f"{one.where}: {len(chosen)} of {titles_of([found.of])[0]} alike")
+    for each in chosen:
+        x, y, z = ((a + b) / 2.0 for a, b in zip(each.low_m, each.high_m, strict=True))
+        write(f"  x {x:.2f}  y {y:.2f}  z {z:.2f} m  {each.points} points, {each.difference:.2f}")
+    return found.reclassified(one.what.picked.to, most_different=one.what.most_different)
 
 
 def _note(project: Path, made: Sequence[tuple[ClassCorrection, str]], seen: int) -> None:

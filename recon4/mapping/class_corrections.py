@@ -15,7 +15,7 @@ from recon4.mapping.tile_packing import as_stored
 from recon4.mapping.tuning import TILES
 from recon4.model.class_corrections import Reclassified
 from recon4.model.classes import CLASSES
-from recon4.model.volumes import Volume, bounds_of, contains
+from recon4.model.volumes import Volume, bounds_of, bounds_of_parts, contains
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,6 +29,8 @@ class ClassVolume:
     """Bounds of the volume in the map, (3,)."""
     changes: NDArray[np.bool_]
     """Whether it changes points of each class, (256,)."""
+    parts_m: tuple[Array, Array]
+    """Bounds of what the volume is made of, (K, 3) each."""
 
     @staticmethod
     def of(what: Reclassified) -> ClassVolume:
@@ -49,11 +51,12 @@ class ClassVolume:
         low_m, high_m = bounds_of(volume)
         changes = np.zeros(256, np.bool_)
         changes[list(classes)] = True
-        return ClassVolume(volume, to, low_m, high_m, changes)
+        return ClassVolume(volume, to, low_m, high_m, changes, bounds_of_parts(volume))
 
     def meets(self, low_m: Array, high_m: Array) -> bool:
         """Whether a box in the map may have points of it, (3,) each [m]."""
-        return bool(np.all(self.low_m <= high_m) and np.all(self.high_m >= low_m))
+        lows, highs = self.parts_m
+        return bool(np.any(np.all((lows <= high_m) & (highs >= low_m), axis=1)))
 
     def of_points(self, p_map: Array, classes: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """Which points it changes, (N, 3) [m] and (N,) -> (N,)."""

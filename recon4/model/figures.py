@@ -227,6 +227,8 @@ class CorrectedClass(msgspec.Struct, frozen=True, kw_only=True):
     """How far they have moved against each other [m]."""
     place_m: Point
     """Middle of its volume, as decided [m]."""
+    lost: int = 0
+    """Clusters of it that do not apply, because their points no longer lie together."""
 
 
 class MapFigures(Figures, frozen=True, kw_only=True):

@@ -92,3 +92,22 @@ class VolumeTuning(Struct, frozen=True, kw_only=True):
 
 
 VOLUMES = VolumeTuning()
+
+
+class ClusterVolumeTuning(Struct, frozen=True, kw_only=True):
+    """Clusters of cubes that people choose in a map."""
+
+    most: int = 500
+    """Clusters of a volume."""
+    most_columns: int = 20_000
+    """Columns of cubes in all of them: some 300 kB in the journal."""
+    most_number: int = 20_000
+    """A cube is fewer than this many from the origin of its cluster."""
+    least_m: float = 0.01
+    most_m: float = 10.0
+    """Edge of a cube [m]."""
+    most_different: float = 3.0
+    """Clusters that are more different from a picked one are not proposed."""
+
+
+CLUSTERS = ClusterVolumeTuning()

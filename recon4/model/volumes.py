@@ -1,4 +1,4 @@
-"""Volumes in a map: boxes, balls, polygons extended along their normal, and strokes of a brush."""
+"""Volumes in a map: boxes, balls, polygons extended along their normal, strokes, clusters."""
 
 from __future__ import annotations
 
@@ -10,6 +10,13 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.cell_clusters import (
+    Clusters,
+    cluster_bounds,
+    cluster_corners,
+    cluster_of,
+    moved_clusters,
+)
 from recon4.model.tuning import VOLUMES
 
 Vector: TypeAlias = tuple[float, float, float]
@@ -105,7 +112,7 @@ class Brush(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="b
         _check_lengths("brush", tuple(map(float, high - low)))
 
 
-Volume: TypeAlias = Box | Sphere | Prism | Brush
+Volume: TypeAlias = Box | Sphere | Prism | Brush | Clusters
 
 
 def contains(volume: Volume, p_map: Array) -> NDArray[np.bool_]:
@@ -115,6 +122,8 @@ def contains(volume: Volume, p_map: Array) -> NDArray[np.bool_]:
         return np.asarray(away_m <= volume.radius_m)
     if isinstance(volume, Brush):
         return _painted(volume, p_map)
+    if isinstance(volume, Clusters):
+        return np.asarray(cluster_of(volume, p_map) >= 0)
     p = (p_map - _origin(volume)) @ _axes(volume).T
     if isinstance(volume, Box):
         return np.asarray(np.all(np.abs(p) <= np.array(volume.size_m) / 2.0, axis=1))
@@ -129,6 +138,8 @@ def contains(volume: Volume, p_map: Array) -> NDArray[np.bool_]:
 
 def corners_of(volume: Volume) -> Array:
     """Corners of a box around a volume, along its own axes, in the map [m], (8, 3)."""
+    if isinstance(volume, Clusters):
+        return cluster_corners(volume)
     if isinstance(volume, Sphere):
         low, high = np.full(3, -volume.radius_m), np.full(3, volume.radius_m)
     elif isinstance(volume, Box):
@@ -152,6 +163,14 @@ def bounds_of(volume: Volume) -> tuple[Array, Array]:
     return corners.min(axis=0), corners.max(axis=0)
 
 
+def bounds_of_parts(volume: Volume) -> tuple[Array, Array]:
+    """Smallest and largest coordinates of what a volume is made of [m], (K, 3) each."""
+    if isinstance(volume, Clusters):
+        return cluster_bounds(volume)
+    low, high = bounds_of(volume)
+    return low[None], high[None]
+
+
 def moved(volume: Volume, T_new_old: SE3) -> Volume:
     """The same volume in another map.
 
@@ -159,6 +178,8 @@ def moved(volume: Volume, T_new_old: SE3) -> Volume:
         volume: In the old map.
         T_new_old: Pose of the old map in the new one.
     """
+    if isinstance(volume, Clusters):
+        return moved_clusters(volume, T_new_old)
     origin = _vector(T_new_old @ _origin(volume))
     if isinstance(volume, Sphere):
         return msgspec.structs.replace(volume, center_m=origin)
@@ -201,13 +222,13 @@ def _painted(brush: Brush, p_map: Array) -> NDArray[np.bool_]:
     return painted
 
 
-def _origin(volume: Volume) -> Array:
+def _origin(volume: Box | Sphere | Prism | Brush) -> Array:
     if isinstance(volume, Brush):
         return np.array(volume.path_m[0])
     return np.array(volume.origin_m if isinstance(volume, Prism) else volume.center_m)
 
 
-def _axes(volume: Volume) -> Array:
+def _axes(volume: Box | Sphere | Prism | Brush) -> Array:
     """Unit vectors u, v and u × v, rows of (3, 3)."""
     if isinstance(volume, Sphere):
         return np.eye(3)

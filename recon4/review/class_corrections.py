@@ -9,10 +9,13 @@ from pathlib import Path
 import msgspec
 
 from recon4.classes.corrections import correction_of, count_points, place_correction
+from recon4.classes.likeness import find_alike
 from recon4.errors import StoreError
 from recon4.locales.coded import StoredText
 from recon4.mapping.tiles import TileSet
+from recon4.model.alike import Alike, PickedThing
 from recon4.model.class_corrections import ClassCorrection, Reclassified, titles_of
+from recon4.model.trajectory import Trajectory
 from recon4.review.decisions import Decided, StandingCorrection
 from recon4.store.arrays import load_trajectory
 
@@ -86,17 +89,8 @@ def try_correction(
     Raises:
         StoreError: If the project has no classes of points, or an artifact cannot be read.
     """
-    missing = [name for name in ("map", "level") if name not in artifacts]
-    if missing:
-        raise StoreError(
-            f"classes of points need the results of {', '.join(missing)}, which this project "
-            "lacks: process its recording to the end first"
-        )
-    trajectory = load_trajectory(artifacts["level"] / "trajectory.npz")
-    placed = (place_correction(one, trajectory).what for one in before)
-    counted = count_points(
-        TileSet.open(artifacts["map"]), what, [one for one in placed if one is not None]
-    )
+    trajectory = _trajectory(artifacts)
+    counted = count_points(TileSet.open(artifacts["map"]), what, _placed(before, trajectory))
     refused = counted.why_none(what)
     made = None
     if not refused:
@@ -108,6 +102,39 @@ def try_correction(
         refused=StoredText.of(refused) if refused else None,
         correction=made,
     )
+
+
+def propose_alike(
+    artifacts: Mapping[str, Path], picked: PickedThing, before: Sequence[ClassCorrection] = ()
+) -> Alike:
+    """All things like one that a person picked; nothing is changed.
+
+    Args:
+        artifacts: Of the run that made the map.
+        picked: The thing, in the frame of the map.
+        before: Corrections in force that are not in the map yet; they apply first.
+
+    Raises:
+        ConfigError: If nothing is there, or it is too large for a correction.
+        StoreError: If the project has no classes of points, or an artifact cannot be read.
+    """
+    placed = _placed(before, _trajectory(artifacts))
+    return find_alike(TileSet.open(artifacts["map"]), picked, placed)
+
+
+def _trajectory(artifacts: Mapping[str, Path]) -> Trajectory:
+    missing = [name for name in ("map", "level") if name not in artifacts]
+    if missing:
+        raise StoreError(
+            f"classes of points need the results of {', '.join(missing)}, which this project "
+            "lacks: process its recording to the end first"
+        )
+    return load_trajectory(artifacts["level"] / "trajectory.npz")
+
+
+def _placed(before: Sequence[ClassCorrection], trajectory: Trajectory) -> list[Reclassified]:
+    placed = (place_correction(one, trajectory).what for one in before)
+    return [one for one in placed if one is not None]
 
 
 def described(one: StandingCorrection) -> str:

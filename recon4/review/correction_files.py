@@ -13,11 +13,22 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import ConfigError
+from recon4.model.alike import PickedThing
 from recon4.model.class_corrections import Reclassified, class_named
+from recon4.model.tuning import CLUSTERS
 from recon4.model.volumes import Box, Brush, Prism, Sphere, Volume
 from recon4.review.tuning import CORRECTION_FILES
 from recon4.untrusted.bounded import read_text_limited
 from recon4.untrusted.names import check_note
+
+
+@dataclass(frozen=True, slots=True)
+class LikeThing:
+    """All that is like the thing at a place."""
+
+    picked: PickedThing
+    most_different: float
+    """More different things are left as they are; 1 = as one thing looks from two sides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,14 +37,21 @@ class ListedCorrection:
 
     where: str
     """File and line or number, for messages."""
-    what: Reclassified
+    what: Reclassified | LikeThing
     why: str
+
+
+class _Like(msgspec.Struct, forbid_unknown_fields=True, tag_field="shape", tag="like"):
+    """A thing, in place of a volume."""
+
+    place_m: tuple[float, float, float]
+    alike: float = 1.0
 
 
 class _Entry(msgspec.Struct, forbid_unknown_fields=True):
     """A correction in a JSON file."""
 
-    volume: Volume
+    volume: Volume | _Like
     to: str
     only: tuple[str, ...] = ()
     why: str = ""
@@ -94,21 +112,36 @@ def _of_table(text: str, name: str) -> Iterable[ListedCorrection]:
 
 
 def _listed(
-    where: str, volume: Volume, to: str, *, only: Iterable[str], why: str
+    where: str, volume: Volume | _Like, to: str, *, only: Iterable[str], why: str
 ) -> ListedCorrection:
     try:
-        what = Reclassified(
-            volume=volume,
-            to=int(class_named(to)),
-            only=tuple(int(class_named(one)) for one in only),
-        )
+        code, codes = int(class_named(to)), tuple(int(class_named(one)) for one in only)
+        what: Reclassified | LikeThing
+        if isinstance(volume, _Like):
+            what = LikeThing(
+                PickedThing(place_m=volume.place_m, to=code, only=codes),
+                check_alike(volume.alike),
+            )
+        else:
+            what = Reclassified(volume=volume, to=code, only=codes)
         note = check_note(why, what="why") if why else ""
         return ListedCorrection(where, what, note)
     except ConfigError as error:
         raise ConfigError(f"{where}: {error}") from error
 
 
-def _volume(cells: Mapping[str, str]) -> Volume:
+def check_alike(value: float) -> float:
+    """A limit of differences.
+
+    Raises:
+        ConfigError: If it is none, or so large that no two things would be unlike.
+    """
+    if not 0.0 <= value <= CLUSTERS.most_different:
+        raise ConfigError(f"alike: expected 0 to {CLUSTERS.most_different:g}, got {value:g}")
+    return value
+
+
+def _volume(cells: Mapping[str, str]) -> Volume | _Like:
     match cells["shape"]:
         case "box":
             x, y, z = (_number(cells, name) for name in ("x", "y", "z"))
@@ -126,8 +159,11 @@ def _volume(cells: Mapping[str, str]) -> Volume:
         case "brush":
             path = tuple((x, y, z) for x, y, z in _places(cells, "path", "x y z"))
             return Brush(path_m=path, radius_m=_number(cells, "radius"))
+        case "like":
+            x, y, z = (_number(cells, name) for name in ("x", "y", "z"))
+            return _Like(place_m=(x, y, z), alike=_number(cells, "alike", usual=1.0))
         case other:
-            raise ConfigError(f"shape: expected box, sphere, prism or brush, got {other!r}")
+            raise ConfigError(f"shape: expected box, sphere, prism, brush or like, got {other!r}")
 
 
 def _places(cells: Mapping[str, str], name: str, form: str) -> list[list[float]]:

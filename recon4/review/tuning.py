@@ -165,7 +165,7 @@ class CorrectionFileTuning(Struct, frozen=True, kw_only=True):
     """Corrections in a list."""
     columns: frozenset[str] = frozenset(
         ("shape", "to", "only", "why", "x", "y", "z", "dx", "dy", "dz", "yaw_deg", "radius")
-    ) | {"polygon", "path", "low", "high"}
+    ) | {"polygon", "path", "low", "high", "alike"}
     """Of a table."""
 
 

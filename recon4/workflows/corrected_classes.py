@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from recon4.classes.corrections import PlacedCorrection, place_correction
 from recon4.mapping.class_corrections import ClassVolumes
+from recon4.model.cell_clusters import Clusters
 from recon4.model.class_corrections import titles_of
 from recon4.model.figures import CorrectedClass
 from recon4.model.plain import finite_or_none
@@ -60,11 +61,15 @@ def corrected(found: CorrectionsInMap, counts: Sequence[int]) -> tuple[Corrected
             moved_m=finite_or_none(placed.moved_m, 4),
             apart_m=finite_or_none(placed.apart_m, 4),
             place_m=_middle(one),
+            lost=placed.lost,
         )
         for one, placed in zip(found.standing, found.placed, strict=True)
     )
 
 
 def _middle(one: StandingCorrection) -> tuple[float, float, float]:
-    x, y, z = corners_of(one.correction.what.volume).mean(axis=0).round(3).tolist()
+    volume = one.correction.what.volume
+    if isinstance(volume, Clusters):  # that of the first thing, which a person picked
+        volume = Clusters(clusters=volume.clusters[:1], edge_m=volume.edge_m)
+    x, y, z = corners_of(volume).mean(axis=0).round(3).tolist()
     return x, y, z

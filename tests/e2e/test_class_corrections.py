@@ -87,6 +87,53 @@ def test_what_a_brush_painted_gets_another_class(server, page, screenshot):
     assert page.evaluate("window.recon4Map.page.brush.strokes.length") == 0
 
 
+@looks("desktop light")
+def test_all_things_like_a_picked_one_get_another_class(server, page, screenshot):
+    correct_the_floor(server)
+    page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5&t=0.4&u=8&v=5&m=0.03")
+    expect(page.locator(".facing strong")).to_be_visible()
+    page.get_by_text("Correct classes").click()
+    page.get_by_role("button", name="All like this").click()
+    canvas = page.locator("slice-view canvas").first
+    box = canvas.bounding_box()
+    canvas.click(position={"x": box["width"] / 2 + 0.3 / 0.03, "y": box["height"] / 2})
+    things = page.locator("class-corrections .alike-count")
+    expect(things).to_contain_text("3 things alike")
+    page.get_by_label("Most different").fill("0")
+    expect(things).to_contain_text("1 thing alike")
+    page.get_by_label("Most different").fill("1")
+    page.locator(".alike input").last.uncheck()
+    expect(things).to_contain_text("2 things alike")
+    canvas.scroll_into_view_if_needed()
+    fits(page)
+    screenshot(page, "slices-alike")
+    counted(page)
+    page.locator("class-corrections").get_by_role("button", name="Apply").click()
+    expect(things).to_have_count(0)
+
+    page.goto(f"{server.url}/projects/office/map/?box=12,5,1.5,2,2,2,0")  # the third is left
+    rested(page)
+    page.keyboard.press("j")
+    expect(page.get_by_role("button", name="All like this")).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    near = "target: [12, 5, 1.5], distance: 4"
+    page.evaluate(f"window.recon4Map.move({{...window.recon4Map.camera(), {near}}})")
+    page.keyboard.press(" ")
+    expect(things).to_contain_text("1 thing alike")
+    assert page.locator("#overlay line.alike").count() == 12
+
+
+def correct_the_floor(server):
+    """Without it floor, walls and pillars are one thing."""
+    floor = {"shape": "box", "center_m": [8, 5, 0], "size_m": [40, 40, 0.04]}
+    at = "/api/projects/office"
+    body = {"volume": floor, "to": "ground", "map": server.get(f"{at}/map").json()["key"]}
+    seq = server.post(f"{at}/review/classes/count", json=body).json()["seq"]
+    noted = server.post(f"{at}/review/classes", json=body | {"seen_seq": seq})
+    assert noted.status_code == 201, noted.text
+
+
 def drag(page, start, end):
     page.mouse.move(*start)
     page.mouse.down()

@@ -98,7 +98,8 @@ MAY_IMPORT = {
     | {"recon4.report.approval"}
     | {f"recon4.findings.{name}" for name in ("summary_notes", "review_problems", "wording")},
     "recon4/review/class_corrections.py": STAGE
-    | {"recon4.classes.corrections", "recon4.mapping.tiles", "recon4.review"},
+    | {"recon4.classes.corrections", "recon4.classes.likeness"}
+    | {"recon4.mapping.tiles", "recon4.review"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE
     | {"recon4.mapping", "recon4.orders.order", "recon4.sandbox.freed_memory"},

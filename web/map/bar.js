@@ -57,6 +57,7 @@ export const KEYS = [
   ["B", t("do-box")],
   ["X", t("do-section")],
   ["K", t("do-brush")],
+  ["J", t("do-like")],
   ["Z", t("do-ceilings")],
   ["C", t("do-color")],
   ["N", t("do-note")],

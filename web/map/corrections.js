@@ -2,7 +2,7 @@
 
 import { idHere } from "../shared/address.js";
 import "../shared/class_corrections.js";
-import { html } from "../shared/dom.js";
+import { detailOf, html } from "../shared/dom.js";
 import { t } from "../shared/texts.js";
 import { paintedVolume } from "./brush.js";
 import { brushFields } from "./brush_fields.js";
@@ -48,15 +48,31 @@ export const corrections = ({ key }, act) =>
   html`<section aria-labelledby="classes-title">
     <h2 id="classes-title">${t("correct-classes")}</h2>
     ${brushFields(act)}
+    <div class="buttons">
+      <button type="button" aria-pressed=${page.tool === "like"} @click=${() => act.tool("like")}>
+        ${t("all-like-this")}
+      </button>
+    </div>
     <class-corrections
       .given=${{
         project: idHere(),
         map: key,
         volume: paintedVolume() ?? volumeOf(page.state.clip),
         hint: hintOf(page.state.clip),
+        place: page.like.place,
+      }}
+      @alike=${(/** @type {Event} */ event) => {
+        page.like.boxes = detailOf(event);
+        act.change({});
+      }}
+      @look=${(/** @type {Event} */ event) => act.goTo(detailOf(event))}
+      @forget=${() => {
+        page.like = { place: null, boxes: [] };
+        act.change({});
       }}
       @applied=${() => {
         page.brush.strokes = [];
+        page.like = { place: null, boxes: [] };
         act.change({});
       }}
     ></class-corrections>

@@ -37,6 +37,7 @@ const keysOf = (act, more) => ({
   b: () => act.tool("box"),
   x: () => act.tool("section"),
   k: () => act.tool("brush"),
+  j: () => act.tool("like"),
   g: () => act.tool("stand"),
   n: () => act.tool("note"),
   p: act.fly,

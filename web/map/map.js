@@ -167,6 +167,7 @@ function drawOver() {
       stretch: state.mark ? lineOf(state.mark, page.walk) : [],
       drag: drag ?? aim.dragShown(),
       brush: page.brush,
+      boxes: page.like.boxes,
       aim: page.aim.on,
       tool,
       volumeOf,

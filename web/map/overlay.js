@@ -6,6 +6,7 @@ import { cornersOfBox } from "./clip.js";
 import { resultOf } from "./measure.js";
 
 /**
+ * @import {Box} from "../shared/alike.js"
  * @import {Camera, Screen} from "./camera.js"
  * @import {Clip} from "./clip.js"
  * @import {Measurement} from "./measure.js"
@@ -17,6 +18,7 @@ const EDGES = [0, 1, 2].flatMap((axis) =>
   [0, 1, 2, 3, 4, 5, 6, 7].filter((k) => !((k >> axis) & 1)).map((k) => [k, k | (1 << axis)]),
 );
 const NEAR_M = 0.06;
+const MOST_BOXES = 80; // further things are dots
 const MOST_SHOWN = 60; // characters of a text beside a pin
 
 /**
@@ -24,7 +26,8 @@ const MOST_SHOWN = 60; // characters of a text beside a pin
  * @param {{measurements: Measurement[], draft: number[][], clip: Clip, heights: [number, number],
  *   pins: Pin[], chosen: Pin | null, stretch: number[][], drag: number[][] | null,
  *   brush: {strokes: number[][][], radius: number},
- *   times: string, aim: boolean, tool: string, volumeOf: (one: Measurement) => any}} shown
+ *   boxes: Box[], times: string, aim: boolean, tool: string,
+ *   volumeOf: (one: Measurement) => any}} shown
  * @returns {Content}
  */
 export function overlay({ camera, screen }, shown) {
@@ -75,6 +78,11 @@ export function overlay({ camera, screen }, shown) {
   const section = clip.section ? sectionLines(clip.section, shown.heights) : [];
   const corners = clip.box ? cornersOfBox(clip.box) : [];
   return svg`<g class="brushed">${shown.brush.strokes.flat().map(dab)}</g>
+    ${shown.boxes.slice(0, MOST_BOXES).map((box) => {
+      const ends = cornersBetween(box);
+      return EDGES.map(([a, b]) => line(ends[a], ends[b], "alike"));
+    })}
+    ${shown.boxes.slice(MOST_BOXES).map(({ low, high }) => dot(middleOf([low, high]), "alike"))}
     ${clip.box ? EDGES.map(([a, b]) => line(corners[a], corners[b], "clip")) : nothing}
     ${section.map(([a, b]) => line(a, b, "clip"))}
     ${measurements.map((one) => [
@@ -89,6 +97,12 @@ export function overlay({ camera, screen }, shown) {
     ${pins.map(pin)}
     ${drag ? dragged(drag, tool) : nothing}${shown.aim ? cross(screen) : nothing}`;
 }
+
+/** @param {Box} box */
+const cornersBetween = ({ low, high }) =>
+  [0, 1, 2, 3, 4, 5, 6, 7].map((which) =>
+    [0, 1, 2].map((k) => ((which >> k) & 1 ? high[k] : low[k])),
+  );
 
 /** The begin of a text, as long as one reads it beside a pin. */
 const headOf = (/** @type {string} */ text) =>

@@ -14,7 +14,7 @@ import { lineOf } from "./places.js";
  * @import {Pin} from "./places.js"
  * @import {ProfileView} from "./profile.js"
  * @import {NoteDraft} from "./notes.js"
- * @typedef {"" | "measure" | "box" | "section" | "stand" | "note" | "brush"} Tool
+ * @typedef {"" | "measure" | "box" | "section" | "stand" | "note" | "brush" | "like"} Tool
  */
 
 const CUT_M = 2.2; // above the floor: frames of rooms stay, ceilings go
@@ -39,6 +39,11 @@ export const page = {
   snapping: true,
   /** What was painted to get another class: strokes of places, and the radius of the brush [m]. */
   brush: { radius: 0.1, strokes: /** @type {number[][][]} */ ([]) },
+  /** A thing that was picked [m], and the boxes of all that are like it. */
+  like: {
+    place: /** @type {number[] | null} */ (null),
+    boxes: /** @type {import("../shared/alike.js").Box[]} */ ([]),
+  },
   /** By keyboard: whether the cross is shown, and where a drag began [m]. */
   aim: { on: false, from: /** @type {number[] | null} */ (null) },
   /** @type {Record<string, MapVolume | Error | null>} by their points and base; null = asked for */

@@ -123,6 +123,11 @@ function take({ point: found, snap }, stage) {
     choose("", stage);
     return stage.note?.(found);
   }
+  if (page.tool === "like") {
+    page.like = { place: found.p_map, boxes: [] };
+    choose("", stage);
+    return stage.change({});
+  }
   if (page.tool !== "measure") return read(pointText(found), stage);
   const one = ended(found, snap);
   page.draft.push(one);
@@ -283,6 +288,7 @@ export function choose(tool, stage, kind = page.measuring) {
     stand: t("click-stand"),
     note: t("click-note"),
     brush: t("drag-brush"),
+    like: t("click-thing"),
   };
   liftBrush();
   page.reading = hints[page.tool];

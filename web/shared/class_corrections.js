@@ -1,8 +1,10 @@
 // <class-corrections>: give the points in a volume another class: count, apply, undo.
 
+import { USUAL, alikeFields, boxesOf, volumeOf } from "./alike.js";
 import {
   correctClasses,
   countCorrection,
+  findAlike,
   readCorrections,
   remakeMap,
   withdrawCorrection,
@@ -20,6 +22,7 @@ import { t } from "./texts.js";
  * @property {string} map key of the map that is shown
  * @property {Volume | null} volume
  * @property {string} hint how to choose a volume
+ * @property {number[] | null} [place] of a thing, to choose all like it [m]
  */
 
 const DELIVERED = ""; // all points that the map delivers
@@ -28,6 +31,7 @@ export class ClassCorrections extends HTMLElement {
   #given = /** @type {Given | null} */ (null);
   #written = ""; // what was given last
   #view = /** @type {CorrectionsView | null} */ (null);
+  #found = /** @type {import("./alike.js").Found | null} */ (null); // all things like one
   #counted = /** @type {CorrectionCount | null} */ (null);
   #choice = { to: "building", only: DELIVERED, why: "" };
   #busy = "";
@@ -38,11 +42,14 @@ export class ClassCorrections extends HTMLElement {
     const written = JSON.stringify(given);
     if (written === this.#written) return;
     const isNew = given.map !== this.#given?.map;
+    const isThing = String(given.place ?? "") !== String(this.#given?.place ?? "");
     Object.assign(this, { role: "group" });
     this.#given = given;
     this.#written = written;
     this.#counted = null;
+    if (isNew || isThing) this.#found = null;
     this.#draw();
+    if (isThing && given.place) this.#find();
     if (isNew) this.#work("", async () => this.#show(await readCorrections(given.project)));
   }
 
@@ -63,30 +70,57 @@ export class ClassCorrections extends HTMLElement {
     this.#draw();
   }
 
-  /** @returns {CorrectionSpec} */
-  #spec(/** @type {Given & {volume: Volume}} */ { volume, map }) {
+  /** Of which classes the points are that get another one. */
+  #only() {
     const { to, only } = this.#choice;
     const every = this.#view?.classes ?? [];
-    const chosen = only === EVERY ? every.filter((one) => one !== to) : only ? [only] : [];
-    return { volume, to, only: chosen, map };
+    return only === EVERY ? every.filter((one) => one !== to) : only ? [only] : [];
+  }
+
+  /** What is asked for; null = nothing is chosen. @returns {CorrectionSpec | null} */
+  #spec() {
+    const [given, found] = [this.#given, this.#found];
+    const volume = found ? volumeOf(found) : (given?.volume ?? null);
+    if (!given || !volume) return null;
+    const only = found ? [found.view.only] : this.#only();
+    return { volume, to: this.#choice.to, only, map: given.map };
+  }
+
+  /** Looks for all things like the picked one. */
+  #find() {
+    const given = this.#given;
+    if (!given?.place) return;
+    const [x, y, z] = given.place;
+    const { to } = this.#choice;
+    this.#work(t("alike-finding"), async () => {
+      const spec = { place_m: /** @type {[number, number, number]} */ ([x, y, z]), to };
+      const view = await findAlike(given.project, { ...spec, only: this.#only(), map: given.map });
+      if (this.#given?.place === given.place && this.#choice.to === to)
+        this.#mean({ view, limit: USUAL, off: new Set() });
+    });
+  }
+
+  /** Other things are meant. */
+  #mean(/** @type {import("./alike.js").Found | null} */ found) {
+    this.#found = found;
+    this.#counted = null;
+    this.#draw();
+    this.dispatchEvent(new CustomEvent("alike", { detail: boxesOf(found) }));
   }
 
   #count() {
-    const given = this.#given;
-    if (!given?.volume) return;
-    const spec = this.#spec({ ...given, volume: given.volume });
+    const [given, spec] = [this.#given, this.#spec()];
+    if (!given || !spec) return;
     const asked = this.#written + JSON.stringify(spec);
     this.#work(t("correct-counting"), async () => {
       const counted = await countCorrection(given.project, spec);
-      const now = this.#given?.volume && this.#spec({ ...this.#given, volume: this.#given.volume });
-      if (this.#written + JSON.stringify(now) === asked) this.#counted = counted;
+      if (this.#written + JSON.stringify(this.#spec()) === asked) this.#counted = counted;
     });
   }
 
   #apply() {
-    const [given, counted] = [this.#given, this.#counted];
-    if (!given?.volume || !counted) return;
-    const spec = this.#spec({ ...given, volume: given.volume });
+    const [given, counted, spec] = [this.#given, this.#counted, this.#spec()];
+    if (!given || !spec || !counted) return;
     const { why } = this.#choice;
     this.#work(t("correct-noting"), async () => {
       this.#show(await correctClasses(given.project, { ...spec, why, seen_seq: counted.seq }));
@@ -118,6 +152,8 @@ export class ClassCorrections extends HTMLElement {
     this.#choice = { ...this.#choice, ...next };
     this.#counted = null;
     this.#draw();
+    const stays = !("only" in next) && this.#found && this.#found.view.only !== this.#choice.to;
+    if (this.#given?.place && !stays) this.#find();
   }
 
   // -- what is drawn
@@ -132,10 +168,12 @@ export class ClassCorrections extends HTMLElement {
     );
   }
 
-  #form(/** @type {Given} */ { volume, hint }, /** @type {CorrectionsView} */ view) {
+  #form(/** @type {Given} */ { hint }, /** @type {CorrectionsView} */ view) {
     if (!view.may_correct) return html`<p class="quiet">${t("correct-who")}</p>`;
     const { to, only, why } = this.#choice;
     const idle = this.#busy === "";
+    const found = this.#found;
+    const volume = this.#spec() !== null;
     const able = this.#counted !== null && this.#counted.refused === "";
     const of = /** @type {Array<[string, string]>} */ ([
       [DELIVERED, t("correct-delivered")],
@@ -158,7 +196,17 @@ export class ClassCorrections extends HTMLElement {
             @input=${(/** @type {Event} */ event) => (this.#choice.why = targetOf(event).value)}
         /></label>
       </div>
-      ${volume ? nothing : html`<p class="quiet">${hint}</p>`}
+      ${
+        found
+          ? alikeFields(found, {
+              change: (next) => this.#mean({ ...found, ...next }),
+              look: (p) => this.dispatchEvent(new CustomEvent("look", { detail: p })),
+              forget: () => this.dispatchEvent(new Event("forget")),
+            })
+          : volume
+            ? nothing
+            : html`<p class="quiet">${hint}</p>`
+      }
       <div class="buttons">
         <button type="button" ?disabled=${!volume || !idle} @click=${() => this.#count()}>
           ${t("correct-count")}

@@ -68,6 +68,25 @@ export interface AlignmentView {
   iterations: number;
 }
 
+export interface AlikeClusterView {
+  origin_m: [number, number, number];
+  columns: Array<[number, number, number, number]>;
+  low_m: [number, number, number];
+  high_m: [number, number, number];
+  points: number;
+  difference: number;
+  over_ground_m: number | null;
+  planarity: number;
+  seen_through: number | null;
+}
+
+export interface AlikeView {
+  only: string;
+  edge_m: number;
+  clusters: Array<AlikeClusterView>;
+  left_out: number;
+}
+
 export interface AlternativePath {
   frames: Array<number>;
   residual_m: number;
@@ -204,6 +223,19 @@ export interface ClassChoice {
   points: number;
   percent: number;
   delivered: boolean;
+}
+
+export interface ClusterSpec {
+  origin_m: [number, number, number];
+  columns: Array<[number, number, number, number]>;
+  u?: [number, number, number];
+  v?: [number, number, number];
+}
+
+export interface ClustersSpec {
+  shape: "clusters";
+  clusters: Array<ClusterSpec>;
+  edge_m: number;
 }
 
 export interface CommentView {
@@ -750,6 +782,13 @@ export interface LidarSlicesView {
   name: string;
   before: Array<[number, number]>;
   after: Array<[number, number]>;
+}
+
+export interface LikeSpec {
+  place_m: [number, number, number];
+  to: string;
+  only?: Array<string>;
+  map: string;
 }
 
 export interface LimitsSpec {
@@ -2531,6 +2570,11 @@ export interface Operations {
     path: { project_id: string };
     body: CorrectionSpec;
     response: CorrectionCount;
+  };
+  "POST /api/projects/{project_id}/review/classes/like": {
+    path: { project_id: string };
+    body: LikeSpec;
+    response: AlikeView;
   };
   "POST /api/projects/{project_id}/review/decisions": {
     path: { project_id: string };

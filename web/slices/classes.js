@@ -1,7 +1,7 @@
 // Correct classes: a polygon in the slice, as thick as it, or a brush, gives its points another
 // class.
 
-import { html, nothing, render, targetOf } from "../shared/dom.js";
+import { detailOf, html, nothing, render, targetOf } from "../shared/dom.js";
 import "../shared/class_corrections.js";
 import { t } from "../shared/texts.js";
 import { RADII_M } from "../shared/brush_limits.js";
@@ -33,7 +33,7 @@ export function prismOf(state, corners) {
  * @param {SlicesPage} page
  * @returns {Panel}
  */
-export function classesPanel(host, { id, state, outline, brush }) {
+export function classesPanel(host, { id, state, outline, brush, like, point }) {
   const map = { key: "", known: false };
 
   function draw() {
@@ -43,6 +43,7 @@ export function classesPanel(host, { id, state, outline, brush }) {
       const m = Number(targetOf(event).value);
       brush({ radius: Math.min(RADII_M.most, Math.max(RADII_M.least, m || radius)) });
     };
+    const liking = like();
     const earlier = state().source !== "";
     const button = (
       /** @type {string} */ text,
@@ -77,6 +78,11 @@ export function classesPanel(host, { id, state, outline, brush }) {
                     disabled: !strokes.length,
                   })}
                 </div>
+                <div class="buttons">
+                  ${button(t("all-like-this"), () => like({ on: !liking.on }), {
+                    pressed: liking.on,
+                  })}
+                </div>
                 <div class="correction-fields">
                   <label
                     ><span>${t("brush-radius")}</span
@@ -96,10 +102,15 @@ export function classesPanel(host, { id, state, outline, brush }) {
             map: map.key,
             volume: earlier ? null : (brushVolume(state(), brush()) ?? prismOf(state(), corners)),
             hint: t("polygon-hint"),
+            place: earlier ? null : liking.place,
           }}
+          @alike=${(/** @type {Event} */ event) => like({ boxes: detailOf(event) })}
+          @look=${(/** @type {Event} */ event) => point(detailOf(event))}
+          @forget=${() => like({ place: null, boxes: [] })}
           @applied=${() => {
             outline("clear");
             brush({ on: false, strokes: [] });
+            like({ place: null, boxes: [] });
           }}
         ></class-corrections>`,
       host,

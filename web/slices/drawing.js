@@ -10,6 +10,7 @@ import { t, written } from "../shared/texts.js";
 import { noBrush } from "./brush.js";
 import { cutText } from "./captions.js";
 import { besideFields, controls } from "./controls.js";
+import { noLiking } from "./liking.js";
 import { legend } from "./legend.js";
 import { SURFACES, parse } from "./state.js";
 import { mapQuery } from "./to_map.js";
@@ -38,6 +39,7 @@ export const page = {
   picked: /** @type {PickView | null} */ (null),
   outline: /** @type {import("./findings.js").Outline} */ ({ corners: [], drawing: false }),
   brush: noBrush(), // what is painted gets another class
+  like: noLiking(), // a thing, and all that are like it
   reading: "", // what is known of the picked points
   mode: /** @type {"split" | "swipe"} */ ("split"),
   swipe: 50, // where the second slice begins [%]

@@ -19,6 +19,8 @@ import { brushMarks, brushOf } from "./brush.js";
 import { distanceText, imageText, lengthText, planeText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
 import { help } from "./help.js";
+import { boxMarks, likingOf } from "./liking.js";
+import { nextColor, nextSurface } from "./next_choice.js";
 import { isPlan, showPlan } from "./plan.js";
 import { endsOf, stretchMarks, timesOf } from "./stretch_mark.js";
 import { COLORS, SURFACES, format, moved, planeOf, startOf, parse, unframed } from "./state.js";
@@ -31,7 +33,7 @@ import { drawPage, first, page, second } from "./drawing.js";
 
 /**
  * @import {SliceFacts, SliceImageRequest} from "../shared/http_types"
- * @import {Color, Kind, SliceState, Surface} from "./state.js"
+ * @import {Kind, SliceState} from "./state.js"
  * @import {Place, SliceView} from "./view.js"
  */
 
@@ -168,6 +170,7 @@ async function place(/** @type {Place} */ { u, v, reach }) {
     surface: state.surface,
   });
   if (!answer.found || !facts) return read(t("no-point-here"));
+  if (page.like.on) return like({ on: false, place: answer.p_map, boxes: [] });
   page.picked = answer;
   if (measuring) page.measured = measured.length >= 2 ? [answer] : [...measured, answer];
   mark();
@@ -188,6 +191,7 @@ function mark() {
   const along = shown ? stretchMarks(stretch, shown) : [];
   const marks = [...along, { points: points.map((one) => one.uv), text }, ...outlineMarks()].concat(
     brushMarks(page.brush),
+    boxMarks(page.state, page.like.boxes),
   );
   first.marks = marks;
   second.marks = marks;
@@ -215,7 +219,10 @@ function outline(/** @type {"draw" | "back" | "clear" | undefined} */ action = u
     back: { corners: corners.slice(0, -1), drawing },
     clear: { corners: [], drawing: false },
   }[action];
-  if (page.outline.drawing) brush({ on: false });
+  if (page.outline.drawing) {
+    brush({ on: false });
+    like({ on: false });
+  }
   read(page.outline.drawing ? t("click-corners") : "");
   mark();
   found.show();
@@ -224,6 +231,15 @@ function outline(/** @type {"draw" | "back" | "clear" | undefined} */ action = u
 
 const brush = brushOf(page, [first, second], (on) => {
   if (on && page.outline.drawing) outline("draw");
+  if (on) like({ on: false });
+  mark();
+  found.show();
+});
+
+const like = likingOf(page, (on) => {
+  if (on && page.outline.drawing) outline("draw");
+  if (on) brush({ on: false });
+  read(on ? t("click-thing") : "");
   mark();
   found.show();
 });
@@ -273,13 +289,14 @@ const KEYS = {
   "+": () => thicker(2),
   "=": () => thicker(2),
   "-": () => thicker(0.5),
-  c: () => nextColor(),
+  c: () => change({ color: nextColor(page.state, page.facts), lo: null, hi: null }, { keep: true }),
   m: () => measure(),
   r: () => otherSurface(),
   0: () => showAll(),
   Escape: () => {
     if (page.outline.drawing) outline("draw");
     brush({ on: false });
+    like({ on: false });
     measure(false);
   },
   "?": () => showHelp(),
@@ -294,27 +311,9 @@ const thicker = (/** @type {number} */ times) =>
     { keep: true },
   );
 
-/**
- * The choice after the present one.
- * @template T
- * @param {T[]} choices
- * @param {T} now
- */
-const nextOf = (choices, now) => choices[(choices.indexOf(now) + 1) % choices.length] ?? now;
-
 function otherSurface() {
-  const every = /** @type {Surface[]} */ (Object.keys(SURFACES));
   if (page.facts?.surface === "fitted")
-    change({ surface: nextOf(every, page.state.surface) }, { keep: true });
-}
-
-function nextColor() {
-  const able = /** @type {Color[]} */ (Object.keys(COLORS)).filter(
-    (color) =>
-      (color !== "distance" || page.state.ref) &&
-      (color !== "normalized" || page.facts?.fields.includes("intensity_normalized")),
-  );
-  change({ color: nextOf(able, page.state.color), lo: null, hi: null }, { keep: true });
+    change({ surface: nextSurface(page.state) }, { keep: true });
 }
 
 addEventListener("keydown", (event) => {
@@ -347,6 +346,7 @@ const fillFindings = () =>
     measured: () => page.picked,
     outline,
     brush,
+    like,
   });
 
 async function reload() {

@@ -5,24 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
 from recon4.model.class_corrections import Reclassified, class_named
 from recon4.model.tuning import VOLUMES
 from recon4.model.volumes import Box, Brush, Prism, Sphere, Volume
 from recon4_app.names import Note
+from recon4_app.review.alike_model import ClustersSpec, StrictSpec, Title, Xyz
 from recon4_app.review.model import Finite
 
-Xyz = tuple[Finite, Finite, Finite]
-Title = Annotated[str, Field(max_length=40)]
-"""Title of a class, as ``classes`` of the list of corrections has it."""
 
-
-class _Strict(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class BoxSpec(_Strict):
+class BoxSpec(StrictSpec):
     """A box with any orientation."""
 
     shape: Literal["box"]
@@ -43,7 +36,7 @@ class BoxSpec(_Strict):
         return Box(center_m=self.center_m, size_m=self.size_m, u=self.u, v=self.v)
 
 
-class SphereSpec(_Strict):
+class SphereSpec(StrictSpec):
     """A ball."""
 
     shape: Literal["sphere"]
@@ -60,7 +53,7 @@ class SphereSpec(_Strict):
         return Sphere(center_m=self.center_m, radius_m=self.radius_m)
 
 
-class PrismSpec(_Strict):
+class PrismSpec(StrictSpec):
     """A polygon in a plane, extended along the normal u × v; the plane is level by default."""
 
     shape: Literal["prism"]
@@ -93,7 +86,7 @@ class PrismSpec(_Strict):
         )
 
 
-class BrushSpec(_Strict):
+class BrushSpec(StrictSpec):
     """What a brush painted: all that lies within its radius of a path.
 
     Neighboring places are joined if they are at most a width of the brush apart.
@@ -122,13 +115,15 @@ class BrushSpec(_Strict):
         )
 
 
-class CorrectionSpec(_Strict):
+class CorrectionSpec(StrictSpec):
     """Points in a volume that get another class."""
 
-    volume: Annotated[BoxSpec | SphereSpec | PrismSpec | BrushSpec, Field(discriminator="shape")]
+    volume: Annotated[
+        BoxSpec | SphereSpec | PrismSpec | BrushSpec | ClustersSpec, Field(discriminator="shape")
+    ]
     to: Title
     """The new class."""
-    only: Annotated[list[Title], Field(max_length=20)] = []
+    only: list[Title] = Field(default=[], max_length=20)
     """Only points that have one of these classes; empty = one of those that the map delivers."""
     map: Annotated[str, Field(max_length=64)]
     """Key of the map that the person looks at; 409 if it was made again meanwhile."""

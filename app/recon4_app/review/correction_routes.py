@@ -10,7 +10,7 @@ from fastapi import Path as InPath
 from starlette.concurrency import run_in_threadpool
 
 from recon4.locales.coded import CodedText, coded
-from recon4.model.class_corrections import GIVEN_CLASSES, titles_of
+from recon4.model.class_corrections import GIVEN_CLASSES, ClassCorrection, titles_of
 from recon4.model.classes import CLASSES
 from recon4.review.class_corrections import CorrectionTrial, corrections_in_map, not_in_map
 from recon4.review.decisions import Decision, DecisionKind, fold
@@ -23,6 +23,7 @@ from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.review import correction_work
+from recon4_app.review.alike_model import AlikeView, LikeSpec
 from recon4_app.review.correction_model import (
     CorrectionCount,
     CorrectionSpec,
@@ -60,6 +61,26 @@ async def count_points(
         refused=trial.refused.said(caller.language) if trial.refused else "",
         seq=len(rows),
     )
+
+
+@router.post("/like", dependencies=LOOK, summary="Find all things like one")
+async def find_alike(
+    project_id: str, asked: LikeSpec, server: Server, *, caller: CalledBy
+) -> AlikeView:
+    """Clusters of the same class whose evidence is like that of the picked one.
+
+    Evidence: height, extents, number of cells, height above the ground, planarity, and how many
+    beams see through it. Nothing is changed; the cubes of those that are meant are the volume
+    ``clusters`` of a correction.
+    """
+    picked = asked.picked()  # what has no such class is refused before the request waits
+    rows = await run_in_threadpool(read_rows, server.projects.folder(project_id))
+    artifacts, before = await _looked_at(server, project_id, asked.map, rows=rows)
+    terms = server.slices.terms(project_id, caller.name)
+    data = await caller.wait(
+        server.slices.run_interactive(terms, correction_work.alike, artifacts, picked, before)
+    )
+    return AlikeView.of(correction_work.alike_of(data))
 
 
 @router.post("", status_code=201, dependencies=REVIEW, summary="Correct classes")
@@ -112,17 +133,24 @@ async def _tried(
     rows: list[JournalRow],
 ) -> CorrectionTrial:
     what = asked.reclassified()  # what is no volume is refused before the request waits
-    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    if Path(artifacts["map"]).name != asked.map:
-        raise Conflict(CodedText("map-remade-classes"))
-    summary = await run_in_threadpool(read_summary, server.projects.folder(project_id))
-    decided = fold(row.decision() for row in rows)
-    before = not_in_map(decided, corrections_in_map(summary)).corrections
+    artifacts, before = await _looked_at(server, project_id, asked.map, rows=rows)
     terms = server.slices.terms(project_id, caller.name)
     data = await caller.wait(
         server.slices.run_interactive(terms, correction_work.tried, artifacts, what, before)
     )
     return correction_work.trial_of(data)
+
+
+async def _looked_at(
+    server: ServerParts, project_id: str, key: str, *, rows: list[JournalRow]
+) -> tuple[dict[str, str], tuple[ClassCorrection, ...]]:
+    """Artifacts of the map that a person looks at, and corrections that are not in it yet."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    if Path(artifacts["map"]).name != key:
+        raise Conflict(CodedText("map-remade-classes"))
+    summary = await run_in_threadpool(read_summary, server.projects.folder(project_id))
+    decided = fold(row.decision() for row in rows)
+    return artifacts, not_in_map(decided, corrections_in_map(summary)).corrections
 
 
 def _decide(root: Path, decision: Decision, *, seen_seq: int | None = None) -> None:

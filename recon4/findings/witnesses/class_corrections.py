@@ -25,6 +25,8 @@ class ClassCorrections:
         for one in walk.map.corrections if walk.map else ():
             if not one.points:
                 yield finding(FindingKind.CLASSES_NOT_CORRECTED, Level.CHECK, _values(one))
+            elif one.lost:
+                yield finding(FindingKind.CLASSES_MOVED, Level.CHECK, _values(one))
             elif one.moved_m is not None and one.moved_m > self.told_m:
                 yield finding(FindingKind.CLASSES_MOVED, Level.NOTE, _values(one))
 
@@ -45,4 +47,6 @@ def _values(one: CorrectedClass) -> dict[str, Value]:
     }
     if one.moved_m is not None and one.apart_m is not None:
         values |= {"moved_m": one.moved_m, "apart_m": one.apart_m}
+    if one.lost:
+        values["lost"] = one.lost
     return values | {"bent": not one.applied and one.moved_m is not None}

@@ -495,6 +495,7 @@ MIRROR = Spiegel
 
 CLASSES-MOVED = Klassenkorrektur verschoben
     .text1 = Die Karte hat sich um { LENGTH($moved_m) } verschoben, wo { $who } Punkten die Klasse { $to } gab, nahe x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m, z { DECIMAL($z_m, digits: 1) } m; die Korrektur { $id } folgte ihren Punkten und ändert { COUNT($points) } davon (damals { COUNT($points_then) }).
+    .text2 = { COUNT($lost) } ihrer Gruppen liegen nicht mehr beisammen: sie behalten ihre frühere Klasse.
     .remedy = Die Stelle ansehen; die Korrektur zurücknehmen, wenn andere Punkte gemeint waren.
     .meaning = Eine andere Trajektorie legt die korrigierten Punkte an eine andere Stelle. Das Volumen ging mit.
     .detection = Die Posen, die die Punkte gemessen haben, haben sich gemeinsam um mehr als 5 cm verschoben.

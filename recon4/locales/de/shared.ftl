@@ -218,6 +218,23 @@ class-high-noise = Rauschen, vereinzelt
 class-moving = bewegt
 class-carrier = Träger
 class-reflection = Spiegelung
+alike-finding = Sucht alle gleichartigen…
+alike-things = { $count ->
+    [one] { $count } gleichartiges Ding
+   *[other] { $count } gleichartige Dinge
+  }: { COUNT($points) } Punkte, { $class }
+alike-limit = Höchster Unterschied: { $limit }
+alike-limit-means = 0 = gleich; 1 = so verschieden, wie ein Ding von zwei Seiten aussieht. Verglichen werden Größe, Höhe über dem Boden, Flachheit, und wie viele Strahlen hindurchsehen.
+alike-points = { COUNT($points) } Punkte
+alike-where = x { $x }  y { $y }  z { $z } m
+alike-difference = Unterschied { $difference }
+alike-high = { $m } m hoch
+alike-over = { $m } m über dem Boden
+alike-seen = { $percent } % durchsehen
+alike-show = Zeigen
+alike-show-of = Das Ding bei { $where } zeigen
+alike-left-out = { $count } weitere haben in einer Korrektur keinen Platz.
+alike-forget = Etwas anderes wählen
 correct-counting = Zählt…
 correct-noting = Wird notiert…
 correct-undoing = Wird rückgängig gemacht…

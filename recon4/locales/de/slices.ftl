@@ -373,4 +373,6 @@ remove-polygon = Polygon entfernen
 polygon-hint = Die Ecken eines Polygons um die Punkte anklicken, oder die Punkte mit dem Pinsel anmalen.
 brush = Pinsel
 brush-radius = Radius des Pinsels [m]
+all-like-this = Alle gleichartigen
+click-thing = Ein Ding mit falscher Klasse anklicken
 remove-strokes = Alle Striche entfernen

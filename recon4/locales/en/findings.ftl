@@ -478,6 +478,7 @@ MIRROR = Mirror
 
 CLASSES-MOVED = Correction of classes moved
     .text1 = The map has moved by { LENGTH($moved_m) } where { $who } made points { $to }, near x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m, z { DECIMAL($z_m, digits: 1) } m; the correction { $id } followed its points and changes { COUNT($points) } of them ({ COUNT($points_then) } then).
+    .text2 = { COUNT($lost) } of its clusters no longer lie together: they keep their former class.
     .remedy = Look at the place; withdraw the correction if other points were meant.
     .meaning = Another trajectory put the corrected points elsewhere. The volume moved with them.
     .detection = The poses that measured the points have moved together, by more than 5 cm.

@@ -218,6 +218,23 @@ class-high-noise = high noise
 class-moving = moving
 class-carrier = carrier
 class-reflection = reflection
+alike-finding = Looking for all like it…
+alike-things = { $count ->
+    [one] { $count } thing
+   *[other] { $count } things
+  } alike: { COUNT($points) } points, { $class }
+alike-limit = Most different: { $limit }
+alike-limit-means = 0 = the same; 1 = as different as one thing looks from two sides. Compared are size, height above the ground, flatness, and how many beams see through.
+alike-points = { COUNT($points) } points
+alike-where = x { $x }  y { $y }  z { $z } m
+alike-difference = difference { $difference }
+alike-high = { $m } m high
+alike-over = { $m } m above the ground
+alike-seen = { $percent } % seen through
+alike-show = Show
+alike-show-of = Show the thing at { $where }
+alike-left-out = { $count } further ones have no room in one correction.
+alike-forget = Choose something else
 correct-counting = Counting…
 correct-noting = Noting it…
 correct-undoing = Undoing…

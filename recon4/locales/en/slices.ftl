@@ -373,4 +373,6 @@ remove-polygon = Remove the polygon
 polygon-hint = Click the corners of a polygon around the points, or paint them with the brush.
 brush = Brush
 brush-radius = Radius of the brush [m]
+all-like-this = All like this
+click-thing = Click a thing that has a wrong class
 remove-strokes = Remove all strokes

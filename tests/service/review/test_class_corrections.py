@@ -75,6 +75,36 @@ def test_a_correction_is_counted_made_signed_and_undone(server, root):
     assert delete(server, noted["id"]).status_code == 409
 
 
+def test_all_things_like_one_are_proposed_corrected_in_one_entry_and_made(server, root):
+    tiles = TileSet.open(read_artifacts(root)["map"])
+    place = next(
+        (tile.xyz_m()[k]).tolist()
+        for tile in tiles
+        for k in np.flatnonzero(tile.read(["classification"])["classification"] == 1)[:1]
+    )
+    asked = {"place_m": place, "to": "moving", "map": read_artifacts(root)["map"].name}
+
+    found = server.post("/classes/like", json=asked).json()
+    things = [one for one in found["clusters"] if one["difference"] <= 2.0]
+    clusters = [{"origin_m": one["origin_m"], "columns": one["columns"]} for one in things]
+    volume = {"shape": "clusters", "edge_m": found["edge_m"], "clusters": clusters}
+    answer = corrected(server, root, volume, "moving", only=[found["only"]], why="boxes")
+    assert answer.status_code == 201, answer.text
+    refused = [
+        server.post("/classes/like", json=asked | {"map": "ab"}),
+        server.post("/classes/like", json=asked | {"to": "wall"}),
+    ]
+    remake(root)
+
+    (noted,) = answer.json()["corrections"]
+    assert found["only"] == "unclassified" and found["clusters"][0]["difference"] == 0.0
+    assert noted["points"] == sum(one["points"] for one in things) > 0
+    assert [one.status_code for one in refused] == [409, 422]
+    after = TileSet.open(read_artifacts(root)["map"])
+    assert len(tiles) - len(after) == noted["points"]
+    assert delete(server, noted["id"]).json()["withdrawn"] == [noted["id"]]
+
+
 def test_what_cannot_be_corrected_is_refused_and_nothing_is_noted(server, root):
     away = {"shape": "box", "center_m": [1e4, 0.0, 0.0], "size_m": [1.0, 1.0, 1.0]}
     flat = {"shape": "box", "center_m": [0.0, 0.0, 0.0], "size_m": [1.0, 0.0, 1.0]}

@@ -5,6 +5,7 @@ import json
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.model.alike import PickedThing
 from recon4.model.classes import PointClass
 from recon4.model.volumes import Box, Brush, Prism, Sphere
 from recon4.review.correction_files import read_corrections
@@ -54,7 +55,10 @@ def test_json_has_volumes_of_any_orientation(tmp_path):
         (lambda t: t.replace("sphere,1", "sphere,one"), "line 3: x: expected a number, got 'one'"),
         (lambda t: t.replace(",0.5,,,,,7", ",0,,,,,7"), "line 3: sphere: .*not empty"),
         (lambda t: t.replace("0 0 | 2 0", "0 0 | 2"), "line 4: polygon: expected places"),
-        (lambda t: t.replace("box", "cone"), "line 2: shape: expected box, sphere, prism or brush"),
+        (
+            lambda t: t.replace("box", "cone"),
+            "line 2: shape: expected box, sphere, prism, brush or",
+        ),
         (lambda t: t.replace("box,1", "box,1,1"), "line 2: more cells"),
         (lambda t: t.partition("\n")[0], "expected 1 to 1000 corrections, got 0"),
         (lambda t: t.replace("shape", "form"), "expected the columns shape and to"),
@@ -81,3 +85,16 @@ def test_a_wrong_table_is_refused_with_its_line(change, why, tmp_path):
 def test_wrong_json_is_refused_with_its_place(text, why, tmp_path):
     with pytest.raises(ConfigError, match=why):
         listed(tmp_path, text, "c.json")
+
+
+def test_a_table_and_json_have_all_things_like_one(tmp_path):
+    rows = "shape,x,y,z,alike,to\nlike,1,2,3,0.5,moving\nlike,1,2,3,,7\n"
+    volume = {"shape": "like", "place_m": [1, 2, 3]}
+
+    first, second = listed(tmp_path, rows)
+    (third,) = listed(tmp_path, json.dumps([{"volume": volume, "to": "moving"}]), "c.json")
+
+    assert first.what.picked == PickedThing(place_m=(1.0, 2.0, 3.0), to=PointClass.MOVING)
+    assert [one.what.most_different for one in (first, second, third)] == [0.5, 1.0, 1.0]
+    with pytest.raises(ConfigError, match="line 2: alike: expected 0 to 3, got 9"):
+        listed(tmp_path, rows.replace("0.5", "9"))

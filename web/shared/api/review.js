@@ -4,8 +4,8 @@ import { ApiError, NO_RESPONSE, request, urlOf } from "../http.js";
 
 /**
  * @import {
- *   Approve, CorrectionSpec, Looking, NewAcknowledgment, NewCorrection, NewDecision, NewWork,
- *   PointPairs, PredictedPose, Step
+ *   Approve, CorrectionSpec, LikeSpec, Looking, NewAcknowledgment, NewCorrection, NewDecision,
+ *   NewWork, PointPairs, PredictedPose, Step
  * } from "../http_types"
  */
 
@@ -103,6 +103,15 @@ export const readCorrections = (/** @type {string} */ project_id) =>
  */
 export const countCorrection = (project_id, spec) =>
   request("POST /api/projects/{project_id}/review/classes/count", {
+    path: { project_id },
+    body: spec,
+  });
+/**
+ * @param {string} project_id
+ * @param {LikeSpec} spec
+ */
+export const findAlike = (project_id, spec) =>
+  request("POST /api/projects/{project_id}/review/classes/like", {
     path: { project_id },
     body: spec,
   });
