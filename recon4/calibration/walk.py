@@ -17,7 +17,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.tuning import OBSERVATION
 from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
-from recon4.registration.smoother import dense_trajectory, smooth
+from recon4.registration.walk_steps import dense_trajectory
 from recon4.settings import OdometrySettings
 from recon4.settings.reads import OdometryReads
 from recon4.store.arrays import load_arrays, load_trajectory
@@ -88,7 +88,7 @@ class RecordedWalk:
         """``T_odom_body``, dense, of an odometry that no fixes pull."""
         odometry = Odometry(self.frames.rig, settings, self.frames.imu)
         frames = track(self.frames, progress, what="odometry without GNSS", unit="multiframe")
-        return dense_trajectory(smooth([odometry.push(frame) for frame in frames]))
+        return dense_trajectory(odometry.push(frame) for frame in frames)
 
     def tracked_windows(
         self,
@@ -113,6 +113,6 @@ class RecordedWalk:
             odometry = Odometry(rig, settings, imu)
             steps = [odometry.push(self.frames[row]) for row in part]
             if not any(step.lost for step in steps):
-                dense = dense_trajectory(smooth(steps))
+                dense = dense_trajectory(steps)
                 found.append(cut_window(self.frames, dense, part, points=points))
         return found

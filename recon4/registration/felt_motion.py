@@ -14,9 +14,8 @@ shifts; what the odometry makes of a weak direction it does not use, so both may
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +31,7 @@ from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.motion import imu_in_body
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_imu import FELT
+from recon4.registration.walk_steps import WalkSteps
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 _V = slice(0, 3)
@@ -75,7 +75,7 @@ class _Felt:
 
 
 def felt_motion(
-    steps: Sequence[OdometryStep],
+    steps: WalkSteps,
     trajectory: Trajectory,
     imu: ImuSamples,
     *,
@@ -91,34 +91,31 @@ def felt_motion(
         rig: Where the IMU is.
         accel_noise: Noise density of the specific force [m/s²/√Hz].
     """
-    t_ns = np.array([step.t_mid_ns for step in steps], np.int64)
-    felt = _integrate(t_ns, trajectory, imu, rig=rig)
+    felt = _integrate(steps.column("t_mid_ns"), trajectory, imu, rig=rig)
     if felt is None:
         return None
     return _smoothed(felt, _measurements(steps), accel_noise)
 
 
-def carried(steps: Sequence[OdometryStep], felt: FeltMotion) -> list[OdometryStep]:
-    """The steps with what the accelerometer says of motions that the points hardly observe.
+def carried(steps: WalkSteps, felt: FeltMotion) -> Iterator[tuple[int, OdometryStep]]:
+    """What the accelerometer says of motions that the points hardly observe: steps by number.
 
     Their covariance is at most what it was: where the accelerometer contradicts the odometry, or
     knows no better after a long time, it stays.
     """
-    shifts = np.diff([step.T_odom_body.t for step in steps], axis=0)
-    weak = np.array([is_carried(step) for step in steps[1:]], np.bool_)
-    directions = np.array([step.weak_direction for step in steps[1:]])
-    sd_m = felt.sd_m(shifts, np.where(weak[:, None], directions, 0.0))
-    after = [
-        _with_weak_motion(step, max(sd, FELT.least_sd_m)) if is_weak else step
-        for step, is_weak, sd in zip(steps[1:], weak.tolist(), sd_m.tolist(), strict=True)
-    ]
-    return [*steps[:1], *after]
+    shifts, weak = np.diff(steps.T_odom_body.t, axis=0), are_carried(steps)[1:]
+    directions = steps.column("weak_direction")[1:]
+    sd_m = felt.sd_m(shifts, np.where(weak[:, None], directions, 0.0)).tolist()
+    for row in np.flatnonzero(weak).tolist():
+        yield row + 1, _with_weak_motion(steps[row + 1], max(sd_m[row], FELT.least_sd_m))
 
 
-def is_carried(step: OdometryStep) -> bool:
-    """Whether the points of a multiframe hardly observe its motion along a direction."""
-    known = bool(np.isfinite(step.weak_direction).all()) and not step.lost and not step.bridged
-    return known and not step.stationary and not step.weak_sd_m < OBSERVATION.observed_sd_m
+def are_carried(steps: WalkSteps) -> NDArray[np.bool_]:
+    """Of which multiframes the points hardly observe the motion along a direction, (N,)."""
+    known = np.isfinite(steps.column("weak_direction")).all(axis=1)
+    for name in ("lost", "bridged", "stationary"):
+        known &= ~steps.column(name)
+    return known & ~(steps.column("weak_sd_m") < OBSERVATION.observed_sd_m)
 
 
 def _with_weak_motion(step: OdometryStep, sd_m: float) -> OdometryStep:
@@ -179,16 +176,20 @@ def _missing(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
     return np.asarray((bad[last[1:]] > bad[first[:-1]]) | outside[1:] | outside[:-1])
 
 
-def _measurements(steps: Sequence[OdometryStep]) -> Iterator[tuple[Array, Array, bool]]:
+def _measurements(steps: WalkSteps) -> Iterator[tuple[Array, Array, bool]]:
     """Shift to each multiframe but the first, its covariance, and whether the body stands."""
-    for before, step in pairwise(steps):
+    lost, still = steps.column("lost"), steps.column("stationary")
+    along, piece = steps.column("weak_direction")[1:], steps.column("piece")
+    unknown = lost[1:] | lost[:-1] | steps.column("bridged")[1:] | (piece[1:] != piece[:-1])
+    unknown |= ~np.isfinite(along).all(axis=1)
+    weak = ~(steps.column("weak_sd_m")[1:] < OBSERVATION.observed_sd_m) & ~still[1:]
+    for k, shift_m in enumerate(np.diff(steps.T_odom_body.t, axis=0)):
         cov = FELT.shift_sd_m**2 * np.eye(3)
-        tracked = not (before.lost or step.lost or step.bridged) and step.piece == before.piece
-        if not tracked or not np.isfinite(step.weak_direction).all():
+        if unknown[k]:
             cov = FELT.unknown_m**2 * np.eye(3)
-        elif not step.weak_sd_m < OBSERVATION.observed_sd_m and not step.stationary:
-            cov = cov + FELT.unknown_m**2 * np.outer(step.weak_direction, step.weak_direction)
-        yield step.T_odom_body.t - before.T_odom_body.t, cov, step.stationary and before.stationary
+        elif weak[k]:
+            cov = cov + FELT.unknown_m**2 * np.outer(along[k], along[k])
+        yield shift_m, cov, bool(still[k] and still[k + 1])
 
 
 def _smoothed(
@@ -197,17 +198,18 @@ def _smoothed(
     """Rauch, Tung and Striebel's smoother; the state is velocity, bias, gravity, (9,)."""
     x, P = np.zeros(9), np.diag(np.repeat(FELT.first_sd, 3) ** 2)
     x[8] = -STANDARD_GRAVITY_M_S2
-    filtered: list[tuple[Array, Array]] = []
+    n = len(felt.dt_s)
+    states, covs_of = np.empty((n, 9)), np.empty((n, 9, 9))
     for k, (shift_m, cov, still) in enumerate(measured):
         H = _shift_by_state(felt, k)
         x, P = _updated(x, P, H, z=shift_m - felt.shift[k, :, 0], R=cov)
         if still:
             x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=FELT.at_rest_m_s**2 * np.eye(3))
-        filtered.append((x, P))
-        _, x, P = _ahead(felt, k, filtered[-1], accel_noise=accel_noise)
-    shifts_m, covs = np.zeros((len(filtered), 3)), np.zeros((len(filtered), 3, 3))
-    for k in range(len(filtered) - 1, -1, -1):
-        known = filtered[k]
+        states[k], covs_of[k] = x, P
+        _, x, P = _ahead(felt, k, (x, P), accel_noise=accel_noise)
+    shifts_m, covs = np.zeros((n, 3)), np.zeros((n, 3, 3))
+    for k in range(n - 1, -1, -1):
+        known = states[k], covs_of[k]
         F, *ahead = _ahead(felt, k, known, accel_noise=accel_noise)
         gain = np.linalg.solve(ahead[1], F @ known[1]).T
         x, P = known[0] + gain @ (x - ahead[0]), known[1] + gain @ (P - ahead[1]) @ gain.T

@@ -26,7 +26,7 @@ from recon4.registration.imu_choice import choose_imu, start_and_fastest_turn
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.moving import find_moving, hide_moving
 from recon4.registration.tuning_motion import HYPOTHESES
-from recon4.registration.walk import TrackedWalk, WalkInputs, positions_m, track_walk
+from recon4.registration.walk import TrackedWalk, WalkInputs, track_walk
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,7 +152,7 @@ class _WalkHypotheses:
                 aiding=self._recording.aiding,
                 proof=Proof.HOLDS_WITH_FIXES if by_fixes else Proof.HOLDS,
                 rival=first.tracked.score,
-                suggested_by=positions_m(before.tracked.steps),
+                suggested_by=before.tracked.steps.T_odom_body.t,
             )
             yield tried
             if not trials.last.verdict.wins:

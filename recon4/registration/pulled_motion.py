@@ -6,6 +6,7 @@ the motion of people: near these the motion is known only as well as people walk
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.odometry_figures import MovingFigures
 from recon4.registration.moving import is_crowded_at
 from recon4.registration.step import OdometryStep
+from recon4.registration.walk_steps import WalkSteps
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,9 +34,9 @@ TUNING = PulledTuning()
 
 
 def less_sure(
-    steps: list[OdometryStep], moving: MovingFigures, *, with_imu: bool
-) -> list[OdometryStep]:
-    """The steps of a walk; where moving objects may pull it along, their covariance says so.
+    steps: WalkSteps, moving: MovingFigures, *, with_imu: bool
+) -> Iterator[tuple[int, OdometryStep]]:
+    """Steps whose covariance says that moving objects may pull them along, with their numbers.
 
     Args:
         steps: Of the walk.
@@ -42,17 +44,15 @@ def less_sure(
         with_imu: Whether a gyroscope knows the turns.
     """
     if not moving.is_severe:
-        return steps
-    t_ns = np.array([step.t_mid_ns for step in steps])
+        return
+    t_ns = steps.column("t_mid_ns")
     crowded = is_crowded_at(t_ns, moving, within_ns=TUNING.unseen_ns)
     seconds = 1e-9 * float(np.median(np.diff(t_ns)))
     turn_sd = 0.0 if with_imu else TUNING.along_rad_s
-    return [
-        replace(step, motion_cov=step.motion_cov + _pulled_cov(step, seconds, turn_sd))
-        if c
-        else step
-        for step, c in zip(steps, crowded, strict=True)
-    ]
+    for number in np.flatnonzero(crowded).tolist():
+        step = steps[number]
+        cov = step.motion_cov + _pulled_cov(step, seconds, turn_sd)
+        yield number, replace(step, motion_cov=cov)
 
 
 def _pulled_cov(step: OdometryStep, seconds: float, turn_sd_rad_s: float) -> Array:

@@ -7,61 +7,58 @@ and where each one really ended; both bend poses that were reported already. Equ
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from itertools import pairwise
+from itertools import islice
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, proper, so3_exp, so3_log
-from recon4.model.trajectory import Trajectory
 from recon4.registration.motion import middle_of
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_motion import DENSE, MOVING_START
 
 
-def smooth(steps: list[OdometryStep]) -> list[OdometryStep]:
-    """The steps of an odometry with all that is known of the poses inside them."""
-    return _without_jumps(_begun_in_motion(steps))
+def smooth(steps: Iterable[OdometryStep]) -> Iterator[OdometryStep]:
+    """The steps of an odometry with all that is known of the poses inside them.
+
+    Each is given when the next one is known.
+    """
+    return _without_jumps(_begun_in_motion(iter(steps)))
 
 
-def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
-    """The dense poses of smoothed steps as one trajectory, at most about 100 Hz."""
-    t_ns = np.concatenate([step.t_ns for step in steps])
-    R = np.concatenate([step.T_dense.R for step in steps])
-    t_m = np.concatenate([step.T_dense.t for step in steps])
-    # The first pose of a frame updates the last pose of the frame before.
-    newest = len(t_ns) - 1 - np.unique(t_ns[::-1], return_index=True)[1]
-    t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
-    slot = (t_ns - t_ns[0]) // DENSE.step_ns
-    kept = np.append(np.diff(slot) > 0, True)
-    kept[0] = True
-    return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
-
-
-def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
+def _begun_in_motion(steps: Iterator[OdometryStep]) -> Iterator[OdometryStep]:
     """The steps with a first frame that moves as fast as the second one begins.
 
     The velocity at the start is known only with the second frame, when the poses inside the first
     one were already reported: half a frame of a walk puts them 6 cm beside their places.
     """
-    if len(steps) < 2 or len(steps[0].t_ns) < 2 or steps[1].lost:
-        return steps
-    first, second = steps[:2]
+    begin = list(islice(steps, 2))
+    if len(begin) == 2:
+        yield _moving_first(*begin)
+    yield from begin[-1:]
+    yield from steps
+
+
+def _moving_first(first: OdometryStep, second: OdometryStep) -> OdometryStep:
+    """The first step, which moves as fast as the second one begins."""
+    if len(first.t_ns) < 2 or second.lost:
+        return first
     span_ns = second.t_mid_ns - first.t_mid_ns
     if second.piece != first.piece or not 0 < span_ns <= MOVING_START.longest_ns:
-        return steps
+        return first
     # Both at the end of the first frame; what the IMU measured inside it stays.
     there = (second.T_odom_body.t - first.T_odom_body.t) / (1e-9 * span_ns)
     reported = (first.T_dense.t[-1] - first.T_dense.t[-2]) / (1e-9 * np.diff(first.t_ns)[-1])
     missing = there - reported
     if float(np.linalg.norm(missing)) < MOVING_START.moving_m_s:
-        return steps
+        return first
     since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
     moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
-    return [replace(first, T_dense=moving), *steps[1:]]
+    return replace(first, T_dense=moving)
 
 
-def _without_jumps(steps: list[OdometryStep]) -> list[OdometryStep]:
+def _without_jumps(steps: Iterator[OdometryStep]) -> Iterator[OdometryStep]:
     """The steps with inner poses that lead to where the next one begins.
 
     The next multiframe corrects the pose between both, by up to a millimeter. What it says of the
@@ -69,9 +66,12 @@ def _without_jumps(steps: list[OdometryStep]) -> list[OdometryStep]:
     of every revolution would always meet the same azimuths. How the first multiframe began is not
     known better than by itself.
     """
-    if len(steps) < 3:
-        return steps
-    return [steps[0], *(_led_to(step, after) for step, after in pairwise(steps[1:])), steps[-1]]
+    yield from islice(steps, 1)
+    for step in islice(steps, 1):
+        for after in steps:
+            yield _led_to(step, after)
+            step = after
+        yield step
 
 
 def _led_to(step: OdometryStep, after: OdometryStep) -> OdometryStep:

@@ -6,18 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3
 from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.registration.felt_motion import carried, felt_motion, is_carried
+from recon4.registration.felt_motion import are_carried, carried, felt_motion
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.pulled_motion import less_sure
-from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs
+from recon4.registration.walk_steps import WalkSteps
 from recon4.registration.weak_turns import weak_turns
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
@@ -42,20 +41,24 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     write_tried(out, choice.tried)
     save_trajectory(out / "trajectory.npz", tracked.trajectory)
     used = hypothesis.imu.samples if recording.settings.odometry.use_imu else None
-    steps = tracked.steps if used is None else _carried(recording, tracked, used)
-    _save_steps(out / "steps.npz", less_sure(steps, choice.moving, with_imu=used is not None))
-    return _figures(recording, choice, steps, with_imu=used is not None)
-
-
-def _carried(recording: WalkInputs, tracked: TrackedWalk, imu: ImuSamples) -> list[OdometryStep]:
-    """Steps with what the accelerometer says where the LiDARs hardly observe the motion."""
+    if used is not None:
+        _carry(recording, tracked, used)
     steps = tracked.steps
-    if not any(is_carried(step) for step in steps[1:]):
-        return steps
+    steps.update(less_sure(steps, choice.moving, with_imu=used is not None))
+    _save_steps(out / "steps.npz", steps)
+    return _figures(recording, choice, with_imu=used is not None)
+
+
+def _carry(recording: WalkInputs, tracked: TrackedWalk, imu: ImuSamples) -> None:
+    """Note what the accelerometer says where the LiDARs hardly observe the motion."""
+    steps = tracked.steps
+    if not are_carried(steps)[1:].any():
+        return
     noise = tuned(OdometryTuning, recording.settings.odometry).accel_noise
     rig = recording.frames.rig
     felt = felt_motion(steps, tracked.trajectory, imu, rig=rig, accel_noise=noise)
-    return steps if felt is None else carried(steps, felt)
+    if felt is not None:
+        steps.update(carried(steps, felt))
 
 
 def earlier_walks(odometry: Path) -> EarlierWalks:
@@ -74,9 +77,7 @@ def earlier_walks(odometry: Path) -> EarlierWalks:
     return EarlierWalks(walks, load_record(odometry / MOVING_POINTS, HiddenPoints), positions_m)
 
 
-def _figures(
-    recording: WalkInputs, choice: Choice, steps: list[OdometryStep], *, with_imu: bool
-) -> OdometryFigures:
+def _figures(recording: WalkInputs, choice: Choice, *, with_imu: bool) -> OdometryFigures:
     """Figures of the walk that was chosen; fixes show its heading."""
     tracked, aided = choice.best.tracked, recording.aiding is not None
     frames, imu = recording.frames, choice.best.hypothesis.imu
@@ -88,7 +89,7 @@ def _figures(
         imu_faults=tracked.estimate.faults if tracked.estimate else (),
         heights=tuple(ride.doubt for ride in _rides(choice, frames.rig)) if with_imu else (),
         gnss=aided,
-        turns=() if aided else weak_turns(steps, with_imu=with_imu),
+        turns=() if aided else weak_turns(tracked.steps, with_imu=with_imu),
         moving=choice.moving,
         tried=choice.tried,
     )
@@ -99,30 +100,30 @@ def _rides(choice: Choice, rig: Rig) -> list[UnseenRide | HeightContradiction]:
     imu, tracked = choice.best.hypothesis.imu.samples, choice.best.tracked
     if imu is None:
         return []
-    lost_ns = np.array([step.t_mid_ns for step in tracked.steps if step.lost], np.int64)
+    lost_ns = tracked.steps.column("t_mid_ns")[tracked.steps.column("lost")]
     return unseen_rides(tracked.trajectory, imu, rig, lost_ns=lost_ns)
 
 
-def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
-    T = SE3.stack(step.T_odom_body for step in steps)
+def _save_steps(path: Path, steps: WalkSteps) -> None:
+    T = steps.T_odom_body
     np.savez(
         path,
-        frame_id=np.array([s.frame_id for s in steps]),
-        t_mid_ns=np.array([s.t_mid_ns for s in steps], np.int64),
+        frame_id=steps.column("frame_id"),
+        t_mid_ns=steps.column("t_mid_ns"),
         quat_xyzw=T.quat_xyzw(),
         t_m=T.t,
-        error_m=np.array([s.error_m for s in steps]),
-        match_ratio=np.array([s.match_ratio for s in steps]),
-        rounds=np.array([s.rounds for s in steps]),
-        converged=np.array([s.converged for s in steps]),
-        degeneracy=np.array([s.degeneracy for s in steps]),
-        prediction_offset_m=np.array([s.prediction_offset_m for s in steps]),
-        lost=np.array([s.lost for s in steps]),
-        piece=np.array([s.piece for s in steps], np.int64),
-        bridged=np.array([s.bridged for s in steps]),
-        motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
-        weak_direction=np.array([s.weak_direction for s in steps]).reshape(-1, 3),
-        stationary=np.array([s.stationary for s in steps]),
-        weak_sd_m=np.array([s.weak_sd_m for s in steps]),
-        weak_motion_sd_m=np.array([s.weak_motion_sd_m for s in steps]),
+        error_m=steps.column("error_m"),
+        match_ratio=steps.column("match_ratio"),
+        rounds=steps.column("rounds"),
+        converged=steps.column("converged"),
+        degeneracy=steps.column("degeneracy"),
+        prediction_offset_m=steps.column("prediction_offset_m"),
+        lost=steps.column("lost"),
+        piece=steps.column("piece"),
+        bridged=steps.column("bridged"),
+        motion_cov=steps.column("motion_cov"),
+        weak_direction=steps.column("weak_direction"),
+        stationary=steps.column("stationary"),
+        weak_sd_m=steps.column("weak_sd_m"),
+        weak_motion_sd_m=steps.column("weak_motion_sd_m"),
     )

@@ -176,6 +176,8 @@ class DenseTuning(Struct, frozen=True, kw_only=True):
     most_turn_rad: float = 2e-3
     most_shift_m: float = 5e-3
     """A larger jump from one multiframe to the next is a contradiction, and stays where it is."""
+    block: int = 8192
+    """Steps of a walk, and their dense poses, in one piece of memory (6 and 9 MB)."""
 
 
 DENSE = DenseTuning()

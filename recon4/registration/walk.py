@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,9 +24,10 @@ from recon4.registration.motion import MotionState
 from recon4.registration.moving import StandingFrames, find_moving
 from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
-from recon4.registration.smoother import dense_trajectory, smooth
+from recon4.registration.smoother import smooth
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_motion import REPORTED_POSES
+from recon4.registration.walk_steps import DensePoses, WalkSteps
 from recon4.settings.reads import OdometryReads
 
 
@@ -63,7 +64,7 @@ class WalkInputs:
 class TrackedWalk:
     """Odometry of all multiframes, and what it showed of IMU and moving objects."""
 
-    steps: list[OdometryStep]
+    steps: WalkSteps
     trajectory: Trajectory
     """``T_odom_body``, dense."""
     score: Score
@@ -79,7 +80,7 @@ class TrackedWalk:
     @property
     def pieces(self) -> NDArray[np.int64]:
         """Number of the piece of each multiframe, -1 = lost, (N,)."""
-        return np.array([-1 if step.lost else step.piece for step in self.steps], np.int64)
+        return _pieces(self.steps)
 
 
 def track_walk(recording: WalkInputs, hypothesis: Hypothesis) -> TrackedWalk:
@@ -90,32 +91,33 @@ def track_walk(recording: WalkInputs, hypothesis: Hypothesis) -> TrackedWalk:
     )
     if isinstance(odometry, Odometry) and hypothesis.imu.known is not None:
         odometry.remember_imu(hypothesis.imu.known)
-    steps = smooth(_register(frames, odometry, recording.progress))
-    trajectory = dense_trajectory(steps)
-    pieces = np.array([-1 if step.lost else step.piece for step in steps], np.int64)
+    steps, poses = WalkSteps(), DensePoses()
+    for step in smooth(_register(frames, odometry, recording.progress)):
+        steps.append(step)
+        poses.add(step)
+    trajectory = poses.trajectory()
     return TrackedWalk(
         steps,
         trajectory,
         _score(steps, trajectory, hypothesis),
-        find_moving(recording.frames, trajectory, pieces),
+        find_moving(recording.frames, trajectory, _pieces(steps)),
         odometry.imu_state if isinstance(odometry, Odometry) else None,
     )
 
 
-def _score(steps: list[OdometryStep], trajectory: Trajectory, hypothesis: Hypothesis) -> Score:
-    aiding, before, after = hypothesis.aiding, hypothesis.suggested_by, positions_m(steps)
+def _pieces(steps: WalkSteps) -> NDArray[np.int64]:
+    return np.where(steps.column("lost"), -1, steps.column("piece"))
+
+
+def _score(steps: WalkSteps, trajectory: Trajectory, hypothesis: Hypothesis) -> Score:
+    aiding, before, after = hypothesis.aiding, hypothesis.suggested_by, steps.T_odom_body.t
     return Score(
         multiframes=len(steps),
-        lost=sum(step.lost for step in steps),
-        residuals_m=np.array([step.error_m for step in steps]),
+        lost=int(np.count_nonzero(steps.column("lost"))),
+        residuals_m=steps.column("error_m"),
         contradicted=None if aiding is None else aiding.rejected_ratio(trajectory),
         moved_m=None if before is None else _moved_m(before, after),
     )
-
-
-def positions_m(steps: Sequence[OdometryStep]) -> Array:
-    """Positions in the middle of the multiframes [m], (N, 3)."""
-    return SE3.stack(step.T_odom_body for step in steps).t
 
 
 def _moved_m(a: Array, b: Array) -> float:
@@ -125,23 +127,23 @@ def _moved_m(a: Array, b: Array) -> float:
 
 def _register(
     frames: RecordedFrames, odometry: Odometry | LineOdometry, progress: Progress
-) -> list[OdometryStep]:
+) -> Iterator[OdometryStep]:
     """Register all multiframes in order, and report the growing trajectory."""
-    steps: list[OdometryStep] = []
-    for frame in track(frames, progress, what="odometry", unit="multiframe"):
+    shown: list[OdometryStep] = []
+    tracked = track(frames, progress, what="odometry", unit="multiframe")
+    for number, frame in enumerate(tracked, start=1):
         step = odometry.push(frame)
         if step.lost:
             progress.event(TrackingLost(frame_id=step.frame_id, t_ns=step.t_mid_ns))
-        steps.append(step)
-        if len(steps) % (REPORTED_POSES.every * REPORTED_POSES.at_once) == 0:
-            _report_poses(
-                steps[-REPORTED_POSES.every * REPORTED_POSES.at_once :: REPORTED_POSES.every],
-                progress,
-            )
-    return steps
+        if number % REPORTED_POSES.every == 1 % REPORTED_POSES.every:
+            shown.append(step)
+        if number % (REPORTED_POSES.every * REPORTED_POSES.at_once) == 0:
+            _report_poses(shown, progress)
+            shown.clear()
+        yield step
 
 
-def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
+def _report_poses(steps: Sequence[OdometryStep], progress: Progress) -> None:
     """Report some poses as an event, for a display of the growing trajectory."""
     T = SE3.stack(step.T_odom_body for step in steps)
     quaternions = np.round(T.quat_xyzw(), 5).tolist()

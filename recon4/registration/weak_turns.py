@@ -21,9 +21,10 @@ from recon4.model.tuning import OBSERVATION
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_matching import DEGENERACY
 from recon4.registration.tuning_motion import WEAK_TURNS
+from recon4.registration.walk_steps import WalkSteps
 
 
-def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDoubt, ...]:
+def weak_turns(steps: WalkSteps, *, with_imu: bool) -> tuple[TurnDoubt, ...]:
     """Find the stretches of `OBSERVATION.weak_s` or more, in order of time.
 
     Args:
@@ -32,7 +33,8 @@ def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDo
     """
     if len(steps) < 2:
         return ()
-    t_s = 1e-9 * (np.array([step.t_mid_ns for step in steps]) - steps[0].t_mid_ns)
+    t_ns = steps.column("t_mid_ns")
+    t_s = 1e-9 * (t_ns - t_ns[0])
     rows = np.flatnonzero([_is_weak(step) for step in steps])
     runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > WEAK_TURNS.bridged_s) + 1)
     rate = WEAK_TURNS.rate_sd_rad_s if with_imu else WEAK_TURNS.free_rate_sd_rad_s

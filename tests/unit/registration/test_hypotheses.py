@@ -15,6 +15,7 @@ from recon4.registration.hypothesis import Hypothesis, ImuAssumption
 from recon4.registration.imu_choice import AS_RECORDED
 from recon4.registration.pulled_motion import less_sure
 from recon4.registration.walk import TrackedWalk, WalkInputs, track_walk
+from recon4.registration.walk_steps import WalkSteps
 from recon4.settings import Settings
 from tests.unit.registration.test_moving import GROUP, ROWS, Walk
 
@@ -105,10 +106,10 @@ def test_where_the_rest_does_not_hold_it_the_trajectory_is_as_unsure_as_people_w
     spread = [replace(s, t_mid_ns=s.t_mid_ns + 500_000_000 * k) for k, s in enumerate(made)]
     moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.NOT_HELD)
 
-    sure, unsure = (
-        np.array([step.motion_cov for step in steps])
-        for steps in (spread, less_sure(spread, moving, with_imu=False))
-    )
+    steps = WalkSteps(spread)
+    sure = steps.column("motion_cov")
+    steps.update(less_sure(steps, moving, with_imu=False))
+    unsure = steps.column("motion_cov")
 
     added = np.sqrt(np.einsum("nii->ni", unsure - sure))
     crowded = np.array([s.t_mid_ns - spread[0].t_mid_ns for s in spread]) <= 10_000_000_000
@@ -121,4 +122,4 @@ def test_what_was_left_out_makes_nothing_less_sure() -> None:
     steps = tracked_with_all(WithoutImu(seconds=1.0)).steps
     moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.LEFT_OUT)
 
-    assert less_sure(steps, moving, with_imu=False) is steps
+    assert not list(less_sure(steps, moving, with_imu=False))

@@ -8,7 +8,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.registration import imu_strategy as module
 from recon4.registration.moving_start import starting_velocity
 from recon4.registration.odometry import Odometry
-from recon4.registration.smoother import dense_trajectory, smooth
+from recon4.registration.walk_steps import dense_trajectory
 from recon4.settings import Settings
 
 FIRST = 25
@@ -60,7 +60,7 @@ def test_poses_inside_the_first_frame_move_too(office_frames, office_walk):
     odometry = Odometry(office_frames.rig, Settings(), office_frames.imu)
     steps = [odometry.push(office_frames[k]) for k in range(FIRST, FIRST + 4)]
 
-    dense = dense_trajectory(smooth(steps))
+    dense = dense_trajectory(steps)
 
     true = read_tum(office_walk / "truth.tum").at(dense.t_ns)
     middle = int(np.searchsorted(dense.t_ns, steps[1].t_mid_ns))
@@ -75,6 +75,6 @@ def test_a_first_frame_that_stands_stays_as_it_was_reported(office_frames):
     odometry = Odometry(office_frames.rig, Settings(), office_frames.imu)
     steps = [odometry.push(office_frames[k]) for k in range(3)]
 
-    dense = dense_trajectory(smooth(steps))
+    dense = dense_trajectory(steps)
 
     np.testing.assert_array_equal(dense.T_a_b.t[0], steps[0].T_dense.t[0])

@@ -12,9 +12,9 @@ from recon4.registration.line_odometry import LineOdometry, averaged
 from recon4.registration.make_odometry import make_odometry
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import Registration, StopReason
-from recon4.registration.smoother import dense_trajectory, smooth
 from recon4.registration.stage import run_odometry
 from recon4.registration.walk import WalkInputs
+from recon4.registration.walk_steps import dense_trajectory
 from recon4.settings import Settings, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from tests.room_walks import FRAME_NS, T0_NS
@@ -336,7 +336,7 @@ def test_line_odometry_loses_an_empty_frame():
 def test_dense_poses_are_thinned_but_ends_stay(stroll):
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll.frames[:3])
 
-    dense = dense_trajectory(smooth(steps))
+    dense = dense_trajectory(steps)
 
     assert dense.t_ns[0] == T0_NS
     assert dense.t_ns[-1] == T0_NS + 3 * FRAME_NS
@@ -385,7 +385,7 @@ def test_a_gap_in_the_recording_is_bridged(stroll):
 
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), frames)
 
-    dense = dense_trajectory(smooth(steps))
+    dense = dense_trajectory(steps)
     assert steps[5].t_ns[0] <= frames[5].t_ns
     assert steps[5].t_ns[-1] == frames[5].t_ns + FRAME_NS
     assert not any(step.lost for step in steps)

@@ -15,6 +15,7 @@ from recon4.registration.degeneracy import of_rigid_pose, weakest_twist
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_matching import DEGENERACY
+from recon4.registration.walk_steps import WalkSteps
 from recon4.registration.weak_turns import weak_turns
 
 CENTER = np.array([0.5, 3.0, 0.0])
@@ -48,7 +49,8 @@ def step(k, *, weakest, at_m, lost=False, stationary=False):
     pose = SE3(np.eye(3), np.asarray(at_m, float))
     twist, sd_m, typical_m, information = weakest
     return OdometryStep(
-        frame_id=k, t_mid_ns=100_000_000 * k, T_odom_body=pose, t_ns=np.array([0]), T_dense=pose,
+        frame_id=k, t_mid_ns=100_000_000 * k, T_odom_body=pose,
+        t_ns=np.array([0]), T_dense=SE3.stack([pose]),
         error_m=0.01, match_ratio=0.9, rounds=3, converged=True, degeneracy=0.1,
         prediction_offset_m=0.0, lost=lost, motion_cov=np.zeros((6, 6)),
         weak_twist=twist, weak_twist_sd_m=sd_m, typical_m=typical_m,
@@ -94,7 +96,7 @@ def test_the_information_on_a_turn_does_not_depend_on_the_number_of_points():
 
 
 def test_the_stretch_is_found_with_its_axis_and_its_error():
-    (found,) = weak_turns(walk(100), with_imu=True)
+    (found,) = weak_turns(WalkSteps(walk(100)), with_imu=True)
 
     assert (found.start_s, found.end_s) == (0.0, pytest.approx(9.9))
     np.testing.assert_allclose(np.abs(found.axis), [0.0, 0.0, 1.0], atol=1e-9)
@@ -103,7 +105,7 @@ def test_the_stretch_is_found_with_its_axis_and_its_error():
         turn_finding(found, Level.CHECK)
     )
     assert "turned by ± 4.0° (2σ)" in text_of(turn_finding(found, Level.CHECK))
-    (free,) = weak_turns(walk(100), with_imu=False)
+    (free,) = weak_turns(WalkSteps(walk(100)), with_imu=False)
     assert free.rate_sd_rad_s == pytest.approx(10.0 * found.rate_sd_rad_s)
 
 
@@ -128,7 +130,7 @@ def test_the_stretch_is_found_with_its_axis_and_its_error():
     ],
 )
 def test_nothing_is_said_of_other_walks(steps):
-    assert weak_turns(steps, with_imu=True) == ()
+    assert weak_turns(WalkSteps(steps), with_imu=True) == ()
 
 
 def test_nothing_observed_has_no_weakest_motion():
@@ -139,7 +141,7 @@ def test_nothing_observed_has_no_weakest_motion():
 
 def test_poses_know_how_far_the_turn_may_move_them():
     steps = walk(100)
-    found = weak_turns(steps, with_imu=True)
+    found = weak_turns(WalkSteps(steps), with_imu=True)
     poses = Trajectory(
         np.array([one.t_mid_ns for one in steps]), SE3.stack(one.T_odom_body for one in steps)
     )
