@@ -23,6 +23,10 @@ SHOWN = """() => [document.title, ...[...document.querySelectorAll("body *:not(s
 ROWS = """() => new Set([...document.querySelectorAll("#tools button")]
   .filter((one) => one.checkVisibility()).map((one) => one.offsetTop)).size"""
 """Rows of the tool bar of *Slices*."""
+CUT = """() => [...document.querySelectorAll(".bar *")]
+  .filter((one) => one.clientWidth && one.scrollWidth > one.clientWidth + 1)
+  .map((one) => one.textContent)"""
+"""What does not fit into the head of a page."""
 OF_THE_PAGE = {
     "review": ("Prüfung von office · recon4", "#pair h2", "Multiframes"),
     "map": ("Karte · office · recon4", "#status .shown", "Punkten"),
@@ -62,6 +66,11 @@ def test_a_german_page_has_no_english_text(server, page, name):
 
     if name == "slices":
         assert page.evaluate(ROWS) == 1
+    if name != "review":
+        page.set_viewport_size({"width": 1024, "height": 500})
+        page.keyboard.press("?")
+        assert page.locator("#help").evaluate("(one) => one.scrollTop") == 0
+        assert page.evaluate(CUT) == []
     assert len(english) > 200
     assert sorted(english & set(page.evaluate(SHOWN))) == []
     if name != "map":  # its bar is as high as its window allows

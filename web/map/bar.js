@@ -164,7 +164,7 @@ export function drawStatus(element, { points, rested, scale }) {
 
 export const drawHelp = (/** @type {HTMLElement} */ dialog) =>
   render(
-    html`<h2 id="help-title">${t("keys")}</h2>
+    html`<h2 id="help-title" tabindex="-1" autofocus>${t("keys")}</h2>
       <dl class="keys">
         ${KEYS.map(
           ([key, text]) =>
