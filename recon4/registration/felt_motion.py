@@ -7,14 +7,21 @@ Kalman smoother over velocity ``v``, bias ``b`` and gravity ``g``, with the spec
     v(k+1) = v(k) + ∫ (R (f - b) + g) ds
     p(k+1) = p(k) + v(k) dt + ∬ (R (f - b) + g) ds²
 
-measures the shift of each multiframe along the directions that its points observe, and leaves out
-the others. Of the odometry it uses the attitude ``R``, which a gyroscope knows, and the observed
-shifts; what the odometry makes of a weak direction it does not use, so both may be compared.
+measures the shift of each multiframe. Along its weak direction ``d`` the points may say something
+wrong, the more the weaker they observe it (``σ = weak_sd_m``, the larger one of both ends), and
+the same for about a second:
+
+    z(k) = p(k+1) - p(k) + dt s(k) d dᵀ u(k) + noise,   s = ½ v₀ (σ / σ₀)²
+    u(k+1) = ρ u(k) + noise of 1 - ρ²,   ρ = exp(-dt / τ) min(s(k), s(k+1)) / max(s(k), s(k+1))
+
+with the speed ``v₀`` of a carrier and the ``σ₀`` of `WEAK_MOTION`. Two shifts share at most the
+smaller one of their errors. Where nothing observes ``d`` that leaves its shift out: what the
+odometry makes of it does not count, so both may be compared.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,10 +38,11 @@ from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.motion import imu_in_body
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_imu import FELT
+from recon4.registration.tuning_motion import WEAK_MOTION
 from recon4.registration.walk_steps import WalkSteps
 from recon4.units import STANDARD_GRAVITY_M_S2
 
-_V = slice(0, 3)
+_V, _PULLED = slice(0, 3), slice(9, 12)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,6 +53,9 @@ class FeltMotion:
     """(N - 1, 3)."""
     cov: Array
     """[m²], (N - 1, 3, 3)."""
+    pulled_sd_m: Array
+    """How wrong the shifts of the odometry are along the weak direction, as far as the
+    accelerometer shows it: see `_MeasuredShifts.pulled_m` [m], (N - 1,)."""
     per_second: int
     """Multiframes in a second."""
 
@@ -94,20 +105,26 @@ def felt_motion(
     felt = _integrate(steps.column("t_mid_ns"), trajectory, imu, rig=rig)
     if felt is None:
         return None
-    return _smoothed(felt, _measurements(steps), accel_noise)
+    return _smoothed(felt, _measured(steps), accel_noise)
 
 
 def carried(steps: WalkSteps, felt: FeltMotion) -> Iterator[tuple[int, OdometryStep]]:
     """What the accelerometer says of motions that the points hardly observe: steps by number.
 
     Their covariance is at most what it was: where the accelerometer contradicts the odometry, or
-    knows no better after a long time, it stays.
+    knows no better after a long time, it stays. That of a step whose points observe all directions
+    is at least what they pull it along by.
     """
     shifts, weak = np.diff(steps.T_odom_body.t, axis=0), are_carried(steps)[1:]
     directions = steps.column("weak_direction")[1:]
     sd_m = felt.sd_m(shifts, np.where(weak[:, None], directions, 0.0)).tolist()
-    for row in np.flatnonzero(weak).tolist():
-        yield row + 1, _with_weak_motion(steps[row + 1], max(sd_m[row], FELT.least_sd_m))
+    pulled = ~weak & (felt.pulled_sd_m > 0.0) & np.isfinite(directions).all(axis=1)
+    for row in np.flatnonzero(weak | pulled).tolist():
+        step = steps[row + 1]
+        if weak[row]:
+            yield row + 1, _with_weak_motion(step, max(sd_m[row], FELT.least_sd_m))
+        else:
+            yield row + 1, _pulled(step, float(felt.pulled_sd_m[row]))
 
 
 def are_carried(steps: WalkSteps) -> NDArray[np.bool_]:
@@ -120,12 +137,24 @@ def are_carried(steps: WalkSteps) -> NDArray[np.bool_]:
 
 def _with_weak_motion(step: OdometryStep, sd_m: float) -> OdometryStep:
     along = step.weak_direction
-    before_m = float(np.sqrt(along @ step.motion_cov[TRANSLATION, TRANSLATION] @ along))
+    before_m = _sd_along(step, along)
     ratio = min(sd_m / max(before_m, FELT.least_sd_m), 1.0)
     scale = np.eye(6)
     scale[TRANSLATION, TRANSLATION] -= (1.0 - ratio) * np.outer(along, along)
     cov = scale @ step.motion_cov @ scale
     return replace(step, motion_cov=cov, weak_motion_sd_m=ratio * before_m)
+
+
+def _pulled(step: OdometryStep, sd_m: float) -> OdometryStep:
+    along = step.weak_direction
+    cov = step.motion_cov.copy()
+    more = max(sd_m**2 - _sd_along(step, along) ** 2, 0.0)
+    cov[TRANSLATION, TRANSLATION] += more * np.outer(along, along)
+    return replace(step, motion_cov=cov, weak_motion_sd_m=sd_m)
+
+
+def _sd_along(step: OdometryStep, along: Array) -> float:
+    return float(np.sqrt(along @ step.motion_cov[TRANSLATION, TRANSLATION] @ along))
 
 
 def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig) -> _Felt | None:
@@ -176,70 +205,121 @@ def _missing(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
     return np.asarray((bad[last[1:]] > bad[first[:-1]]) | outside[1:] | outside[:-1])
 
 
-def _measurements(steps: WalkSteps) -> Iterator[tuple[Array, Array, bool]]:
-    """Shift to each multiframe but the first, its covariance, and whether the body stands."""
-    lost, still = steps.column("lost"), steps.column("stationary")
-    along, piece = steps.column("weak_direction")[1:], steps.column("piece")
+@dataclass(frozen=True, slots=True, eq=False)
+class _MeasuredShifts:
+    """What the odometry measures of the shift to each multiframe but the first."""
+
+    shift_m: Array
+    """(K, 3)."""
+    cov: Array
+    """Of errors that no other shift shares [m²], (K, 3, 3)."""
+    pulled_m: Array
+    """Standard deviation of those that neighbors share, along one direction, (K, 3)."""
+    still: NDArray[np.bool_]
+    """Whether the body stands, (K,)."""
+
+    def shared(self, k: int, dt_s: float) -> float:
+        """Correlation of the errors ``pulled_m`` of a shift and of the next: 0..1.
+
+        What both share is at most the smaller one.
+        """
+        if k + 1 == len(self.pulled_m):
+            return 0.0
+        smaller, larger = sorted(np.linalg.norm(self.pulled_m[k : k + 2], axis=1).tolist())
+        return float(np.exp(-dt_s / FELT.pulled_s)) * smaller / larger if larger else 0.0
+
+
+def _measured(steps: WalkSteps) -> _MeasuredShifts:
+    shifts_m, along = np.diff(steps.T_odom_body.t, axis=0), steps.column("weak_direction")
+    lost, still, piece = (steps.column(name) for name in ("lost", "stationary", "piece"))
+    finite = np.isfinite(along).all(axis=1)
     unknown = lost[1:] | lost[:-1] | steps.column("bridged")[1:] | (piece[1:] != piece[:-1])
-    unknown |= ~np.isfinite(along).all(axis=1)
-    weak = ~(steps.column("weak_sd_m")[1:] < OBSERVATION.observed_sd_m) & ~still[1:]
-    for k, shift_m in enumerate(np.diff(steps.T_odom_body.t, axis=0)):
-        cov = FELT.shift_sd_m**2 * np.eye(3)
-        if unknown[k]:
-            cov = FELT.unknown_m**2 * np.eye(3)
-        elif weak[k]:
-            cov = cov + FELT.unknown_m**2 * np.outer(along[k], along[k])
-        yield shift_m, cov, bool(still[k] and still[k + 1])
+    unknown |= ~finite[1:]
+    sd_m = np.where(unknown, FELT.unknown_m, FELT.shift_sd_m)
+    covs = sd_m[:, None, None] ** 2 * np.eye(3)
+    pulled_m = _pulled_m(steps, finite)
+    pulled_m[unknown | still[1:]] = 0.0
+    return _MeasuredShifts(shifts_m, covs, pulled_m, still[1:] & still[:-1])
 
 
-def _smoothed(
-    felt: _Felt, measured: Iterable[tuple[Array, Array, bool]], accel_noise: float
-) -> FeltMotion:
-    """Rauch, Tung and Striebel's smoother; the state is velocity, bias, gravity, (9,)."""
-    x, P = np.zeros(9), np.diag(np.repeat(FELT.first_sd, 3) ** 2)
+def _pulled_m(steps: WalkSteps, finite: NDArray[np.bool_]) -> Array:
+    """Errors of shifts by what the points say wrongly of a weak direction [m], (K, 3).
+
+    A shift is observed as well as the worse one of the poses at its ends: where a direction is
+    observed again, it undoes what was wrong before.
+    """
+    weak_sd_m, along = steps.column("weak_sd_m"), steps.column("weak_direction")
+    dt_s = 1e-9 * np.diff(steps.column("t_mid_ns"))
+    rows = np.arange(1, len(steps))
+    rows -= (weak_sd_m[:-1] > weak_sd_m[1:]) & finite[:-1]
+    speed_m_s = 0.5 * WEAK_MOTION.speed_m_s * (weak_sd_m[rows] / WEAK_MOTION.weak_sd_m) ** 2
+    return np.asarray(np.minimum(speed_m_s * dt_s, FELT.unknown_m)[:, None] * along[rows])
+
+
+def _smoothed(felt: _Felt, measured: _MeasuredShifts, accel_noise: float) -> FeltMotion:
+    """Rauch, Tung and Striebel's smoother.
+
+    The state is velocity, bias, gravity, and what pulls the measured shifts along, (12,).
+    """
+    x, P = np.zeros(12), np.diag(np.repeat([*FELT.first_sd, 1.0], 3) ** 2)
     x[8] = -STANDARD_GRAVITY_M_S2
     n = len(felt.dt_s)
-    states, covs_of = np.empty((n, 9)), np.empty((n, 9, 9))
-    for k, (shift_m, cov, still) in enumerate(measured):
-        H = _shift_by_state(felt, k)
-        x, P = _updated(x, P, H, z=shift_m - felt.shift[k, :, 0], R=cov)
-        if still:
-            x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=FELT.at_rest_m_s**2 * np.eye(3))
+    states, covs_of = np.empty((n, 12)), np.empty((n, 12, 12))
+    for k in range(n):
+        F, Q = _transition(felt, measured, k, accel_noise=accel_noise)
+        H, z = _shift_by_state(felt, k), measured.shift_m[k] - felt.shift[k, :, 0]
+        H[:, _PULLED] = _along(measured.pulled_m[k])
+        x, P = _updated(x, P, H, z=z, R=measured.cov[k])
+        if measured.still[k]:
+            x, P = _updated(x, P, np.eye(3, 12), z=np.zeros(3), R=FELT.at_rest_m_s**2 * np.eye(3))
         states[k], covs_of[k] = x, P
-        _, x, P = _ahead(felt, k, (x, P), accel_noise=accel_noise)
+        x, P = _ahead(felt, k, x, F=F), F @ P @ F.T + Q
     shifts_m, covs = np.zeros((n, 3)), np.zeros((n, 3, 3))
+    pulled_sd_m = np.zeros(n)
     for k in range(n - 1, -1, -1):
+        F, Q = _transition(felt, measured, k, accel_noise=accel_noise)
         known = states[k], covs_of[k]
-        F, *ahead = _ahead(felt, k, known, accel_noise=accel_noise)
-        gain = np.linalg.solve(ahead[1], F @ known[1]).T
-        x, P = known[0] + gain @ (x - ahead[0]), known[1] + gain @ (P - ahead[1]) @ gain.T
+        ahead = F @ known[1] @ F.T + Q
+        gain = np.linalg.solve(ahead, F @ known[1]).T
+        x = known[0] + gain @ (x - _ahead(felt, k, known[0], F=F))
+        P = known[1] + gain @ (P - ahead) @ gain.T
         H = _shift_by_state(felt, k)
         shifts_m[k], covs[k] = H @ x + felt.shift[k, :, 0], H @ P @ H.T
-    return FeltMotion(shifts_m, covs, max(1, round(1.0 / float(np.median(felt.dt_s)))))
+        pull = _along(measured.pulled_m[k])
+        pulled = P[_PULLED, _PULLED] + np.outer(x[_PULLED], x[_PULLED])
+        pulled_sd_m[k] = np.sqrt(max(float(np.trace(pull @ pulled @ pull.T)), 0.0))
+    return FeltMotion(shifts_m, covs, pulled_sd_m, max(1, round(1.0 / float(np.median(felt.dt_s)))))
+
+
+def _along(pulled_m: Array) -> Array:
+    """Matrix by which errors of 1 along each axis pull a shift along (3,), (3, 3)."""
+    return np.outer(pulled_m, pulled_m) / max(float(np.linalg.norm(pulled_m)), 1e-12)
 
 
 def _shift_by_state(felt: _Felt, k: int) -> Array:
     dt_s = felt.dt_s[k]
-    return np.hstack([dt_s * np.eye(3), -felt.shift[k, :, 1:], 0.5 * dt_s**2 * np.eye(3)])
+    by_pull = np.zeros((3, 3))
+    return np.hstack([dt_s * np.eye(3), -felt.shift[k, :, 1:], 0.5 * dt_s**2 * np.eye(3), by_pull])
 
 
-def _ahead(
-    felt: _Felt, k: int, known: tuple[Array, Array], *, accel_noise: float
-) -> tuple[Array, Array, Array]:
-    """Transition to the next multiframe, state and covariance there."""
-    F, Q = _transition(felt, k, accel_noise)
-    x, P = known
+def _ahead(felt: _Felt, k: int, x: Array, *, F: Array) -> Array:
+    """State at the next multiframe."""
     predicted = F @ x
     predicted[_V] += felt.speed[k, :, 0]
-    return F, predicted, F @ P @ F.T + Q
+    return np.asarray(predicted)
 
 
-def _transition(felt: _Felt, k: int, accel_noise: float) -> tuple[Array, Array]:
-    dt_s = felt.dt_s[k]
-    F = np.eye(9)
-    F[_V, 3:] = np.hstack([-felt.speed[k, :, 1:], dt_s * np.eye(3)])
+def _transition(
+    felt: _Felt, measured: _MeasuredShifts, k: int, *, accel_noise: float
+) -> tuple[Array, Array]:
+    """Transition to the next multiframe, and the covariance that it adds."""
+    dt_s = float(felt.dt_s[k])
+    F, shared = np.eye(12), measured.shared(k, dt_s)
+    F[_V, 3:9] = np.hstack([-felt.speed[k, :, 1:], dt_s * np.eye(3)])
+    F[_PULLED, _PULLED] *= shared
     speed = accel_noise**2 * dt_s + (FELT.unfelt_m_s**2 if felt.missing[k] else 0.0)
-    return F, np.diag(np.repeat([speed, FELT.bias_walk**2 * dt_s, 0.0], 3))
+    noise = [speed, FELT.bias_walk**2 * dt_s, 0.0, 1.0 - shared**2]
+    return F, np.diag(np.repeat(noise, 3))
 
 
 def _updated(x: Array, P: Array, H: Array, *, z: Array, R: Array) -> tuple[Array, Array]:

@@ -12,6 +12,8 @@ class FeltMotionTuning(Struct, frozen=True, kw_only=True):
     """Standard deviation of the shift over a multiframe along observed directions [m] …"""
     unknown_m: float = 10.0
     """… and along others, where it is no measurement [m]."""
+    pulled_s: float = 1.0
+    """Time over which points say the same wrong thing of a weak direction [s]."""
     at_rest_m_s: float = 0.02
     """Standard deviation of the velocity of a body that stands [m/s]."""
     first_sd: tuple[float, float, float] = (2.0, 0.2, 0.1)

@@ -314,7 +314,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 34, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    46,
+    47,
     OdometryReads,
     _odometry,
     OdometryFigures,
