@@ -48,8 +48,10 @@ class CarriedMotion:
         out = np.zeros((max(len(frame_ids) - 1, 0), 3, 3))
         for k, (first, last) in enumerate(pairwise(frame_ids.tolist())):
             R = self.R_odom_body[last]
-            total = (last - first) * self.cov_odom[first + 1 : last + 1].sum(axis=0)
-            out[k] = R.T @ total @ R
+            cov = self.cov_odom[first + 1 : last + 1]  # each along one direction
+            sd_m = np.sqrt(np.trace(cov, axis1=1, axis2=2))
+            root = (cov / np.maximum(sd_m, 1e-12)[:, None, None]).sum(axis=0)
+            out[k] = R.T @ root @ root @ R
         return out
 
     def observed_between(self, frame_ids: Times) -> NDArray[np.bool_]:

@@ -279,6 +279,16 @@ def test_a_graph_of_one_node_states_nothing(tmp_path: Path) -> None:
     assert header.startswith("t_ns,x_m")
 
 
+def test_standard_deviations_of_carried_motions_add_up() -> None:
+    along = np.outer([0.0, 0.6, 0.8], [0.0, 0.6, 0.8])
+    sd_m = np.array([0.5, 0.01, 0.04, 0.001])
+    carried = CarriedMotion(
+        sd_m[:, None, None] ** 2 * along, np.tile(np.eye(3), (4, 1, 1)), sd_m > 0
+    )
+
+    np.testing.assert_allclose(carried.between(np.array([0, 3]))[0], 0.051**2 * along, atol=1e-15)
+
+
 def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> None:
     """Without that the model takes it for the covariance of an observed step, far too large."""
     graph = chain(14)
