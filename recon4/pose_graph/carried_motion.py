@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array, matrix_from_quat
+from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Times
 from recon4.model.tuning import OBSERVATION
 from recon4.store.arrays import load_arrays
@@ -53,6 +54,11 @@ class CarriedMotion:
             root = (cov / np.maximum(sd_m, 1e-12)[:, None, None]).sum(axis=0)
             out[k] = R.T @ root @ root @ R
         return out
+
+    def in_map(self, graph: PoseGraph) -> Array:
+        """The same between the nodes of a graph, in axes of its map, (M - 1, 3, 3)."""
+        R = graph.T_map_body.R[1:]
+        return np.asarray(R @ self.between(graph.frame_ids) @ np.swapaxes(R, 1, 2))
 
     def observed_between(self, frame_ids: Times) -> NDArray[np.bool_]:
         """Whether points observe the whole shift between consecutive nodes, (M - 1,).

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.tuning_solve import ERROR_MODEL
 
 
@@ -88,12 +89,15 @@ class GraphAgreement:
     turns and shifts apart, (N - 1, 6, 6)."""
 
 
-def agreement(graph: PoseGraph, model: ErrorModel) -> GraphAgreement:
+def agreement(
+    graph: PoseGraph, model: ErrorModel, *, carried: CarriedMotion | None = None
+) -> GraphAgreement:
     """Compare the edges of a solved graph with its poses.
 
     Args:
         graph: Solved; its odometry edges connect consecutive nodes.
         model: What is usual, and over which time errors are correlated.
+        carried: Motion that is known to be unsure: the graph moves it as it should.
     """
     from scipy.ndimage import correlate1d  # slow to import, and the server compares nothing
 
@@ -116,11 +120,27 @@ def agreement(graph: PoseGraph, model: ErrorModel) -> GraphAgreement:
                 r = into_map @ residual[part]
                 moved[edge.i, part, part] = np.outer(r, r)
             weight[edge.i] = 1.0
+    if carried is not None:
+        moved[:, TRANSLATION, TRANSLATION] *= _unexplained(
+            moved[:, TRANSLATION, TRANSLATION], carried.in_map(graph)
+        )[:, None, None]
     step_s = float(np.median(np.diff(graph.t_ns))) / 1e9
     size = 2 * round(model.turn_s / max(step_s, 1e-3)) + 1
     near = correlate1d(weight, np.ones(size), mode="constant")
     total = correlate1d(moved, np.ones(size), axis=0, mode="constant")
     return GraphAgreement(ratio, total / np.maximum(near, 1.0)[:, None, None])
+
+
+def _unexplained(moved: Array, stated: Array) -> Array:
+    """Part of squared shifts ``r r^T`` that is beyond their stated covariances, 0..1, (K,).
+
+    Args:
+        moved: [m²], (K, 3, 3).
+        stated: [m²], (K, 3, 3).
+    """
+    squared = np.trace(moved, axis1=1, axis2=2)
+    expected = np.einsum("nij,nji->n", moved, stated) / np.maximum(squared, 1e-30)
+    return np.clip(1.0 - expected / np.maximum(squared, 1e-30), 0.0, 1.0)
 
 
 def _is_strong(edge: Edge, model: ErrorModel) -> bool:

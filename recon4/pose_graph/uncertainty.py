@@ -125,7 +125,7 @@ def pose_uncertainty(
 
     if len(graph) < 2:
         return None
-    agrees = agreement(graph, model)
+    agrees = agreement(graph, model, carried=known.carried)
     chain = _chain(graph, model, agrees, carried=known.carried)
     knots = len(chain.t_ns)
     information = _odometry_information(chain)
@@ -260,7 +260,7 @@ def _steps(
         weak = ratio**4 / (1.0 + ratio**4)
         if part is TRANSLATION and carried is not None:
             weak[carried.observed_between(graph.frame_ids)] = 0.0
-            weak = np.maximum(weak, _ratio_along(V, _carried_cov(graph, carried), values))
+            weak = np.maximum(weak, _ratio_along(V, carried.in_map(graph), values))
         observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
         observed *= agrees.ratio[row] ** 2
         # Bounded, so that a walk that was lost leaves numbers that can be worked with.
@@ -281,12 +281,6 @@ def _stated(graph: PoseGraph) -> Array:
             into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
             stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
     return stated
-
-
-def _carried_cov(graph: PoseGraph, carried: CarriedMotion) -> Array:
-    """Covariance of shifts that an accelerometer alone carries, in map axes, (N - 1, 3, 3)."""
-    R = graph.T_map_body.R[1:]
-    return np.asarray(R @ carried.between(graph.frame_ids) @ np.swapaxes(R, 1, 2))
 
 
 def _ratio_along(directions: Array, cov: Array, values: Array) -> Array:

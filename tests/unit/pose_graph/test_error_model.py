@@ -5,6 +5,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import CALIBRATED, agreement
 from recon4.pose_graph.uncertainty import pose_uncertainty
 from tests.unit.pose_graph.test_uncertainty import STEP_SD, edge, walk
@@ -65,3 +66,20 @@ def test_where_tracking_was_lost_the_graph_may_move_the_odometry() -> None:
     unsure = solved(pair_m=0.002, step_m=0.05, sd=np.full(6, 0.2))
 
     assert agreement(unsure, CALIBRATED).moved.max() < 1e-12
+
+
+@pytest.mark.parametrize(("stated_m", "left"), [(0.0, 1.0), (0.03, 0.64), (0.06, 0.0)])
+def test_a_motion_that_is_stated_to_be_unsure_may_be_moved_by_as_much(
+    stated_m: float, left: float
+) -> None:
+    graph = solved(pair_m=0.002, step_m=0.05)
+    plain = agreement(graph, CALIBRATED).moved[30]
+    along = np.linalg.eigh(plain[3:, 3:])[1][:, -1]
+    cov = np.tile(stated_m**2 * np.outer(along, along), (NODES, 1, 1))
+    carried = CarriedMotion(cov, graph.T_map_body.R, np.ones(NODES, bool))
+
+    known = agreement(graph, CALIBRATED, carried=carried).moved[30]
+
+    part = np.trace(known[3:, 3:]) / np.trace(plain[3:, 3:])
+    assert part == pytest.approx(left, abs=0.1)
+    np.testing.assert_array_equal(known[:3, :3], plain[:3, :3])
