@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
-from recon4.model.odometry_figures import OdometryFigures
+from recon4.model.odometry_figures import OdometryFigures, TurnDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.felt_motion import are_carried, carried, felt_motion
@@ -89,10 +89,16 @@ def _figures(recording: WalkInputs, choice: Choice, *, with_imu: bool) -> Odomet
         imu_faults=tracked.estimate.faults if tracked.estimate else (),
         heights=tuple(ride.doubt for ride in _rides(choice, frames.rig)) if with_imu else (),
         gnss=aided,
-        turns=() if aided else weak_turns(tracked.steps, with_imu=with_imu),
+        turns=() if aided else _turns(tracked.steps, imu.samples if with_imu else None),
         moving=choice.moving,
         tried=choice.tried,
     )
+
+
+def _turns(steps: WalkSteps, imu: ImuSamples | None) -> tuple[TurnDoubt, ...]:
+    """Turns that neither LiDARs nor gravity hold."""
+    with_gravity = imu is not None and bool(np.isfinite(imu.accel_m_s2).all())
+    return weak_turns(steps, with_imu=imu is not None, with_gravity=with_gravity)
 
 
 def _rides(choice: Choice, rig: Rig) -> list[UnseenRide | HeightContradiction]:

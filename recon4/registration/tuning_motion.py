@@ -133,6 +133,8 @@ class WeakTurnTuning(Struct, frozen=True, kw_only=True):
     surroundings do not show, either [rad/s]: 0.22° a second were measured."""
     free_rate_sd_rad_s: float = float(np.deg2rad(2.0))
     """The same without a gyroscope."""
+    upright: float = 0.5
+    """Cosine to the vertical of an axis below which gravity holds the turn about it."""
 
 
 WEAK_TURNS = WeakTurnTuning()

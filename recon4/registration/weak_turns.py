@@ -24,18 +24,24 @@ from recon4.registration.tuning_motion import WEAK_TURNS
 from recon4.registration.walk_steps import WalkSteps
 
 
-def weak_turns(steps: WalkSteps, *, with_imu: bool) -> tuple[TurnDoubt, ...]:
+def weak_turns(
+    steps: WalkSteps, *, with_imu: bool, with_gravity: bool = False
+) -> tuple[TurnDoubt, ...]:
     """Find the stretches of `OBSERVATION.weak_s` or more, in order of time.
 
     Args:
         steps: Of all multiframes.
         with_imu: Whether a gyroscope was used.
+        with_gravity: Whether an accelerometer was, too: it holds turns that tilt the body. A level
+            LiDAR far from all floors hardly observes such a turn, and cannot drift in it.
     """
     if len(steps) < 2:
         return ()
     t_ns = steps.column("t_mid_ns")
     t_s = 1e-9 * (t_ns - t_ns[0])
-    rows = np.flatnonzero([_is_weak(step) for step in steps])
+    rows = np.flatnonzero(
+        [_is_weak(step) and not (with_gravity and _tilts(step)) for step in steps]
+    )
     runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > WEAK_TURNS.bridged_s) + 1)
     rate = WEAK_TURNS.rate_sd_rad_s if with_imu else WEAK_TURNS.free_rate_sd_rad_s
     return tuple(
@@ -53,6 +59,12 @@ def _is_weak(step: OdometryStep) -> bool:
         bool(by_shape and step.weak_twist_sd_m > WEAK_TURNS.weak_sd_m)
         and _turn_part(step) > DEGENERACY.least_turn
     )
+
+
+def _tilts(step: OdometryStep) -> bool:
+    """Whether the weakest turn is about an axis more level than upright, in odom axes (z up)."""
+    turn = step.weak_twist[ROTATION]
+    return bool(abs(turn[2]) < WEAK_TURNS.upright * np.linalg.norm(turn))
 
 
 def _turn_part(step: OdometryStep) -> float:

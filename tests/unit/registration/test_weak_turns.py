@@ -133,6 +133,15 @@ def test_nothing_is_said_of_other_walks(steps):
     assert weak_turns(WalkSteps(steps), with_imu=True) == ()
 
 
+def test_gravity_holds_a_turn_that_tilts_the_body():
+    about_x = np.array([0.2, 0.0, 0.02, 0.0, 0.0, 0.1])
+    steps = WalkSteps(replace(one, weak_twist=about_x) for one in walk(100))
+
+    assert weak_turns(steps, with_imu=True, with_gravity=True) == ()
+    assert len(weak_turns(steps, with_imu=True)) == 1
+    assert len(weak_turns(WalkSteps(walk(100)), with_imu=True, with_gravity=True)) == 1
+
+
 def test_nothing_observed_has_no_weakest_motion():
     twist, *figures = weakest_twist(np.zeros((6, 6)))
 
