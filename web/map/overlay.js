@@ -3,6 +3,7 @@
 import { nothing, svg } from "../shared/dom.js";
 import { add, axesOf, eyeOf, focalPx, minus, dot, toScreen } from "./camera.js";
 import { cornersOfBox } from "./clip.js";
+import { apart } from "./labels.js";
 import { resultOf } from "./measure.js";
 
 /**
@@ -88,8 +89,14 @@ export function overlay({ camera, screen }, shown) {
     ${measurements.map((one) => [
       path(one.points, one.kind === "area" || one.kind === "volume"),
       one.points.map((p) => dot(p, "measure")),
-      text(middleOf(one.points), `${one.name}  ${resultOf(one, shown.volumeOf(one)).value}`),
     ])}
+    ${apart(
+      measurements.flatMap((one) => {
+        const to = at(middleOf(one.points));
+        const words = `${one.name}  ${resultOf(one, shown.volumeOf(one)).value}`;
+        return to ? [{ x: to.x + 9, y: to.y - 7, words }] : [];
+      }),
+    ).map(({ x, y, words }) => svg`<text x=${x} y=${y}>${words}</text>`)}
     ${path(draft, false)}${draft.map((p) => dot(p, "draft"))}
     ${stretch.slice(1).map((p, k) => line(stretch[k], p, "stretch"))}
     ${[...stretch.slice(0, 1), ...stretch.slice(-1)].map((p) => dot(p, "stretch"))}
