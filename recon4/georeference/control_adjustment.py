@@ -21,6 +21,7 @@ from recon4.georeference.tuning_control import ADJUSTMENT, CONTROL_FIT
 from recon4.model.corrections import apply_corrections
 from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.site_control import SeenTarget
+from recon4.model.survey_covariance import covariance_matrix
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.priors import PositionPriors, Priors, TargetPriors
 from recon4.pose_graph.solve import optimize
@@ -81,7 +82,13 @@ def directions_of(target: SeenTarget, trajectory: Trajectory) -> Array:
 
 
 def survey_covariance(target: SeenTarget) -> Array:
-    """Covariance of survey and pick [m²], (3, 3); the same about the vertical."""
+    """Covariance of survey and pick [m²], (3, 3), along the axes of the survey.
+
+    Without one of its own it is the same about the vertical. The frame of the map is turned from a
+    grid by the convergence of meridians at most, below 3°: an ellipse is not turned with it.
+    """
+    if target.covariance_m2 is not None:
+        return covariance_matrix(target.covariance_m2)
     horizontal, vertical = target.sd_m
     return np.diag([horizontal**2, horizontal**2, vertical**2])
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import msgspec
+
+from recon4.model.survey_covariance import Covariance
+
 SITE_GRID = "site grid"
 """Name of the coordinate system that control points alone define."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SeenTarget:
+class SeenTarget(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
     """A surveyed target, and its place in the body frame of the nodes that saw it.
 
     These places do not depend on where a map puts the nodes: another map uses them again.
@@ -29,6 +32,9 @@ class SeenTarget:
     """The target in the body at these times [m], (M, 3)."""
     directions_body: tuple[tuple[tuple[float, float, float], ...], ...]
     """Measured directions in the body at these times, orthonormal rows, (M, 1..3, 3)."""
+    covariance_m2: Covariance | None = None
+    """Of survey and pick together, in place of ``sd_m``; None = not stated. Left out of the journal
+    then, so that earlier decisions keep their hash."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -111,3 +111,16 @@ class ClusterVolumeTuning(Struct, frozen=True, kw_only=True):
 
 
 CLUSTERS = ClusterVolumeTuning()
+
+
+class SurveyCovarianceLimits(Struct, frozen=True, kw_only=True):
+    """Covariances that surveys state for their points."""
+
+    least_m: float = 1e-5
+    most_m: float = 10.0
+    """Standard deviations of a coordinate [m]; beyond, the unit is another one."""
+    least_root: float = 1e-6
+    """Least eigenvalue of the correlations: below, the covariance cannot be inverted."""
+
+
+SURVEY_COVARIANCES = SurveyCovarianceLimits()

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin, to_enu
+from recon4.model.survey_covariance import Covariance
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
 from recon4.recording.tables.points import PointTable, TablePoint, read_point_table
 from recon4.slices.tuning_files import CONTROL_FILES
@@ -28,6 +29,8 @@ class ControlPoint:
     """Control points were used to make the map; only check points measure its accuracy."""
     radius_m: float = 0.0
     """Radius of a spherical target [m]."""
+    covariance_m2: Covariance | None = None
+    """Of survey and pick together; None = that of all points of the survey."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +106,7 @@ def read_control(
             break
         else:
             points[row.name] = ControlPoint(
-                row.name, row.xyz_m, _ROLES[row.role.lower()], row.radius_m
+                row.name, row.xyz_m, _ROLES[row.role.lower()], row.radius_m, row.covariance_m2
             )
     if not points and not found.preview.question:
         raise CorruptFile(f"{name}: no line of ID,X,Y,Z found; {skipped[0] if skipped else ''}")

@@ -16,6 +16,7 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts
+from recon4.model.survey_covariance import covariance_matrix
 from recon4.slices.control_limits import ControlLimits, control_texts
 from recon4.slices.control_points import ControlPoint, Role
 from recon4.slices.control_verdict import (
@@ -53,6 +54,8 @@ class Residual:
     """How well the map says it is known there; None = not stated."""
     sigmas: float | None
     """``across_m`` in standard deviations of point and map together; None = not stated."""
+    survey: ErrorEllipse | None
+    """Of the point itself, if the survey states its covariance; None = that of all points."""
     outlier: bool
     """Whether ``sigmas`` exceeds `RESIDUALS.outlier_sigmas`."""
 
@@ -191,7 +194,9 @@ def _residual(
     d2 = None if east is None or north is None else math.hypot(east, north)
     d3 = float(np.linalg.norm(d)) if directions == 3 else None
     across = float(found.along[0] @ d) if directions == 1 else float(np.linalg.norm(d))
-    sigmas = None if cov is None else _sigmas(found.along, d, cov + survey_sd_m**2 * np.eye(3))
+    own = point.covariance_m2 and covariance_matrix(point.covariance_m2)
+    survey = survey_sd_m**2 * np.eye(3) if own is None else own
+    sigmas = None if cov is None else _sigmas(found.along, d, cov + survey)
     return Residual(
         id=point.id,
         role=point.role,
@@ -204,6 +209,7 @@ def _residual(
         across_m=across,
         stated=None if cov is None else error_ellipse(cov),
         sigmas=sigmas,
+        survey=None if own is None else error_ellipse(own),
         outlier=sigmas is not None and sigmas > RESIDUALS.outlier_sigmas[directions - 1],
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -105,7 +106,8 @@ def site_control(
             id=one.id,
             xyz_m=one.xyz_m,
             role=one.role,
-            sd_m=(accuracy.horizontal_m, accuracy.height_m),
+            sd_m=_deviations(one, accuracy),
+            covariance_m2=one.covariance_m2,
             t_ns=tuple(found[one.id].t_ns.tolist()),
             p_body_m=_tuples(found[one.id].p_body),
             directions_body=tuple(map(_tuples, found[one.id].directions_body)),
@@ -182,6 +184,14 @@ def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
     """Residuals, tests and statements of a trial in lines."""
     outcome = msgspec.convert(to_plain(trial.record), ControlOutcome)
     return outcome_text(outcome, language, [one.said(language) for one in trial.blunders])
+
+
+def _deviations(point: ControlPoint, accuracy: ControlAccuracy) -> tuple[float, float]:
+    """Standard deviation, horizontal (each axis) and height [m]: its own, else that of all."""
+    if point.covariance_m2 is None:
+        return accuracy.horizontal_m, accuracy.height_m
+    e, _, _, n, _, h = point.covariance_m2
+    return math.sqrt((e + n) / 2.0), math.sqrt(h)
 
 
 def _is_leveled(level: Path) -> bool:

@@ -28,7 +28,7 @@ export interface AcknowledgmentsView {
 export interface AddReference {
   path: string;
   frame?: "auto" | "map" | "crs";
-  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-" | "se" | "sn" | "sh" | "cee" | "cen" | "ceh" | "cnn" | "cnh" | "chh">;
   unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
   name?: string;
 }
@@ -314,7 +314,7 @@ export interface Comparisons {
 export interface ControlFile {
   name?: string;
   base64: string;
-  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-" | "se" | "sn" | "sh" | "cee" | "cen" | "ceh" | "cnn" | "cnh" | "chh">;
   unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
 }
 
@@ -323,6 +323,7 @@ export interface ControlPoint {
   xyz_m: [number, number, number];
   role: "control" | "check";
   radius_m: number;
+  covariance_m2: [number, number, number, number, number, number] | null;
 }
 
 export interface ControlPreview {
@@ -349,6 +350,7 @@ export interface ControlSpec {
   xyz_m: [number, number, number];
   role?: "control" | "check";
   radius_m?: number;
+  covariance_m2?: [number, number, number, number, number, number] | null;
 }
 
 export interface ControlState {
@@ -813,7 +815,7 @@ export interface ListedReference {
   kind: "mesh" | "cloud" | "damaged";
   points: number;
   triangles: number;
-  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-" | "se" | "sn" | "sh" | "cee" | "cen" | "ceh" | "cnn" | "cnh" | "chh">;
   unit: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | "";
   notes: Array<string>;
   problem: string;
@@ -1368,7 +1370,7 @@ export interface RecordingSummary {
 export interface ReferenceFile {
   path: string;
   frame?: "auto" | "map" | "crs";
-  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-" | "se" | "sn" | "sh" | "cee" | "cen" | "ceh" | "cnn" | "cnh" | "chh">;
   unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
 }
 
@@ -1412,6 +1414,7 @@ export interface Residual {
   across_m: number;
   stated: ErrorEllipse | null;
   sigmas: number | null;
+  survey: ErrorEllipse | null;
   outlier: boolean;
 }
 
@@ -1808,7 +1811,7 @@ export interface SurfacePoint {
 export interface TablePreview {
   header: Array<string>;
   rows: Array<Array<string>>;
-  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-" | "se" | "sn" | "sh" | "cee" | "cen" | "ceh" | "cnn" | "cnh" | "chh">;
   unit: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in";
   question: string;
   description: string;

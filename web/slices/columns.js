@@ -22,6 +22,15 @@ export const MEANINGS = [
   ["lon", t("column-lon")],
   ["role", t("column-role")],
   ["radius", t("column-radius")],
+  ["se", t("column-sd", { axis: "E" })],
+  ["sn", t("column-sd", { axis: "N" })],
+  ["sh", t("column-sd", { axis: "H" })],
+  ["cee", t("column-cov", { axis: "EE" })],
+  ["cen", t("column-cov", { axis: "EN" })],
+  ["ceh", t("column-cov", { axis: "EH" })],
+  ["cnn", t("column-cov", { axis: "NN" })],
+  ["cnh", t("column-cov", { axis: "NH" })],
+  ["chh", t("column-cov", { axis: "HH" })],
 ];
 
 /** @type {Array<[string, string]>} */

@@ -49,7 +49,11 @@ export function residualCells(residual, earlier) {
   return [
     ...[east_m, north_m, up_m, d2_m, d3_m].map((d) => cell(cm(d))),
     cell(residual.directions === 1 ? cm(residual.across_m) : ""),
-    cell(stated(residual.stated)),
+    cell(
+      residual.survey
+        ? `${stated(residual.stated)} · ${t("of-survey", { ellipse: stated(residual.survey) })}`
+        : stated(residual.stated),
+    ),
     sigmas(residual),
   ];
 }

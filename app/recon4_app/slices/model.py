@@ -8,7 +8,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from recon4.errors import ConfigError
 from recon4.mapping.tiles import Surface
+from recon4.model.survey_covariance import Covariance, check_covariance
 from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.recording.tables.tuning import SHOWN_TABLE
@@ -259,6 +261,16 @@ class ControlSpec(Strict):
     xyz_m: Xyz
     role: Literal["control", "check"] = "check"
     radius_m: float = Field(default=0.0, ge=0.0, le=10.0)
+    covariance_m2: Covariance | None = None
+    """EE, EN, EH, NN, NH, HH [m²] of survey and pick; null = that of all points."""
+
+    @field_validator("covariance_m2")
+    @classmethod
+    def _is_one(cls, values: Covariance | None) -> Covariance | None:
+        try:
+            return values and check_covariance(values)
+        except ConfigError as error:
+            raise ValueError(str(error)) from error
 
 
 class LimitsSpec(Strict):

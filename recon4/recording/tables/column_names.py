@@ -13,7 +13,9 @@ from typing import Literal, get_args
 
 from recon4.errors import ConfigError
 
-Meaning = Literal["x", "y", "z", "-x", "-y", "lat", "lon", "id", "role", "radius", "-"]
+Spread = Literal["se", "sn", "sh", "cee", "cen", "ceh", "cnn", "cnh", "chh"]
+"""Standard deviations east, north, height, and covariances."""
+Meaning = Literal["x", "y", "z", "-x", "-y", "lat", "lon", "id", "role", "radius", "-", Spread]
 """Of a column: east or x, north or y, height or z, the same with the other sign (S-JTSK), degrees,
 name of a point, control or check, radius of a target; ``-`` = not used."""
 Unit = Literal["m", "dm", "cm", "mm", "km", "ft", "us-ft", "in"]
@@ -87,6 +89,9 @@ _MEANINGS: tuple[tuple[Meaning, Family, frozenset[str]], ...] = (
     ("role", "", _words("role rolle")),
     ("radius", "", _words("radius radiusm")),
 )
+SIGMAS: tuple[Spread, ...] = ("se", "sn", "sh")
+COVARIANCES: tuple[Spread, ...] = ("cee", "cen", "ceh", "cnn", "cnh", "chh")
+_SPREAD = re.compile(r"(s|sd|std|stdev|stddev|sig|sigma)([enh])|(c|cov|q)([en][enh]|hh)")
 _UNIT_WORDS: dict[str, Unit] = {
     **dict.fromkeys(("m", "meter", "meters", "metr", "metry", "metre"), "m"),
     **dict.fromkeys(("mm", "millimeter", "millimeters"), "mm"),
@@ -115,7 +120,7 @@ class ColumnName:
 def column_name(text: str) -> ColumnName:
     """The meaning of the name of a column; ``-`` for a name that is not known."""
     bracketed = _BRACKETED.search(text)
-    stated = _plain(bracketed[1]) if bracketed else ""
+    stated = _plain(bracketed[1]).removesuffix("2") if bracketed else ""
     words = _BRACKETED.sub(" ", text).lstrip("/#%! ")
     plain, unit = _plain(words), _UNIT_WORDS.get(stated)
     found = _meaning(plain)
@@ -148,8 +153,8 @@ def check_meanings(columns: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
     Raises:
         ConfigError: If an axis is missing or named twice.
     """
-    axes = sorted(column.lstrip("-") for column in columns if column not in ("-", "role", "radius"))
-    axes = [axis for axis in axes if axis != "id"]
+    beside = ("-", "role", "radius", "id", *SIGMAS, *COVARIANCES)
+    axes = sorted(column.lstrip("-") for column in columns if column not in beside)
     if columns and axes not in (["x", "y", "z"], ["lat", "lon", "z"]):
         raise ConfigError(
             "columns: expected x, y and z once each (or lat, lon and z), as in id,x,y,z; "
@@ -174,6 +179,10 @@ def _meaning(plain: str) -> tuple[Meaning, Family] | None:
     for meaning, family, names in _MEANINGS:
         if plain in names:
             return meaning, family
+    spread = _SPREAD.fullmatch(re.sub("u$|u(?=u$)", "h", plain))
+    for one in (*SIGMAS, *COVARIANCES):
+        if spread and one in (f"s{spread[2]}", f"c{spread[4]}"):
+            return one, ""
     return None
 
 
@@ -190,5 +199,6 @@ def _with_unit_behind(words: str) -> tuple[tuple[Meaning, Family] | None, Unit |
 
 def _plain(text: str) -> str:
     """Without accents, case, blanks and punctuation."""
-    bare = unicodedata.normalize("NFKD", text.replace("ß", "ss").replace("ł", "l"))
+    letters = text.replace("ß", "ss").replace("ł", "l").replace("σ", "s")
+    bare = unicodedata.normalize("NFKD", letters)
     return re.sub(r"[^a-z0-9]", "", bare.lower())

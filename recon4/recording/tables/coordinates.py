@@ -15,6 +15,8 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.recording.tables.column_names import (
+    COVARIANCES,
+    SIGMAS,
     UNIT_NAMES,
     UNITS_M,
     ColumnName,
@@ -79,6 +81,8 @@ class TableColumns:
     """Column of the names; -1 = none."""
     role: int
     radius: int
+    spread: tuple[tuple[int, float], ...]
+    """Column and meters of one unit of each standard deviation, or of each covariance; none."""
     description: str
 
 
@@ -187,8 +191,21 @@ def _columns(layout: TableLayout, found: _Proposal) -> TableColumns:
         id=place_of("id"),
         role=place_of("role"),
         radius=place_of("radius"),
+        spread=_spread(layout, found, own=sizes[2]),
         description=_description(layout, found),
     )
+
+
+def _spread(layout: TableLayout, found: _Proposal, *, own: float) -> tuple[tuple[int, float], ...]:
+    """Columns of covariances, else of standard deviations, and their units [m or m²]."""
+    for whole, power in ((COVARIANCES, 2), (SIGMAS, 1)):
+        if not {*whole} <= {*found.columns}:
+            continue
+        at = [found.columns.index(one) for one in whole]
+        units = [column_name(layout.names[k]).unit if k < len(layout.names) else None for k in at]
+        sizes = [UNITS_M[unit] if unit else own for unit in units]
+        return tuple((k, size**power) for k, size in zip(at, sizes, strict=True))
+    return ()
 
 
 def _suggestion(columns: tuple[Meaning, ...]) -> str:
@@ -229,7 +246,7 @@ def _not_numbers(layout: TableLayout, columns: Sequence[Meaning], purpose: Purpo
     if purpose != "cloud":
         return ""
     for k, meaning in enumerate(columns):
-        if meaning in ("-", "id", "role", "radius"):
+        if meaning.lstrip("-") not in ("x", "y", "z", "lat", "lon"):
             continue
         cells = [row[k] for row in layout.rows if k < len(row)]
         if not any(map(is_number, cells)):
@@ -332,4 +349,8 @@ def _description(layout: TableLayout, found: _Proposal) -> str:
         sign = "minus " if meaning.startswith("-") else ""
         words.append(f"{axis} = {sign}{named.strip()[:30] or f'column {at + 1}'}")
     units = dict.fromkeys(UNIT_NAMES[unit] for unit in found.units)
+    if {*COVARIANCES} <= {*found.columns}:
+        words.append("covariances of E, N, H")
+    elif {*SIGMAS} <= {*found.columns}:
+        words.append("standard deviations of E, N, H")
     return f"columns: {', '.join(words)}; {', '.join(units)}"

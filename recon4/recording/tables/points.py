@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.model.survey_covariance import Covariance, check_covariance, covariance_of
 from recon4.recording.limits import LIMITS
 from recon4.recording.tables.coordinates import (
     AS_THE_TABLE_SAYS,
@@ -42,6 +43,8 @@ class TablePoint:
     role: str
     """As written; empty = none."""
     radius_m: float
+    covariance_m2: Covariance | None = None
+    """None = the row states none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +125,30 @@ def _point(line: int, cells: list[str], columns: TableColumns, *, partial: bool)
         cell(columns.id) or str(line), what="the id of a point", most=LIMITS.id_characters
     )
     radius = _number(cell(columns.radius), partial=False) if cell(columns.radius) else 0.0
-    return TablePoint(line, name, (x, y, z), cell(columns.role), radius * abs(columns.factor[0]))
+    return TablePoint(
+        line,
+        name,
+        (x, y, z),
+        cell(columns.role),
+        radius * abs(columns.factor[0]),
+        _covariance([(cell(at), size) for at, size in columns.spread]),
+    )
+
+
+def _covariance(cells: list[tuple[str, float]]) -> Covariance | None:
+    """Of six covariances, or of three standard deviations, with their units; None = all are empty.
+
+    Raises:
+        ConfigError: If it is none.
+        ValueError: If a cell is no number.
+    """
+    if not any(text for text, _ in cells):
+        return None
+    values = [_number(text, partial=False) * size for text, size in cells]
+    if len(values) == 3:
+        return covariance_of((values[0], values[1], values[2]))
+    ee, en, eh, nn, nh, hh = values
+    return check_covariance((ee, en, eh, nn, nh, hh))
 
 
 def _number(text: str, *, partial: bool) -> float:

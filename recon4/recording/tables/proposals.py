@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Literal
 
-from recon4.recording.tables.column_names import ColumnName, Meaning
+from recon4.recording.tables.column_names import COVARIANCES, SIGMAS, ColumnName, Meaning
 from recon4.recording.tables.layout import TableLayout, is_number
 
 Purpose = Literal["cloud", "survey", "markers"]
 """Of a table: points alone; named points, whose x and y a person confirms; named points of two
 tables alike, whose names x and y are enough."""
 AXIS_NAMES: dict[str, str] = {"x": "x (east)", "y": "y (north)", "z": "z (height)"}
-_BESIDES: tuple[Meaning, ...] = ("id", "role", "radius")
+_BESIDES: tuple[Meaning, ...] = ("id", "role", "radius", *SIGMAS, *COVARIANCES)
 
 
 def columns_by_name(names: list[ColumnName]) -> tuple[tuple[Meaning, ...], str]:
@@ -40,6 +40,9 @@ def columns_by_name(names: list[ColumnName]) -> tuple[tuple[Meaning, ...], str]:
     for meaning, found in taken:
         if found:
             columns[found[0]] = meaning
+    for whole in (SIGMAS, COVARIANCES):
+        if not {*whole} <= {*columns}:  # "SN" alone is a serial number
+            columns = ["-" if one in whole else one for one in columns]
     missing = [
         AXIS_NAMES[m] for m, found in zip("xyz", (first, second, heights), strict=True) if not found
     ]

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
@@ -120,11 +121,46 @@ def on_wall(true: Trajectory, target: SeenTarget) -> SeenTarget:
     """A point of a wall across x; the survey has another point of that wall."""
     R = true.at(np.array(target.t_ns)).R
     along = SITE.R @ [0.0, 0.5, 0.0]
-    return replace(
+    return msgspec.structs.replace(
         target,
         directions_body=tuple((tuple(one[0].tolist()),) for one in R),
         xyz_m=tuple((np.array(target.xyz_m) + along).tolist()),
     )
+
+
+def test_an_error_along_the_long_axis_of_a_survey_is_no_blunder_and_pulls_little() -> None:
+    true, given = walk()
+    plain = control(true).targets
+    k = next(k for k, one in enumerate(plain) if one.id == "co6")
+    e, n, h = plain[k].xyz_m
+    off = msgspec.structs.replace(plain[k], xyz_m=(e + 0.07, n + 0.07, h))
+    # 7 cm to the north-east, 5 mm across and in height.
+    long = msgspec.structs.replace(off, covariance_m2=(2.5e-3, 2.475e-3, 0.0, 2.5e-3, 0.0, 2.5e-5))
+
+    def put(target: SeenTarget) -> OnControl:
+        targets = (*plain[:k], target, *plain[k + 1 :])
+        return put_on_control(given, SiteControl(targets=targets, crs=""), origin=None)
+
+    as_all, as_stated, right = put(off), put(long), put(plain[k])
+
+    w = [
+        next(p.test.w for p in found.record.points if p.id == "co6")
+        for found in (as_all, as_stated)
+    ]
+    assert w[0] > 1.5 * w[1]
+    moved = [
+        np.linalg.norm(found.trajectory.T_a_b.t - right.trajectory.T_a_b.t, axis=1).max()
+        for found in (as_all, as_stated)
+    ]
+    assert moved[0] > 3.0 * moved[1]
+
+
+def test_without_a_covariance_a_target_has_the_hash_of_before() -> None:
+    true, _ = walk()
+    one = control(true).targets[0]
+    assert "covariance_m2" not in to_plain(one)
+    with_it = msgspec.structs.replace(one, covariance_m2=(1e-4, 0.0, 0.0, 1e-4, 0.0, 1e-4))
+    assert msgspec.convert(to_plain(with_it), SeenTarget) == with_it
 
 
 def test_check_points_move_nothing() -> None:
@@ -151,4 +187,4 @@ def test_the_record_is_plain_json() -> None:
 
 
 def _fields(one: SeenTarget) -> dict[str, object]:
-    return {name: getattr(one, name) for name in SeenTarget.__dataclass_fields__}
+    return {name: getattr(one, name) for name in SeenTarget.__struct_fields__}

@@ -1,6 +1,7 @@
 """Survey files, and residuals of the map at their points."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -49,6 +50,47 @@ def test_lines_that_say_nothing_are_named_not_dropped():
 
     assert [point.id for point in found.points] == ["A"]
     assert [words.split(":")[0] for words in found.skipped] == ["line 3", "line 4", "line 5"]
+
+
+@pytest.mark.parametrize(
+    ("head", "row", "expected"),
+    [
+        ("sE [mm],sN [mm],sH [mm]", "3,4,6", (9e-6, 0.0, 0.0, 1.6e-5, 0.0, 3.6e-5)),
+        ("σE,σN,σU", "0.003,0.004,0.006", (9e-6, 0.0, 0.0, 1.6e-5, 0.0, 3.6e-5)),
+        ("cEE [mm²],cEN,cEH,cNN,cNH,cHH", "9,2e-6,1e-6,1.6e-5,0,3.6e-5",
+         (9e-6, 2e-6, 1e-6, 1.6e-5, 0.0, 3.6e-5)),
+        ("SN,note", "77,x", None),  # a serial number
+        ("sE,sN,sH", ",,", None),
+        ("sE,sN,sH", "3,4,6000", "the standard deviation H is 6000 m: .*check its unit"),
+        ("sE,sN,sH", "0,0.01,0.01", "the standard deviation E is 0 m"),
+        ("sE,sN,sH", "-0.01,0.01,0.01", "above 0"),
+        ("sE,sN,sH", "0.01,,0.01", "expected a number"),
+        ("cEE,cEN,cEH,cNN,cNH,cHH", "1e-5,1e-5,0,1e-5,0,1e-5", "not positive definite"),
+    ],
+)  # fmt: skip
+def test_a_survey_states_deviations_or_covariances_of_its_points(head, row, expected):
+    found = read_control(f"id,E,N,H,{head}\nA,1,2,3,{row}\nB,2,3,4\n".encode())
+
+    if isinstance(expected, str):
+        assert re.search(expected, found.skipped[0])
+    else:
+        assert found.points[0].covariance_m2 == (expected and pytest.approx(expected))
+        assert not found.skipped and not found.table.question
+    assert found.points[-1].covariance_m2 is None
+    assert ("sn" in found.table.columns) == ("sE" in head or "σE" in head)
+
+
+def test_a_residual_is_judged_by_the_covariance_of_its_own_point():
+    own = (1e-2, 0.0, 0.0, 1e-6, 0.0, 1e-6)
+    points = [ControlPoint("A", (0.0, 0.0, 0.0), "check", 0.0, own), ControlPoint("B", (0, 0, 0))]
+    at = full({"A": (0.05, 0.0, 0.0), "B": (0.05, 0.0, 0.0)})
+    known = ControlContext(covariances={name: 1e-6 * np.eye(3) for name in at})
+
+    a, b = residuals(points, at, known).rows
+
+    assert a.sigmas < 1.0 < b.sigmas
+    assert not a.outlier and b.outlier
+    assert a.survey.major_m > 10.0 * a.survey.minor_m and b.survey is None
 
 
 @pytest.mark.parametrize("data", [b"", b"\0\0\0", b"a,b\n", "žluťoučký".encode("utf-16")])

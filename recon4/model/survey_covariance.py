@@ -1,0 +1,61 @@
+"""Covariance of a surveyed point, as the adjustment of a survey states it."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.model.tuning import SURVEY_COVARIANCES
+
+Covariance: TypeAlias = tuple[float, float, float, float, float, float]
+"""EE, EN, EH, NN, NH, HH [m²], E and N along the axes of the survey."""
+
+
+def covariance_of(sd_m: tuple[float, float, float]) -> Covariance:
+    """The covariance of independent coordinates, by their standard deviations E, N, H [m].
+
+    Raises:
+        ConfigError: As `check_covariance`.
+    """
+    e, n, h = sd_m
+    if min(sd_m) < 0.0:
+        raise ConfigError(f"expected standard deviations above 0, got {e:g}, {n:g}, {h:g} m")
+    return check_covariance((e * e, 0.0, 0.0, n * n, 0.0, h * h))
+
+
+def covariance_matrix(values: Covariance) -> Array:
+    """The same as a matrix [m²], (3, 3)."""
+    ee, en, eh, nn, nh, hh = values
+    return np.array([[ee, en, eh], [en, nn, nh], [eh, nh, hh]])
+
+
+def check_covariance(values: Covariance) -> Covariance:
+    """A covariance that a survey can have.
+
+    Raises:
+        ConfigError: If it is not positive definite, or a standard deviation is out of bounds: its
+            unit is another one.
+    """
+    if not np.isfinite(values).all():
+        raise ConfigError("expected a covariance of finite numbers")
+    matrix = covariance_matrix(values)
+    for axis, variance in zip("ENH", np.diag(matrix).tolist(), strict=True):
+        least, most = SURVEY_COVARIANCES.least_m, SURVEY_COVARIANCES.most_m
+        sd_m = math.sqrt(variance) if variance > 0.0 else variance
+        if not least <= sd_m <= most:
+            raise ConfigError(
+                f"the standard deviation {axis} is {sd_m:g} m: expected {least:g} to {most:g} m; "
+                "check its unit"
+            )
+    sd = np.sqrt(np.diag(matrix))
+    least_root = float(np.linalg.eigvalsh(matrix / np.outer(sd, sd))[0])
+    if least_root < SURVEY_COVARIANCES.least_root:
+        raise ConfigError(
+            "the covariance is not positive definite: a correlation is 1 or more, or its numbers "
+            "are in another order"
+        )
+    return values
