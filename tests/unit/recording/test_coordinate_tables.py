@@ -203,7 +203,7 @@ def test_rows_may_differ_behind_the_coordinates(tmp_path):
         ("Easting m", "x", "m"),
         ("Ellipsoidal Height", "z", None),
         ("nx", "-", None),
-        ("sd_e_m", "-", None),
+        ("sd_e_m", "se", "m"),
         ("Latitude", "lat", None),
         ("Číslo bodu", "id", None),
     ],
