@@ -69,7 +69,7 @@ class WalkRecord:
     """None = there are no decisions."""
     level: LevelFigures | None = None
     imu: ImuSamples | None = None
-    """As recorded, with the clock of the rig that was used."""
+    """As the odometry used it, with the clock of the rig that was used."""
     rig: Rig | None = None
     """The rig that the map was made with."""
     recorded_ns: int = 0
@@ -212,7 +212,7 @@ def _frame_store(artifacts: Mapping[str, Path]) -> FrameStore | None:
         return None
     calibration = _figures(artifacts, "calibration", CalibrationFigures)
     used = artifacts["calibration"] if calibration and calibration.applied else None
-    return open_frames(artifacts["frames"], used)
+    return open_frames(artifacts["frames"], used, artifacts.get("odometry"))
 
 
 class _Sentences(msgspec.Struct, frozen=True):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 9
+AUDIT_VERSION = 10
 """Raise it when witnesses find something else in the same walk: then finished projects are audited
 again."""
 
@@ -52,6 +52,7 @@ class FindingKind(StrEnum):
     IMU_SATURATED = "IMU-SATURATED"
     IMU_GRAVITY = "IMU-GRAVITY"
     IMU_UPSIDE_DOWN = "IMU-UPSIDE-DOWN"
+    IMU_FORCES_REVERSED = "IMU-FORCES-REVERSED"
     IMU_GYRO_SCALE = "IMU-GYRO-SCALE"
     IMU_GYRO_ROTATION = "IMU-GYRO-ROTATION"
     IMU_CLOCK = "IMU-CLOCK"

@@ -33,4 +33,7 @@ class RecordedFrames(Frames, Protocol):
     def t_mid_ns(self) -> Times:
         """Middle of each multiframe [ns], (N,)."""
 
+    def with_imu(self, imu: ImuSamples) -> RecordedFrames:
+        """The same multiframes with repaired samples."""
+
     def __iter__(self) -> Iterator[Multiframe]: ...

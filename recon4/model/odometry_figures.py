@@ -154,6 +154,9 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Whether the IMU was used."""
     imu_choice: ImuChoice | None = None
     """Which samples of it; None = there is none, or of an earlier version."""
+    forces_reversed: float | None = None
+    """Correlation of forces and motion as recorded, -1 to 0: the sign of all accelerations was
+    turned. None = it was not."""
     imu_faults: tuple[ImuFault, ...] = ()
     """What the filter corrected."""
     lines: LineFigures | None = None

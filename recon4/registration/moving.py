@@ -13,7 +13,7 @@ scan sees through a point only if it does so in all directions around it, too.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -252,6 +252,10 @@ class StandingFrames:
     def imu(self) -> ImuSamples | None:
         """IMU samples, if there are any."""
         return self.frames.imu
+
+    def with_imu(self, imu: ImuSamples) -> StandingFrames:
+        """The same multiframes with repaired samples."""
+        return replace(self, frames=self.frames.with_imu(imu))
 
     @property
     def t_mid_ns(self) -> Times:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
+from msgspec.structs import replace
 
-from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
+from recon4.model.hidden_points import FORCES_REVERSED, MOVING_POINTS, HiddenPoints
 from recon4.model.odometry_figures import OdometryFigures, TurnDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.felt_motion import are_carried, carried, felt_motion
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.pulled_motion import less_sure
+from recon4.registration.reversed_forces import reversed_forces, with_opposite_forces
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs
@@ -31,9 +34,11 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
             registration and odometry. Its progress counts multiframes; tracking
             that is lost is an event.
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense), ``steps.npz`` (a row a
-            multiframe), ``hypotheses.json`` (what was tried, and why one was chosen), and
-            ``moving.npz`` if points on moving objects are left out.
+            multiframe), ``hypotheses.json`` (what was tried, and why one was chosen),
+            ``moving.npz`` if points on moving objects are left out, and ``forces_reversed.npz``
+            if the accelerations had the wrong sign: later stages read both.
     """
+    recording, found = _with_right_forces(recording, out)
     choice = choose_walk(recording)
     hypothesis, tracked = choice.best.hypothesis, choice.best.tracked
     if hypothesis.hidden is not None:
@@ -46,7 +51,18 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     steps = tracked.steps
     steps.update(less_sure(steps, choice.moving, with_imu=used is not None))
     _save_steps(out / "steps.npz", steps)
-    return _figures(recording, choice, with_imu=used is not None)
+    figures = _figures(recording, choice, with_imu=used is not None)
+    return replace(figures, forces_reversed=found)
+
+
+def _with_right_forces(recording: WalkInputs, out: Path) -> tuple[WalkInputs, float | None]:
+    """The recording with accelerations of the right sign, and what showed that it was wrong."""
+    found = reversed_forces(recording.frames, recording.settings)
+    if found is None or recording.frames.imu is None:
+        return recording, None
+    np.savez(out / FORCES_REVERSED, correlation=found)
+    frames = recording.frames.with_imu(with_opposite_forces(recording.frames.imu))
+    return dataclasses.replace(recording, frames=frames), found
 
 
 def _carry(recording: WalkInputs, tracked: TrackedWalk, imu: ImuSamples) -> None:

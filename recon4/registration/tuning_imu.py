@@ -66,6 +66,25 @@ class ImuGravityTuning(Struct, frozen=True, kw_only=True):
 IMU_GRAVITY = ImuGravityTuning()
 
 
+class ReversedForcesTuning(Struct, frozen=True, kw_only=True):
+    """Accelerations with the wrong sign."""
+
+    upside_down_rad: float = 2.0
+    """Only a body whose z axis is farther from up, by the accelerometer, is looked at [rad]; on its
+    side it is 1.6 away."""
+    frames: int = 40
+    """Multiframes of a window that the LiDARs track alone."""
+    each: int = 2
+    """Velocities are measured over this many multiframes."""
+    least_knots: int = 6
+    """Fewer positions in a window show no motion."""
+    least: float = 0.4
+    """Forces against the motion are correlated more than this (docs/studies/real-recordings.md)."""
+
+
+REVERSED_FORCES = ReversedForcesTuning()
+
+
 class SaturationTuning(Struct, frozen=True, kw_only=True):
     """An IMU at the end of its range."""
 

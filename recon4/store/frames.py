@@ -16,6 +16,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
@@ -25,7 +26,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.beams import beam_change
-from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
+from recon4.model.hidden_points import FORCES_REVERSED, MOVING_POINTS, HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -162,10 +163,16 @@ class FrameStore:
     """The rig whose clock offsets are in the files."""
     hidden: HiddenPoints | None = None
     """Points that are left out; None = all are there."""
+    forces_reversed: bool = False
+    """Whether the accelerations in the files have the wrong sign: ``imu`` has the right one."""
 
     @staticmethod
     def open(
-        folder: Path, rig: Rig | None = None, hidden: HiddenPoints | None = None
+        folder: Path,
+        rig: Rig | None = None,
+        hidden: HiddenPoints | None = None,
+        *,
+        forces_reversed: bool = False,
     ) -> FrameStore:
         """Open what a `FrameWriter` left.
 
@@ -174,6 +181,7 @@ class FrameStore:
             rig: The same sensors with calibrated mounts and clocks; None = the rig of the
                 recording. All times are given by its clocks.
             hidden: Points that are left out.
+            forces_reversed: Whether to turn the sign of all accelerations.
 
         Raises:
             StoreError: If something is missing or the files do not fit each other.
@@ -193,15 +201,19 @@ class FrameStore:
         if [s.clock_rate_ppm for s in rig.sensors] != [s.clock_rate_ppm for s in recorded.sensors]:
             raise StoreError(f"{folder.name}: the rates of clocks are applied when it is read")
         imu, gnss = folder / "imu.npz", folder / "gnss.npz"
+        samples = _imu(imu, rig.imu_clock_offset_s - recorded.imu_clock_offset_s)
+        if forces_reversed and samples is not None:
+            samples = replace(samples, accel_m_s2=-samples.accel_m_s2)
         return FrameStore(
             folder,
             index,
             rig,
-            _imu(imu, rig.imu_clock_offset_s - recorded.imu_clock_offset_s),
+            samples,
             _gnss(gnss, rig.gnss_time_offset_s - recorded.gnss_time_offset_s),
             _read_report(folder / "report.json"),
             recorded,
             hidden,
+            forces_reversed,
         )
 
     def __len__(self) -> int:
@@ -242,11 +254,16 @@ class FrameStore:
 
     def __reduce__(self) -> tuple[Any, ...]:
         rig = None if self.rig is self.recorded else self.rig
-        return FrameStore.open, (self.folder, rig, self.hidden)
+        opened = partial(FrameStore.open, forces_reversed=self.forces_reversed)
+        return opened, (self.folder, rig, self.hidden)
 
     def with_rig(self, rig: Rig) -> FrameStore:
         """The same multiframes with calibrated mounts and clocks."""
-        return FrameStore.open(self.folder, rig, self.hidden)
+        return self.__reduce__()[0](self.folder, rig, self.hidden)
+
+    def with_imu(self, imu: ImuSamples) -> FrameStore:
+        """The same multiframes with repaired samples, for this process."""
+        return replace(self, imu=imu)
 
     def _clock_change_ns(self) -> NDArray[np.int32]:
         """How the clock offset of each LiDAR differs from that in the files [ns], (S,)."""
@@ -279,25 +296,33 @@ class FrameStore:
         return int(self.index["stop"][-1]) if len(self) else 0
 
 
-def open_frames(frames: Path, calibration: Path | None, odometry: Path | None = None) -> FrameStore:
+def open_frames(
+    frames: Path,
+    calibration: Path | None,
+    odometry: Path | None = None,
+    *,
+    with_moving: bool = False,
+) -> FrameStore:
     """Open the multiframes of a project with its calibrated rig, if that is used.
 
     Args:
         frames: Folder of the stage ``frames``.
         calibration: Folder of the stage ``calibration``; None = the rig of the recording.
         odometry: Folder of the stage ``odometry``, which knows the points on moving objects: they
-            are left out. None = all points are there.
+            are left out, and whether the forces are reversed. None = all is as recorded.
+        with_moving: Leave no points out.
 
     Raises:
         StoreError: If a folder is incomplete or damaged.
         ConfigError: If the rig file is damaged.
     """
     path = calibration / CALIBRATED_RIG if calibration else None
-    moving = odometry / MOVING_POINTS if odometry else None
+    moving = odometry / MOVING_POINTS if odometry and not with_moving else None
     return FrameStore.open(
         frames,
         load_rig(path) if path and path.is_file() else None,
         load_record(moving, HiddenPoints) if moving and moving.is_file() else None,
+        forces_reversed=odometry is not None and (odometry / FORCES_REVERSED).is_file(),
     )
 
 

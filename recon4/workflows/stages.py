@@ -199,8 +199,9 @@ def _level(
 
     control, undecided = (others.pop(name, None) for name in ("control", "undecided"))
     doubts = {name: one for name, one in others.items() if not isinstance(one, SiteControl)}
+    odometry = doubts.get("odometry")
     leveled = level_and_georeference(
-        open_frames(frames, calibration),
+        open_frames(frames, calibration, odometry, with_moving=True),
         RefinedWalk(
             trajectory=load_trajectory(refined / "trajectory.npz"),
             graph=load_graph(graph),
@@ -314,7 +315,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 34, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    47,
+    48,
     OdometryReads,
     _odometry,
     OdometryFigures,

@@ -39,6 +39,11 @@ class ImuUse:
             yield finding(FindingKind.IMU_MISSING, Level.NOTE, known_to(walk))
         if figures.imu_choice is not None and figures.imu_choice.outcome in _OUTCOMES:
             yield _choice(figures.imu_choice)
+        if figures.forces_reversed is not None:
+            samples = len(walk.imu) if walk.imu is not None else 0
+            values: dict[str, Value] = {"correlation": figures.forces_reversed, "samples": samples}
+            found = finding(FindingKind.IMU_FORCES_REVERSED, Level.NOTE, values)
+            yield replace(found, sensor="IMU")
         untimed = has_untimed_clouds(walk)
         for fault in figures.imu_faults:
             found = fault_finding(fault, corrected=True)

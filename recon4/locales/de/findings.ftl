@@ -227,8 +227,14 @@ IMU-GRAVITY = Falsche Schwerebeschleunigung
 IMU-UPSIDE-DOWN = Träger kopfüber
     .text1 = Nach dem Beschleunigungsmesser steht der Träger auf dem Kopf: seine z-Achse zeigt { DEGREES($angle_rad, digits: 0) } von oben weg.
     .remedy = Wenn das nicht so war: ein ruhender Beschleunigungsmesser muss +9,8 m/s² in der Achse messen, die nach oben zeigt. Das Vorzeichen aller Beschleunigungen umkehren und sie mit --imu angeben, oder den Einbau der IMU in [imu] rpy_deg der Rig-Datei angeben.
-    .meaning = Mit umgekehrtem Vorzeichen der Beschleunigungen oder falschem Einbau der IMU wird die Bewegung falsch vorhergesagt, und die Verfolgung geht verloren, sobald sich der Träger bewegt. Ein LiDAR, das kopfüber hängt, ist kein Fehler.
+    .meaning = Mit umgekehrtem Vorzeichen der Beschleunigungen oder falschem Einbau der IMU wird die Bewegung falsch vorhergesagt, und die Verfolgung geht verloren, sobald sich der Träger bewegt. Ein LiDAR, das kopfüber hängt, ist kein Fehler. Ein umgekehrtes Vorzeichen wird repariert, wo die Bewegung es zeigt: IMU-FORCES-REVERSED.
     .detection = Die mittlere Beschleunigung der Begehung ist mehr als 115° von der z-Achse des Trägers entfernt. Ein Hinweis; *prüfen*, wenn die Verfolgung verloren ging.
+
+IMU-FORCES-REVERSED = Beschleunigungen umgekehrt
+    .text1 = Die Beschleunigungen der IMU haben das falsche Vorzeichen: wie aufgenommen laufen sie der Bewegung entgegen, die die LiDARs messen (Korrelation { DECIMAL($correlation, digits: 2) }). Das Vorzeichen aller { COUNT($samples) } Messwerte wurde umgekehrt.
+    .remedy = Es ist nichts zu tun. Andere Programme brauchen dasselbe: in Ruhe muss ein Beschleunigungsmesser +9,8 m/s² in der Achse messen, die nach oben zeigt.
+    .meaning = Der Treiber veröffentlicht die Schwerkraft, wo die spezifische Kraft erwartet wird. Die Bewegung würde falsch herum vorhergesagt, und die Karte stünde auf dem Kopf.
+    .detection = Nach dem Beschleunigungsmesser steht der Träger auf dem Kopf, und in den bewegtesten Strecken haben die Geschwindigkeitsänderungen nach den LiDARs allein das umgekehrte Vorzeichen: eine Korrelation unter -0,4.
 
 IMU-GYRO-SCALE = Maßstab des Kreisels
     .text1 = Der Kreisel misst Drehungen um { $direction } um { PERCENT($size, digits: 1) } ± { PERCENT($sd, digits: 1) } zu { WORD($way, of: "IMU-GYRO-SCALE") }: seinen Maßstab prüfen. Die Odometrie hat es korrigiert.

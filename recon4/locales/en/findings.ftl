@@ -228,8 +228,14 @@ IMU-GRAVITY = Wrong gravity
 IMU-UPSIDE-DOWN = Body upside down
     .text1 = By the accelerometer the body stands on its head: its z axis points { DEGREES($angle_rad, digits: 0) } away from up.
     .remedy = If it did not: an accelerometer at rest must measure +9.8 m/s² along the axis that points up. Reverse the sign of all accelerations and give them with --imu, or give the mount of the IMU in [imu] rpy_deg of the rig file.
-    .meaning = With the sign of the accelerations reversed, or a wrong mount of the IMU, the motion is predicted the wrong way and tracking is lost when the body moves. A LiDAR that hangs upside down is no fault.
+    .meaning = With the sign of the accelerations reversed, or a wrong mount of the IMU, the motion is predicted the wrong way and tracking is lost when the body moves. A LiDAR that hangs upside down is no fault. A reversed sign is repaired where the motion shows it: IMU-FORCES-REVERSED.
     .detection = The mean acceleration of the walk is more than 115° away from the z axis of the body. A note; *check* if tracking was lost.
+
+IMU-FORCES-REVERSED = Accelerations reversed
+    .text1 = The accelerations of the IMU have the wrong sign: as recorded, they run against the motion that the LiDARs measure (correlation { DECIMAL($correlation, digits: 2) }). The sign of all { COUNT($samples) } samples was turned.
+    .remedy = Nothing needs to be done. Other programs need the same: at rest, an accelerometer must measure +9.8 m/s² along the axis that points up.
+    .meaning = The driver publishes gravity where the specific force is expected. The motion would be predicted the wrong way, and the map would stand on its head.
+    .detection = By the accelerometer the body stands on its head, and in the stretches with the most motion the changes of speed by the LiDARs alone have the opposite sign: a correlation below -0.4.
 
 IMU-GYRO-SCALE = Scale of the gyroscope
     .text1 = The gyroscope measures turns about { $direction } { PERCENT($size, digits: 1) } ± { PERCENT($sd, digits: 1) } too { WORD($way, of: "IMU-GYRO-SCALE") }: check its scale. The odometry corrected it.

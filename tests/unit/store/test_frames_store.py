@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import NoSpace, StoreError
-from recon4.model.hidden_points import HiddenPoints
+from recon4.model.hidden_points import FORCES_REVERSED, HiddenPoints
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
@@ -303,6 +303,23 @@ def test_points_that_a_stage_hides_are_not_there_in_other_processes_either(writt
     for store in (opened, pickle.loads(pickle.dumps(opened))):
         np.testing.assert_array_equal(store[0].xyz, frames[0].xyz[~mask])
         assert len(store[2]) == 7
+
+
+def test_forces_that_the_odometry_turned_are_turned_wherever_its_folder_is_given(written, tmp_path):
+    folder = written[0]
+    samples = ImuSamples(np.array([1, 2], np.int64), np.ones((2, 3)), np.full((2, 3), 9.8))
+    save_record(folder / "imu.npz", samples)
+    (tmp_path / "odometry").mkdir()
+    (tmp_path / "odometry" / FORCES_REVERSED).touch()
+
+    recorded = open_frames(folder, None)
+    opened = open_frames(folder, None, tmp_path / "odometry", with_moving=True)
+
+    assert (recorded.imu.accel_m_s2 == 9.8).all()
+    turned = opened.with_rig(opened.rig)
+    for store in (opened, turned, pickle.loads(pickle.dumps(turned))):
+        assert (store.imu.accel_m_s2 == -9.8).all()
+        assert (store.imu.gyro_rad_s == 1.0).all()
 
 
 def test_an_odometry_that_hides_nothing_changes_nothing(written, tmp_path):

@@ -1,0 +1,50 @@
+"""Accelerations with the wrong sign are distinguished from a LiDAR that hangs upside down."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.registration.reversed_forces import reversed_forces, with_opposite_forces
+from recon4.settings import preset
+from recon4.settings.reads import OdometryReads, part_of
+
+SETTINGS = part_of(preset("indoor"), OdometryReads)
+OVER = SE3.from_rpy(np.pi, 0.0, 0.0, t=[0.0] * 3)
+"""From a body that stands to one that hangs."""
+
+
+class Walk:
+    """A recording with another IMU or rig."""
+
+    def __init__(self, frames, *, imu=None, rig=None):
+        self._frames, self.imu, self.rig = frames, imu or frames.imu, rig or frames.rig
+        self.t_mid_ns = frames.t_mid_ns
+
+    def __len__(self):
+        return len(self._frames)
+
+    def __getitem__(self, k):
+        return self._frames[k]
+
+
+def hanging(rig):
+    """The rig whose body is turned over with all of its sensors."""
+    sensors = [replace(s, T_body_sensor=OVER @ s.T_body_sensor) for s in rig.sensors]
+    return replace(rig, sensors=tuple(sensors), T_body_imu=OVER @ rig.T_body_imu)
+
+
+@pytest.mark.parametrize("turned_over", [False, True])
+def test_only_forces_against_the_motion_of_the_lidars_are_reversed(frames, turned_over):
+    wrong = with_opposite_forces(frames.imu)
+    if turned_over:
+        assert reversed_forces(Walk(frames, rig=hanging(frames.rig)), SETTINGS) is None
+    else:
+        assert reversed_forces(Walk(frames, imu=wrong), SETTINGS) < -0.8
+        assert reversed_forces(frames, SETTINGS) is None
+
+
+def test_an_imu_without_accelerometer_is_not_looked_at(frames):
+    nan = replace(frames.imu, accel_m_s2=np.full_like(frames.imu.accel_m_s2, np.nan))
+    assert reversed_forces(Walk(frames, imu=nan), SETTINGS) is None
