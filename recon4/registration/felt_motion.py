@@ -112,8 +112,9 @@ def carried(steps: WalkSteps, felt: FeltMotion) -> Iterator[tuple[int, OdometryS
     """What the accelerometer says of motions that the points hardly observe: steps by number.
 
     Their covariance is at most what it was: where the accelerometer contradicts the odometry, or
-    knows no better after a long time, it stays. That of a step whose points observe all directions
-    is at least what they pull it along by.
+    knows no better after a long time, it stays. A step whose points observe all directions keeps
+    its covariance, and states the part of it that they pull it along by: a larger step undoes what
+    the weak ones before it state.
     """
     shifts, weak = np.diff(steps.T_odom_body.t, axis=0), are_carried(steps)[1:]
     directions = steps.column("weak_direction")[1:]
@@ -146,11 +147,7 @@ def _with_weak_motion(step: OdometryStep, sd_m: float) -> OdometryStep:
 
 
 def _pulled(step: OdometryStep, sd_m: float) -> OdometryStep:
-    along = step.weak_direction
-    cov = step.motion_cov.copy()
-    more = max(sd_m**2 - _sd_along(step, along) ** 2, 0.0)
-    cov[TRANSLATION, TRANSLATION] += more * np.outer(along, along)
-    return replace(step, motion_cov=cov, weak_motion_sd_m=sd_m)
+    return replace(step, weak_motion_sd_m=min(sd_m, _sd_along(step, step.weak_direction)))
 
 
 def _sd_along(step: OdometryStep, along: Array) -> float:

@@ -125,20 +125,26 @@ def test_steps_that_are_nearly_weak_and_slide_do_not_pull_the_accelerometer_alon
     assert wrong_m < min(2.0 * stated_m, 0.4 * 5.0 * 0.05)
 
 
-def test_a_step_that_undoes_a_slide_is_as_unsure_as_it_is_long() -> None:
+def test_a_step_that_undoes_a_slide_is_known_to_be_wrong() -> None:
+    """It is stated with its own covariance only: the weak steps before it state the slide."""
     trajectory, imu = walked("office", seconds=15.0)
     seen = dragged(trajectory, 0.03)
     back = seen.t_ns >= trajectory.t_ns[0] + 100_000_000 * WEAK.stop
     undone = Trajectory(
         seen.t_ns, SE3(seen.T_a_b.R, np.where(back[:, None], trajectory.T_a_b.t, seen.T_a_b.t))
     )
+    steps = steps_of(undone, ALONG_X)
 
-    steps = after(trajectory, imu, ALONG_X, seen=undone)
+    felt = felt_motion(steps, undone, imu, rig=RIG, accel_noise=ACCEL_NOISE)
 
-    jump = steps[WEAK.stop]
-    assert jump.weak_sd_m < 0.01
-    assert 0.5 * 0.15 < jump.weak_motion_sd_m < 1.5 * 0.15
-    assert jump.motion_cov[3, 3] >= jump.weak_motion_sd_m**2
+    assert felt is not None
+    jump = WEAK.stop - 1
+    assert steps[jump + 1].weak_sd_m < 0.01
+    assert felt.pulled_sd_m[jump] == pytest.approx(0.15, rel=0.5)
+    assert felt.pulled_sd_m[jump + 1 :].max() < 3e-4
+    stated = dict(carried(steps, felt))[jump + 1]
+    assert stated.weak_motion_sd_m == pytest.approx(0.06)
+    np.testing.assert_array_equal(stated.motion_cov, STATED)
 
 
 def test_nothing_is_less_sure_than_before_and_other_directions_stay() -> None:
