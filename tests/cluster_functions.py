@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import signal
 import threading
 import time
@@ -55,6 +56,19 @@ def make_part_and_die_once(task: PartTask, say: Say) -> str:
         killed.write_text(str(task.item), "ascii")
         os.kill(os.getpid(), signal.SIGKILL)
     return failure
+
+
+def make_part_with_full_disk(task: PartTask, say: Say) -> str:
+    """Make a part; the first worker that comes can write no file of more than 4 KiB."""
+    full = Path(task.project) / "full"
+    try:
+        full.touch(exist_ok=False)
+        full.write_text(str(os.getpid()), "ascii")
+        _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, most))  # its makers inherit it
+    except FileExistsError:
+        pass
+    return make_part(task, say)
 
 
 def make_part_slowly(task: PartTask, say: Say) -> str:

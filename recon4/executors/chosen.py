@@ -54,9 +54,9 @@ def checked_choice(chosen: ChosenWorkers) -> ChosenWorkers:
     if not 0 <= chosen.count <= most:
         raise ConfigError(CodedText("workers-count", most=most, got=chosen.count))
     if chosen.scheduler and not _SCHEDULER.fullmatch(chosen.scheduler):
-        raise ConfigError(CodedText("workers-scheduler"))
+        raise ConfigError(CodedText("workers-scheduler-malformed"))
     if chosen.dashboard and not _DASHBOARD.fullmatch(chosen.dashboard):
-        raise ConfigError(CodedText("workers-dashboard"))
+        raise ConfigError(CodedText("workers-dashboard-malformed"))
     if chosen.count and chosen.scheduler:
         raise ConfigError(CodedText("workers-both"))
     return chosen

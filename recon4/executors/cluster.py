@@ -6,6 +6,7 @@ with certificates only, and that of this machine has temporary ones.
 
 from __future__ import annotations
 
+import logging
 import uuid
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, suppress
@@ -20,6 +21,8 @@ from recon4.executors.tuning import CLUSTER
 
 if TYPE_CHECKING:
     from distributed import Client, Worker
+
+log = logging.getLogger(__name__)
 
 _LINES = "recon4-lines-"
 """Topic of the lines that a run's tasks say; its number follows."""
@@ -174,7 +177,7 @@ def workers_of(scheduler: str, certificates: Certificates, shared: Path) -> Clus
             client = Client(scheduler, security=security, timeout=CLUSTER.connects_within_s)
         except (OSError, TimeoutError) as error:
             raise ConfigError(f"no scheduler answers at {scheduler}: {error}") from error
-        opened.enter_context(client)
+        opened.callback(_close, client)
         require_workers(seen_workers(client, shared), shared)
         return client
 
@@ -212,6 +215,15 @@ def require_workers(workers: Sequence[SeenWorker], shared: Path) -> None:
                 f"{worker.address} does not see {shared}: all workers need this folder, under the "
                 "same name"
             )
+
+
+def _close(client: Client) -> None:
+    """Close a client; one that lost its scheduler may fail to, by errors of any kind."""
+    try:
+        client.close()
+    except Exception as error:
+        log.debug("a client that lost its scheduler could not be closed: %s", error)
+        client.status = "closed"  # else this is tried again at the end of the process
 
 
 def _require() -> None:

@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 from recon4_app.jobs.model import Inputs, Job, JobState
 from tests.served import office, served
 
-pytestmark = pytest.mark.e2e
+pytestmark = [pytest.mark.e2e, pytest.mark.study]
 
 server = served(office(points=1000), fresh=True)
 ROW = {"name": "north 4711", "part": "map-tile (0, 1, 0)", "made": 12, "failed": 1, "seconds": 31.5}

@@ -17,7 +17,8 @@ class Cuttable:
         self._cut = False
         self._writers: set[asyncio.StreamWriter] = set()
         self._loop = asyncio.new_event_loop()
-        self._stop = asyncio.Event()
+        self._stop, self._flows = asyncio.Event(), asyncio.Event()
+        self._flows.set()
         self.received = 0
         """Bytes that came from the server."""
         self.port = 0
@@ -33,6 +34,14 @@ class Cuttable:
     def restore(self) -> None:
         """Let connections through again."""
         self._cut = False
+
+    def hold(self) -> None:
+        """Pass nothing on, as when a cable is pulled out; connections stay open."""
+        self._call(self._flows.clear)
+
+    def release(self) -> None:
+        """Pass on what was held, and what comes."""
+        self._call(self._flows.set)
 
     def _break(self) -> None:
         self._cut = True
@@ -72,6 +81,7 @@ class Cuttable:
     async def _pump(self, reader, writer, *, counted: bool) -> None:
         while data := await reader.read(1 << 16):
             self.received += len(data) if counted else 0
+            await self._flows.wait()
             writer.write(data)
             await writer.drain()
         writer.close()

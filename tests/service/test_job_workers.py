@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 
+import httpx
 import psutil
 import pytest
 
@@ -12,7 +13,7 @@ from recon4.executors.chosen import ChosenWorkers, store_choice
 from tests.ordered_maps import bytes_of, make_map
 from tests.served import served
 from tests.service.ordering_map_worker import AGAIN
-from tests.service.running import Running, wait_for
+from tests.service.running import WITHOUT_TLS, Running, wait_for
 
 server = served(worker_module="tests.service.ordering_map_worker")
 
@@ -61,6 +62,24 @@ def test_workers_make_the_tiles_and_a_cancelled_job_leaves_no_order_running(serv
     wait_for(lambda: not processes_of(server, "made"), "nothing works for it")
 
 
+def test_an_administrator_chooses_workers(server):
+    def put(**choice) -> httpx.Response:
+        url = f"{server.url}/api/workers"
+        origin = {"Origin": server.url}
+        return httpx.put(url, json=choice, headers=origin, verify=WITHOUT_TLS)
+
+    chosen = put(scheduler="tls://north:8786", dashboard="http://north:8787/status")
+    refused = put(scheduler="tcp://north:8786")
+
+    assert chosen.status_code == 200, chosen.text
+    assert (refused.status_code, refused.json()["code"]) == (422, "workers-scheduler-malformed")
+    now = server.get("/api/workers").json()
+    assert now["scheduler"] == "tls://north:8786"
+    assert not now["has_certificates"]
+    assert now["folder"] == str(server.root / ".recon4" / "cluster")
+
+
+@pytest.mark.study
 def test_a_job_without_its_workers_is_made_by_this_computer(server):
     choose(server, scheduler="tls://127.0.0.1:1")
 

@@ -41,7 +41,7 @@ export class JobWorkersPart extends HTMLElement {
         ${of.workers.length ? table(of.workers) : nothing}
         ${
           dashboard
-            ? html`<p><a href=${dashboard} rel="noreferrer">${t("workers-dashboard")}</a></p>`
+            ? html`<p><a href=${dashboard} rel="noreferrer">${t("dashboard-of-scheduler")}</a></p>`
             : nothing
         }`,
       this,

@@ -363,8 +363,8 @@ word-decision-withdraw = Korrektur zurücknehmen
 ## Arbeitsprozesse
 
 workers-count = Anzahl: 0 bis { $most } erwartet, { $got } erhalten
-workers-scheduler = Scheduler: tls://RECHNER:PORT erwartet; wer einen Scheduler ohne Zertifikate erreicht, kann auf dessen Rechnern Programme ausführen
-workers-dashboard = Dashboard: die Adresse einer Seite erwartet, https://RECHNER:PORT/status
+workers-scheduler-malformed = Scheduler: tls://RECHNER:PORT erwartet; wer einen Scheduler ohne Zertifikate erreicht, kann auf dessen Rechnern Programme ausführen
+workers-dashboard-malformed = Dashboard: die Adresse einer Seite erwartet, https://RECHNER:PORT/status
 workers-both = entweder Prozesse dieses Rechners oder ein Scheduler, nicht beides
 workers-being-tested = die Arbeitsprozesse werden gerade geprüft: auf die Antwort warten
 workers-test-failed = die Prüfung gab keine Antwort: siehe recon4 doctor

@@ -381,7 +381,7 @@ setting-empty = leer
 
 workers = Arbeitsprozesse
 workers-unused = Dieser Rechner macht alle Teile selbst: { $problem }
-workers-dashboard = Dashboard des Schedulers
+dashboard-of-scheduler = Dashboard des Schedulers
 worker = Prozess
 worker-now = Macht
 worker-idle = gerade nichts

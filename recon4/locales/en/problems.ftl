@@ -375,8 +375,8 @@ word-decision-withdraw = withdraw
 ## Workers
 
 workers-count = count: expected 0 to { $most }, got { $got }
-workers-scheduler = scheduler: expected tls://HOST:PORT; anyone who reaches a scheduler without certificates can run programs on its workers
-workers-dashboard = dashboard: expected the address of a page, https://HOST:PORT/status
+workers-scheduler-malformed = scheduler: expected tls://HOST:PORT; anyone who reaches a scheduler without certificates can run programs on its workers
+workers-dashboard-malformed = dashboard: expected the address of a page, https://HOST:PORT/status
 workers-both = choose processes of this computer or a scheduler, not both
 workers-being-tested = the workers are being tested: wait for the answer
 workers-test-failed = the test gave no answer: see recon4 doctor

@@ -381,7 +381,7 @@ setting-empty = empty
 
 workers = Workers
 workers-unused = This computer makes all parts: { $problem }
-workers-dashboard = Dashboard of the scheduler
+dashboard-of-scheduler = Dashboard of the scheduler
 worker = Worker
 worker-now = Makes
 worker-idle = nothing now

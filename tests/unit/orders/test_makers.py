@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ from pathlib import Path
 import pytest
 from msgspec import structs
 
+from recon4.executors.executor import Finished
 from recon4.model.classes import PointClass
 from recon4.model.events import Warned
 from recon4.orders import on_worker
@@ -88,6 +90,31 @@ def test_what_workers_cannot_make_is_made_here_and_said(inputs, here, tmp_path):
     assert bytes_of(there) == bytes_of(here)
     assert len(warnings(progress)) == 2
     assert "made here instead of by a worker: lost" in warnings(progress)
+
+
+class FullDisk:
+    """An executor whose makers can write no file of more than 4 KiB."""
+
+    def run(self, function, tasks, say):
+        for one in tasks:
+            before = resource.getrlimit(resource.RLIMIT_FSIZE)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))  # makers inherit it
+            try:
+                failure = function(one, say)
+            finally:
+                resource.setrlimit(resource.RLIMIT_FSIZE, before)
+            yield Finished(one, failure)
+
+
+def test_what_a_worker_with_a_full_disk_cannot_write_is_made_here(inputs, here, tmp_path):
+    progress, workers = Silent(), DirectWorkers(tmp_path, FullDisk())
+
+    there = make_map(tmp_path, workers, inputs=inputs, progress=progress)
+
+    assert bytes_of(there) == bytes_of(here)
+    assert warnings(progress)
+    assert all("NoSpace: no space left on the disk" in one for one in warnings(progress))
+    assert list(tmp_path.rglob(".tmp-*")) == []
 
 
 def task(project, numbers=(0, 0, 0), *, folder="artifacts/a", versions=HERE):

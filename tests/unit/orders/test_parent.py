@@ -81,9 +81,12 @@ class Says:
 
 
 def test_what_workers_say_reaches_no_terminal_with_its_control_characters(tmp_path):
+    (tmp_path / "artifacts" / "a").mkdir(parents=True)
+    order = b'{"kind":"map-tile","folder":"artifacts/a","items":[[0,0,0]]}'
+    message = struct.pack(">I", len(order)) + order
     log: list[str] = []
 
-    run(tmp_path, "map", Says("\x1b[2Jdone"), log=log.append)
+    run(tmp_path, message.hex(), Says("\x1b[2Jdone"), log=log.append)
 
     assert "computer 7: <U+001B>[2Jdone" in log
     assert not [line for line in log if not line.isprintable()]
