@@ -44,7 +44,8 @@ def remote_cluster(folder: Path, workers: int = 1) -> Iterator[RemoteCluster]:
     processes += [start(folder, *worker) for _ in range(workers)]
     try:
         with Client(address, security=security(folder), timeout=HANG_S) as client:
-            client.wait_for_workers(workers, timeout=HANG_S)
+            if workers:
+                client.wait_for_workers(workers, timeout=HANG_S)
         yield RemoteCluster(address, folder, processes[0], processes[1:])
     finally:
         for process in reversed(processes):

@@ -7,9 +7,12 @@ with certificates only, and that of this machine has temporary ones.
 from __future__ import annotations
 
 import logging
+import threading
+import time
 import uuid
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, suppress
+from concurrent.futures import CancelledError
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +29,8 @@ log = logging.getLogger(__name__)
 
 _LINES = "recon4-lines-"
 """Topic of the lines that a run's tasks say; its number follows."""
+_OUT_OF_REACH = (OSError, TimeoutError, RuntimeError, AttributeError, KeyError)
+"""Errors of a client without its scheduler, also while it is closed."""
 _MISSING = "needs Dask, which is not installed; command: pip install 'recon4[dask]'"
 
 
@@ -81,10 +86,11 @@ class Cluster:
         futures = [client.submit(_on_worker, function, task, topic, pure=False) for task in tasks]
         of_future = dict(zip((future.key for future in futures), tasks, strict=True))
         try:
-            for future in as_completed(futures):
-                ended = _finished(of_future[future.key], future)
-                future.release()  # else it is run again when its worker dies later
-                yield ended
+            with _watched(client, futures):
+                for future in as_completed(futures):
+                    ended = _finished(of_future[future.key], future)
+                    future.release()  # else it is run again when its worker dies later
+                    yield ended
         finally:
             if client.status == "running":  # else it has cancelled all that it wanted
                 with suppress(OSError, TimeoutError):  # the scheduler is gone
@@ -217,6 +223,28 @@ def require_workers(workers: Sequence[SeenWorker], shared: Path) -> None:
             )
 
 
+@contextmanager
+def _watched(client: Client, futures: Sequence[Any]) -> Iterator[None]:
+    """Cancel tasks when there have been no workers for a while; Dask would wait for ever."""
+    over = threading.Event()
+
+    def watch() -> None:
+        latest_s = time.monotonic() + CLUSTER.without_workers_s
+        while not over.wait(CLUSTER.looks_every_s):
+            with suppress(*_OUT_OF_REACH):
+                if client.scheduler_info(n_workers=1)["workers"]:
+                    latest_s = time.monotonic() + CLUSTER.without_workers_s
+                elif time.monotonic() > latest_s:
+                    client.cancel(futures, force=True)
+                    return
+
+    threading.Thread(target=watch, daemon=True).start()
+    try:
+        yield
+    finally:
+        over.set()
+
+
 def _close(client: Client) -> None:
     """Close a client; one that lost its scheduler may fail to, by errors of any kind."""
     try:
@@ -269,8 +297,10 @@ def _finished(task: Task, future: Any) -> Finished[Task, Any]:
     if future.status == "finished":
         try:
             return Finished(task, future.result())
+        except CancelledError:  # this moment
+            pass
         except OSError as error:  # the scheduler is gone, and the result with it
             return Finished(task, None, f"its result is lost: {error}")
-    if future.status == "cancelled":
-        return Finished(task, None, "the scheduler has ended or lost it")
+    if future.status in ("finished", "cancelled"):
+        return Finished(task, None, "the scheduler has no workers any more, has ended or lost it")
     return Finished(task, None, f"{type(future.exception()).__name__}: {future.exception()}")

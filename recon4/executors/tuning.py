@@ -14,6 +14,10 @@ class ClusterTuning(Struct, frozen=True, kw_only=True):
     """Processes of one machine."""
     connects_within_s: float = 20.0
     """Time a scheduler may take to answer [s]."""
+    without_workers_s: float = 60.0
+    """A scheduler whose workers have been gone for this long is given up [s]."""
+    looks_every_s: float = 2.0
+    """Whether it has workers is looked at this often [s]."""
     log_level: int = logging.CRITICAL
     """Of the messages of Dask; a task that is lost is reported by its result."""
 

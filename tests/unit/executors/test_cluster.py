@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import os
 import threading
+from contextlib import ExitStack
 
 import pytest
+from msgspec import structs
 
 from recon4.cli.main import main
 from recon4.errors import ConfigError
 from recon4.executors.cluster import Certificates, Cluster, workers_here, workers_of
 from recon4.executors.executor import InOrder
+from recon4.executors.tuning import CLUSTER
 from tests.cluster_functions import always_die, die_first, double, refuse, until_stopped
 from tests.clusters import files_in, remote_cluster, write_certificates
 from tests.service.running import wait_for
@@ -82,6 +85,25 @@ def test_the_work_of_a_program_that_is_gone_stops(remote, tmp_path):
         assert begun.wait(20)
 
     wait_for(stopped.exists, "the task stops")
+
+
+@pytest.mark.study
+def test_a_scheduler_that_lost_its_workers_is_given_up(tmp_path, monkeypatch):
+    soon = structs.replace(CLUSTER, without_workers_s=0.5, looks_every_s=0.1)
+    monkeypatch.setattr("recon4.executors.cluster.CLUSTER", soon)
+    begun = threading.Event()
+    with ExitStack() as opened:
+        remote = opened.enter_context(remote_cluster(tmp_path))
+        workers = workers_of(remote.address, files_in(tmp_path), tmp_path)
+        cluster = opened.enter_context(workers)
+        stopped = str(tmp_path / "stopped")
+        tasks = cluster.run(until_stopped, ["", stopped], lambda *_: begun.set())
+        assert next(tasks).task == ""
+        assert begun.wait(20)
+        remote.workers[0].kill()
+        (ended,) = tasks
+
+    assert "no workers any more" in ended.failure
 
 
 @pytest.mark.study

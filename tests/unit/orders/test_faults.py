@@ -9,10 +9,14 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 import pytest
+from distributed import Client
+from msgspec import structs
 
 from recon4.executors.cluster import workers_here, workers_of
+from recon4.executors.tuning import CLUSTER
 from tests.cluster_functions import make_part_with_full_disk
-from tests.clusters import files_in, remote_cluster
+from tests.clusters import files_in, remote_cluster, security, start
+from tests.deadlines import HANG_S
 from tests.ordered_maps import bytes_of, full_inputs, make_map
 from tests.service.cuttable import Cuttable, cuttable
 from tests.service.running import wait_for
@@ -57,6 +61,43 @@ class Faulty:
         healing.start()
         yield from ended
         healing.join()
+
+
+NO_WORKERS = (
+    "made here instead of by a worker: the scheduler has no workers any more, has ended or lost it"
+)
+
+
+@pytest.mark.parametrize(("fault", "said"), [("held", []), ("broken once", [NO_WORKERS])])
+def test_the_link_between_a_worker_and_the_scheduler_has_a_fault(
+    fault, said, inputs, here, tmp_path, monkeypatch
+):
+    """A worker whose connection breaks ends, and nobody starts it again."""
+    soon = structs.replace(CLUSTER, without_workers_s=2.0, looks_every_s=0.2)
+    monkeypatch.setattr("recon4.executors.cluster.CLUSTER", soon)
+    certificates = tmp_path / "certificates"
+    certificates.mkdir()
+    with ExitStack() as opened:
+        remote = opened.enter_context(remote_cluster(certificates, workers=0))
+        link = opened.enter_context(cuttable(urlsplit(remote.address).port))
+        address = f"tls://127.0.0.1:{link.port}"
+        worker = start(certificates, "worker", address, "--nthreads", "1", "--no-dashboard")
+        opened.callback(worker.wait)
+        opened.callback(worker.terminate)
+        with Client(remote.address, security=security(certificates), timeout=HANG_S) as client:
+            client.wait_for_workers(1, timeout=HANG_S)
+        workers = workers_of(remote.address, files_in(certificates), tmp_path)
+        cluster = opened.enter_context(workers)
+
+        def release() -> None:
+            wait_for(lambda: list(tmp_path.rglob("made_*")), "the worker makes what it has")
+            link.release()
+
+        faults = {"held": (link.hold, release), "broken once": (link.cut, link.restore)}
+        made, warnings = by(Faulty(cluster, *faults[fault]), tmp_path, inputs)
+
+    assert made == here
+    assert warnings == said
 
 
 def on_a_faulty_link(
