@@ -6,7 +6,7 @@ Pages, API and commands show the same line, which is made here and nowhere else.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -49,8 +49,10 @@ class ApprovalState:
     kind: ApprovalKind
     text: str
     """One line, shown wherever a file of the results is offered."""
-    line: StoredText
-    """The same with its code and values, to be said in another language."""
+    code: str = ""
+    """Of that line, to be said in another language; empty = it has none."""
+    values: dict[str, int | float | str] = field(default_factory=dict)
+    """What the line quotes, by name."""
     detail: str = ""
     """Why it does not count, and what to do; empty if there is no more to say."""
     version: int | None = None
@@ -66,11 +68,15 @@ class ApprovalState:
     checking: bool = False
     """Whether the bytes of the results are just being compared with the signed hashes."""
 
+    @property
+    def line(self) -> StoredText:
+        """The line with its code and values."""
+        return StoredText(text=self.text, code=self.code, values=self.values)
+
 
 def _draft(code: str, text: str) -> ApprovalState:
     """The state of a draft; importing this module reads no texts."""
-    line = StoredText(text=text, code=code)
-    return ApprovalState(kind=ApprovalKind.DRAFT, text=text, line=line)
+    return ApprovalState(kind=ApprovalKind.DRAFT, text=text, code=code)
 
 
 NOT_APPROVED = _draft("approval-draft", "Draft: not approved")
@@ -153,11 +159,12 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
 
 
 def _state_of(kind: ApprovalKind, line: CodedText) -> ApprovalState:
-    return ApprovalState(kind=kind, text=str(line), line=StoredText.of(line))
+    return _with(NOT_APPROVED, kind, line)
 
 
 def _with(state: ApprovalState, kind: ApprovalKind, line: CodedText) -> ApprovalState:
-    return replace(state, kind=kind, text=str(line), line=StoredText.of(line))
+    said = StoredText.of(line)
+    return replace(state, kind=kind, text=said.text, code=said.code, values=said.values)
 
 
 def _signed(stamp: Stamp) -> dict[str, Shown]:

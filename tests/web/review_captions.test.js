@@ -29,7 +29,7 @@ test("a map is marked as approved only once its bytes were compared", () => {
 
 test("the line of an approval is said by its code, in the language of the page", () => {
   const line = { text: "", code: "approval-changed", values: { version: 3 } };
-  assert.equal(text({ kind: "changed", line, hash: "" }), "▲ Draft: changed since version 3");
+  assert.equal(text({ kind: "changed", ...line, hash: "" }), "▲ Draft: changed since version 3");
 });
 
 test("whatever does not count is marked with the words of the server", () => {

@@ -83,7 +83,7 @@ const details = (/** @type {ExportView} */ { made, kept, of_this_map }) =>
   made
     ? html`<p class="quiet">
           ${[
-            approvalWords({ text: made.approval, line: made.approval_line }),
+            approvalWords(made.approval_line ?? { text: made.approval, code: "", values: {} }),
             of_this_map ? "" : t("export-earlier"),
             kept ? "" : t("export-removed"),
           ]

@@ -16,7 +16,7 @@ const LEVELS = {
 
 /** Mark, line and CSS class; nothing is marked as approved while its bytes are being compared. */
 export function approvalLine(
-  /** @type {Pick<ApprovalState, "kind" | "text" | "line" | "checking">} */ state,
+  /** @type {Pick<ApprovalState, "kind" | "text" | "code" | "values" | "checking">} */ state,
 ) {
   const { kind, checking } = state;
   const [mark, level] = LEVELS[kind];
@@ -26,9 +26,8 @@ export function approvalLine(
 }
 
 /** The line of an approval in the language of the page. */
-export const approvalWords = (
-  /** @type {{text: string, line: StoredText | null}} */ { text, line },
-) => (line?.code ? t(line.code, line.values) : text);
+export const approvalWords = (/** @type {StoredText} */ { text, code, values }) =>
+  code ? t(code, values) : text;
 
 /** Whether the files carry an approval that does not count. */
 export const isRefused = (/** @type {Pick<ApprovalState, "kind">} */ { kind }) =>

@@ -98,7 +98,8 @@ export type ApprovalKind = "draft" | "approved" | "earlier" | "changed" | "unkno
 export interface ApprovalState {
   kind: ApprovalKind;
   text: string;
-  line: StoredText;
+  code: string;
+  values: Record<string, number | string>;
   detail: string;
   version: number | null;
   who: string;

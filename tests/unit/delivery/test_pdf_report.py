@@ -20,7 +20,7 @@ from recon4.delivery.pdf_signature import Organization, sign_pdf, signatures_in
 from recon4.delivery.report_files import ReportWish, report_of, said_state, server_key, write_pdf
 from recon4.errors import ConfigError, StoreError
 from recon4.findings.wording import title_of
-from recon4.locales.coded import CodedText, StoredText
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import Verdict
 from recon4.report import pdf
@@ -310,7 +310,7 @@ def test_a_german_report_has_german_words_and_commas_but_names_as_given(room):
     assert say.label("sensor moving") == "Sensor moving"
     line = CodedText("approval-earlier", version=1, who="Ann", day="2026-11-27", newest=3)
     state = ApprovalState(
-        kind=ApprovalKind.EARLIER, text=str(line), line=StoredText.of(line), version=1
+        kind=ApprovalKind.EARLIER, text=str(line), code=line.code, values=dict(line.values)
     )
     assert said_state(state, say) == "Freigegeben v1 · Ann · 2026-11-27; Version 3 ist neuer"
     assert said_state(state, words()) == state.text
