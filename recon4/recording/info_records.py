@@ -96,7 +96,8 @@ class RecordingInfo:
         absolute = self.t_first_ns > FRAME_TIMES.earliest_ns
         if absolute or self.t_last_ns > self.t_first_ns:
             start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
-            lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
+            back = "" if self.seconds >= 0.0 else ", in reversed order: its times run backward"
+            lines.append(f"time      {start}, {about}{abs(self.seconds):.2f} s{back}")
         lines += [f"walk      {self.walk_text(language)}"] if self.walk else []
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about, language)

@@ -165,3 +165,14 @@ def test_what_an_import_stores_is_read_again_and_what_is_damaged_refused():
     assert derived_in({}) == ()
     with pytest.raises(StoreError, match=r"report\.json"):
         derived_in({"derived": [{"kind": "NO-SUCH"}]})
+
+
+@pytest.mark.parametrize(("last_s", "ends"), [(4, "4.00 s"), (-4, "its times run backward")])
+def test_a_recording_that_plays_backward_is_named_so(last_s, ends):
+    begin_ns, end_ns = 10**18, 10**18 + last_s * 10**9
+    info = RecordingInfo(
+        path="a", kind=RecordingKind.PCAP.text, bytes=0, t_first_ns=begin_ns, t_last_ns=end_ns
+    )
+    (time,) = [line for line in info.lines() if line.startswith("time ")]
+    assert ", 4.00 s" in time
+    assert time.endswith(ends)
