@@ -100,6 +100,23 @@ def test_other_hosts_are_refused_through_the_proxy_and_beside_it(site):
 
 
 @needs_nginx
+def test_tools_of_an_assistant_name_the_address_with_its_path(tmp_path):
+    call = {"name": "project_summary", "arguments": {"project": "office"}}
+    asked = {"jsonrpc": "2.0", "id": 1, "method": "tools/call", "params": call}
+    with behind_nginx(tmp_path, "/maps/old") as (site,), site.client() as client:
+        sign_in(client)
+        token = client.post("/api/me/tokens", json={"label": "helper"}).json()["token"]
+        bearer = {
+            "Authorization": f"Bearer {token}",
+            "Accept": "application/json, text/event-stream",
+        }
+        with site.client() as program:
+            said = program.post("/mcp", json=asked, headers=bearer).text
+
+    assert f"{site.url}/projects/office/" in said
+
+
+@needs_nginx
 @pytest.mark.parametrize(
     "removed", all_but_first_are_studies([False, True]), ids=["kept", "removed"]
 )
