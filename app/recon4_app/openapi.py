@@ -24,6 +24,11 @@ TOKEN_SCHEME = {
     "name": FORM_HEADER,
     "description": "`token` of `/api/me` or of the login; required unless the method is GET",
 }
+BEARER_SCHEME = {
+    "type": "http",
+    "scheme": "bearer",
+    "description": "an access token of the page Account, in place of the other two",
+}
 CLASS = re.compile(r"^class (?P<name>\w+).*\n(?P<body>(?:(?: {4}.*)?\n)+)", re.MULTILINE)
 FIELD = re.compile(
     r'^ {4}(?P<name>\w+): .*\n(?: {8}.*\n| {4}[)\]].*\n)* {4}"""(?P<text>(?:.|\n)*?)"""',
@@ -47,6 +52,7 @@ def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
     parts["securitySchemes"] = {  # required with a login only
         "session": {"type": "apiKey", "in": "cookie", "name": cookie_names(prefix).session},
         "token": TOKEN_SCHEME,
+        "access_token": BEARER_SCHEME,
     }
     parts["schemas"] |= _schemas_of_problems()
     for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others

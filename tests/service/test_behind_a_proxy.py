@@ -142,7 +142,9 @@ def test_everything_works_below_a_path_that_the_proxy_keeps_or_removes(tmp_path,
     assert docs.headers["location"] == f"{site.url}/docs/"
     assert invited["links"][0]["url"].startswith(f"{site.url}/pair#")
     assert described["servers"] == [{"url": "/maps/old"}]
-    assert described["components"]["securitySchemes"]["session"]["name"] == "__Secure-sid-maps~old"
+    schemes = described["components"]["securitySchemes"]
+    assert schemes["session"]["name"] == "__Secure-sid-maps~old"
+    assert schemes["access_token"]["scheme"] == "bearer"
     assert lost.status_code == 404 and 'href="/maps/old/web/shared/base.css"' in lost.text
     assert 'route="/api/login"' in metrics
     assert len(socket) > 0 and len(viewer) > 0
