@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
+from recon4.products.curves import CurvedFace, curved_faces
 from recon4.products.faces import Face, fit_faces
 from recon4.products.openings import FaceOpening, OpeningKind, Rays, openings_of, sample_rays
 from recon4.products.storeys import BuildingStorey, Levels
@@ -43,7 +45,7 @@ class FloorPlan:
 
     storey: BuildingStorey
     walls: list[Array]
-    """Faces of walls as they are cut, (2, 2) each."""
+    """Faces of walls as they are cut, (2, 2) each, then curved ones as polylines, (N, 2)."""
     sections: list[Polygon]
     """Cut walls of which both faces were seen, and cut columns: to be filled."""
     columns: list[Polygon]
@@ -61,7 +63,7 @@ class FloorPlan:
     @property
     def wall_length_m(self) -> float:
         """Of all faces that are cut [m]."""
-        return float(sum(np.linalg.norm(b - a) for a, b in self.walls))
+        return float(sum(np.linalg.norm(np.diff(w, axis=0), axis=1).sum() for w in self.walls))
 
     @property
     def text(self) -> str:
@@ -89,20 +91,22 @@ def draw_plan(tiles: TileSet, storey: BuildingStorey, levels: Levels) -> FloorPl
 
 def plan_of(cells: WallCells, rays: Rays, storey: BuildingStorey) -> FloorPlan:
     """Fit the plan of a storey to its upright surfaces."""
-    faces = fit_faces(cells)
+    curves, faces = curved_faces(fit_faces(cells), cells)
     columns, faces = _columns(faces)
     opened = [openings_of(face, cells, rays, storey=storey) for face in faces]
     sections = _sections(faces, opened)
     walls = [line for face, holes in zip(faces, opened, strict=True) for line in _cut(face, holes)]
     walls += [line for k in range(len(faces)) for line in _jambs(faces, opened, k)]
+    walls += [curve.line for curve in curves]
     openings = [
         PlanOpening(hole.kind, np.array([face.at(hole.start_m), face.at(hole.end_m)]),
                     hole.sill_m, hole.head_m)
         for face, holes in zip(faces, opened, strict=True) for hole in holes
     ]  # fmt: skip
-    lengths = [face.length_m for face in faces]
-    rms = np.average([face.rms_m**2 for face in faces], weights=lengths) if faces else 0.0
-    furniture = _furniture(cells, faces)
+    fitted: list[Face | CurvedFace] = [*faces, *curves]
+    lengths = [face.length_m for face in fitted]
+    rms = np.average([face.rms_m**2 for face in fitted], weights=lengths) if fitted else 0.0
+    furniture = _furniture(cells, fitted)
     return FloorPlan(
         storey, walls, [*sections, *columns], columns, openings, furniture, float(np.sqrt(rms))
     )
@@ -213,7 +217,7 @@ def _band(face: Face, span_m: tuple[float, float], *, depth: float) -> Polygon:
     return Polygon([a + 0.001 * n, b + 0.001 * n, b - depth * n, a - depth * n])
 
 
-def _furniture(cells: WallCells, faces: list[Face]) -> list[Polygon]:
+def _furniture(cells: WallCells, faces: Sequence[Face | CurvedFace]) -> list[Polygon]:
     """Outlines of the upright surfaces that belong to no wall."""
     from shapely import Polygon, box, union_all
 

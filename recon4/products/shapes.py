@@ -25,7 +25,7 @@ def plan_shapes(plan: FloorPlan) -> Iterator[DrawnShape]:
     for section in plan.sections:
         yield _area(fill, section, z_m, storey=plan.storey.name)
     for line in plan.walls:
-        length = round(float(np.linalg.norm(line[1] - line[0])), 4)
+        length = round(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()), 4)
         yield DrawnShape(outline, _lifted(line, z_m), facts=storey | {"length_m": length})
     for column in plan.columns:
         yield _area(_layer(plan, "COLUMNS", 1, lineweight=35), column, z_m, storey=plan.storey.name)

@@ -218,3 +218,33 @@ class ProductPreviewTuning(Struct, frozen=True, kw_only=True):
 
 
 PREVIEWS = ProductPreviewTuning()
+
+
+class CurveTuning(Struct, frozen=True, kw_only=True):
+    """Curved walls, as arcs of circles."""
+
+    radius_m: tuple[float, float] = (0.8, 30.0)
+    turn_rad: tuple[float, float] = (0.03, 1.1)
+    """Chords that may be of one arc turn by this much from one to the next."""
+    near_m: float = 0.6
+    """Between the ends of two such chords [m]."""
+    wide_m: float = 0.08
+    narrow_m: float = 0.02
+    """Distance of cells from the circle at the first and at the last fit [m]."""
+    rounds: int = 5
+    agree: float = 0.985
+    """Least cosine between the normal of a cell and the radius: 10°."""
+    bridged_m: float = 0.35
+    """Longest stretch without a wall inside of one arc [m]."""
+    sweep_rad: float = 0.52
+    """Least turn of an arc: 30°; no straight wall stays on a circle for so long."""
+    fill: float = 0.6
+    """Least part of an arc that has cells, in steps of 6 cm."""
+    rms_m: float = 0.012
+    least_cells: int = 15
+    chord_m: float = 0.001
+    """A drawn arc is off the circle by this much at most [m]."""
+    step_m: float = 0.06
+
+
+CURVES = CurveTuning()

@@ -110,6 +110,26 @@ def two_rooms(folder: Path, *, floor_m: float = FLOOR_M) -> TileSet:
     return made.write(folder, _walk(floor_m))
 
 
+def round_room(folder: Path, radius_m: float, *, door_rad: float = 0.0) -> TileSet:
+    """A room with one curved wall around the origin, with a door of 2.1 m at the direction of x."""
+    made, height = Surfaces(), CEILING_M - FLOOR_M
+    x, y = (one.ravel() for one in np.mgrid[-radius_m:radius_m:0.03, -radius_m:radius_m:0.03])
+    x, y = x[inside := np.hypot(x, y) < radius_m], y[inside]
+    for z, up in ((FLOOR_M, 1.0), (CEILING_M, -1.0)):
+        made.add(np.column_stack([x, y, np.full(len(x), z)]), np.array([0.0, 0.0, up]), bright=20.0)
+    around, z = np.arange(-np.pi, np.pi, STEP_M / radius_m), np.arange(0.01, height, STEP_M)
+    around, z = (one.ravel() for one in np.meshgrid(around, z))
+    wall = (np.abs(around) > door_rad / 2.0) | (z > 2.1)
+    around, z = around[wall], z[wall]
+    n = -np.column_stack([np.cos(around), np.sin(around), np.zeros(len(around))])
+    r = radius_m + made.rng.normal(0.0, NOISE_M, len(around))
+    made.add(-n * r[:, None] + np.column_stack([0 * z, 0 * z, z + FLOOR_M]), n)
+    turn = np.linspace(0.0, 2.0 * np.pi, 300)
+    path = 0.5 * radius_m * np.column_stack([np.cos(turn), np.sin(turn), 0.0 * turn])
+    path[:, 2] = FLOOR_M + 1.5
+    return made.write(folder, path)
+
+
 def _block(made: Surfaces, low, high, z_m) -> None:
     (x0, y0), (x1, y1), up = low, high, [0, 0, z_m[1] - z_m[0]]
     made.sheet([x0, y0, z_m[0]], [x1 - x0, 0, 0], up, [0, -1, 0], bright=80.0)

@@ -12,7 +12,15 @@ from recon4.products.storeys import Levels, find_storeys, level_surfaces, storey
 from recon4.products.write import ProductOptions, ProductSource, write_product
 from recon4.review.stamp import Stamp
 from recon4.slices.map_crs import LOCAL, MapFrame
-from tests.unit.products.made_buildings import CEILING_M, DOOR, FLOOR_M, WINDOW, slope, two_rooms
+from tests.unit.products.made_buildings import (
+    CEILING_M,
+    DOOR,
+    FLOOR_M,
+    WINDOW,
+    round_room,
+    slope,
+    two_rooms,
+)
 
 UTM_M = np.array([500_000.0, 5_400_000.0, 300.0])
 PLACED = MapFrame("EPSG:32633", "", lambda p: np.asarray(p) + UTM_M)
@@ -57,6 +65,26 @@ def test_one_storey_is_found_with_floor_and_ceiling(rooms):
     assert storey.floor_m == pytest.approx(FLOOR_M, abs=0.026)
     assert storey.ceiling_m == pytest.approx(CEILING_M, abs=0.026)
     assert storey.area_m2 == pytest.approx(40.0, rel=0.05)
+
+
+@pytest.mark.parametrize("radius_m", [2.0, 5.0])
+def test_a_curved_wall_is_an_arc_that_ends_at_its_door(radius_m, tmp_path):
+    door_rad = 1.0 / radius_m
+    tiles = round_room(tmp_path / "map", radius_m, door_rad=door_rad)
+    levels = level_surfaces(tiles)
+    found = draw_plan(tiles, find_storeys(tiles, levels)[0], levels)
+
+    arc = max(found.walls, key=len)
+    distance = np.linalg.norm(arc, axis=1)
+    np.testing.assert_allclose(distance, radius_m, atol=0.004)
+    middles = np.linalg.norm((arc[1:] + arc[:-1]) / 2.0, axis=1)
+    assert (radius_m - middles).max() < 0.005
+    length = np.linalg.norm(np.diff(arc, axis=0), axis=1).sum()
+    assert length == pytest.approx(radius_m * (2.0 * np.pi - door_rad), abs=0.1)
+    ends = np.arctan2(arc[[0, -1], 1], arc[[0, -1], 0])
+    np.testing.assert_allclose(np.sort(np.abs(ends)), door_rad / 2.0, atol=0.05)
+    assert not any(len(wall) > 2 for wall in found.walls if wall is not arc)
+    assert found.wall_length_m < length + 0.3
 
 
 def test_a_meadow_has_no_storeys(tmp_path):
