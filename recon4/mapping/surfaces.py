@@ -14,8 +14,9 @@ from recon4.kernels.surface_records import SURFACE
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Views, chosen_records, gathered
 from recon4.mapping.surface_fit import FittedSurfaces, Noise, fit_rows
+from recon4.mapping.threads import in_turn
 from recon4.mapping.tile_memory import Scratch, TileMeans
-from recon4.mapping.tuning import TILE_SURFACES
+from recon4.mapping.tuning import MAP_BUILD, TILE_SURFACES
 
 
 def fit_surfaces(
@@ -47,16 +48,17 @@ def fit_surfaces(
         np.empty(n, np.int32),
     )
     surfaces = [found.clear()]
-    slabs = list(_slabs(records, grid, stands))
+    slabs, tile = list(_slabs(records, grid, stands)), _Tile(records, stands, grid)
     fit = partial(
         _fit_slab,
-        tile=_Tile(records, stands, grid),
+        tile=tile,
         noise=Noise(noise_m, noise_m),
         scratch=means.scratch or Scratch(),
         found=found,
     )
-    count = len(surfaces[0])
-    for slab, made in zip(slabs, means.each(fit, slabs), strict=True):
+    count, most = len(surfaces[0]), max(map(tile.size, slabs))
+    each = means.each if most * MAP_BUILD.workers <= TILE_SURFACES.together else in_turn
+    for slab, made in zip(slabs, each(fit, slabs), strict=True):
         for run in slab.runs:
             found.surface_of[run.own][stands[run.own]] += count
         surfaces.append(made)
@@ -76,6 +78,10 @@ class _Tile:
         """How many of some rows surfaces are fitted to."""
         return int(np.count_nonzero(self.stands[rows]))
 
+    def size(self, slab: _Slab) -> int:
+        """How many records of a slab surfaces are fitted to."""
+        return sum(self.count(run.every) for run in slab.runs)
+
     def gathered(self, slab: _Slab, scratch: Scratch) -> Records:
         """The records of a slab that surfaces are fitted to."""
         parts = (
@@ -83,8 +89,7 @@ class _Tile:
         )
         if len(slab.runs) == 1:
             return next(parts)
-        counts = [self.count(run.every) for run in slab.runs]
-        return gathered(parts, scratch.array("slab", (sum(counts),), RECORD))
+        return gathered(parts, scratch.array("slab", (self.size(slab),), RECORD))
 
 
 def _fit_slab(

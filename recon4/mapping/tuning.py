@@ -120,6 +120,9 @@ class TileSurfaceTuning(Struct, frozen=True, kw_only=True):
     slab: int = 400_000
     """Records fitted at once: what is known of their cells is four times as large as themselves.
     With half as many, margins make the fit 1.2 times as expensive."""
+    together: int = 1_200_000
+    """No more records are fitted by all threads together (130 MB). A slab has a million where a
+    wall fills a row of cells: such ones are fitted one after the other."""
     margin: int = 2
     """Rows of cells beyond a slab that its surfaces depend on, as many as in the halo of a tile."""
     least_noise_m: float = 0.015

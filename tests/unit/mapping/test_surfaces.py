@@ -13,6 +13,7 @@ from recon4.mapping.records import RECORD, in_voxel_order, to_sensor_m
 from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import TUNING
 from recon4.mapping.surfaces import fit_surfaces
+from recon4.mapping.tile_memory import TileMeans
 from recon4.settings import MapSettings
 
 GRID = Grid.of(MapSettings())
@@ -273,6 +274,25 @@ def test_a_wall_fitted_in_parts_is_that_fitted_at_once(rng, monkeypatch):
         1.0,
         atol=0.02,
     )
+
+
+@pytest.mark.parametrize("together", [0.5, 100.0])
+def test_only_small_parts_of_a_wall_are_fitted_side_by_side(rng, monkeypatch, together):
+    across = rectangle(rng, [2.033, 1.5, 1.5], [0, 1.6, 0], [0, 0, 1.2], DENSITY / 4)
+    records = in_voxel_order(returns(rng, across, np.array([1.0, 2.3, 2.2])), GRID)
+    n, tuning = len(records), surfaces_module.TILE_SURFACES
+    slabs = structs.replace(tuning, slab=n // 4, together=int(together * n))
+    monkeypatch.setattr(surfaces_module, "TILE_SURFACES", slabs)
+    shared = []
+
+    def each(work, items):
+        shared.append(items)
+        return map(work, items)
+
+    parts = fit_surfaces(records, GRID, noise_m=NOISE_M, means=TileMeans(None, each))
+
+    assert len(shared) == (together > 1.0)
+    assert parts.surface_of.any()
 
 
 @pytest.mark.parametrize("parts", [1, 6])
