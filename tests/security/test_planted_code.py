@@ -41,7 +41,7 @@ def test_a_worker_imports_nothing_from_the_working_folder(working_folder, tmp_pa
     job = tmp_path / "job"
     job.mkdir()
     with (tmp_path / "lock").open("wb") as lock:
-        worker = _spawn("recon4_app.jobs.worker", job, lock.fileno())
+        worker = _spawn(("recon4_app.jobs.worker",), job, lock.fileno())
         worker.wait(60.0)
 
     assert not ran(tmp_path), (job / "log.txt").read_text()

@@ -192,7 +192,7 @@ def largest_jump_m(steps) -> float:
     """Of the end of a multiframe from where the next one begins, but for the first [m]."""
     return max(
         float(np.linalg.norm(step.T_dense.t[-1] - after.T_dense.t[0]))
-        for step, after in pairwise(steps[1:])
+        for step, after in pairwise(list(steps)[1:])
     )
 
 

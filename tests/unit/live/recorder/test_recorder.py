@@ -39,11 +39,7 @@ def test_datagrams_from_an_unexpected_address_are_no_silence(session):
         talk.send(do="stop")
         process.wait(20.0)
 
-    assert any(
-        "lidar is expected from 127.0.0.5, but data packets for port 2368 come from 127.0.0.77"
-        in text
-        for text in found
-    ), found
+    assert any("lidar LiDAR sends from 127.0.0.77, not 127.0.0.5" in text for text in found), found
     assert not any("No LiDAR sends anything" in text for text in found)
 
 
