@@ -82,6 +82,7 @@ def test_a_token_of_a_viewer_only_looks(server, connected, mode):
     assert "403" in assistant.refused("browse_recordings")
 
 
+@pytest.mark.study
 def test_a_job_is_started_and_watched_with_progress(server, connected):
     (server.root / "walk.pcap").write_bytes(b"any")
     assistant = connected(token_of(server, "otto", role="operator"))

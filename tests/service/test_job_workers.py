@@ -43,6 +43,7 @@ def working(view, *, made: int = 0) -> bool:
     return any(one["part"] and one["made"] >= made for one in view["workers"]["workers"])
 
 
+@pytest.mark.study
 def test_workers_make_the_tiles_and_a_cancelled_job_leaves_no_order_running(server, tmp_path):
     choose(server, count=1)
     job = start(server, "made", AGAIN)

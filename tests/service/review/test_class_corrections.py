@@ -5,6 +5,7 @@ from pathlib import Path
 
 import laspy
 import numpy as np
+import pytest
 
 from recon4.cli.main import main
 from recon4.mapping.tiles import TileSet
@@ -75,6 +76,7 @@ def test_a_correction_is_counted_made_signed_and_undone(server, root):
     assert delete(server, noted["id"]).status_code == 409
 
 
+@pytest.mark.study
 def test_all_things_like_one_are_proposed_corrected_in_one_entry_and_made(server, root):
     tiles = TileSet.open(read_artifacts(root)["map"])
     place = next(
