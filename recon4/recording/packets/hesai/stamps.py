@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.limits import LIMITS
+from recon4.recording.packets.dates import dates_of
 from recon4.units import SECOND_NS, SECOND_US
 
 
@@ -40,19 +41,7 @@ def time_ns(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> Times:
 
 def date_of(seconds: NDArray[np.int64]) -> NDArray[np.uint8]:
     """The six bytes of times in seconds since 1970: the inverse of `time_ns`, (N, 6)."""
-    day, rest = np.divmod(np.asarray(seconds, dtype=np.int64), 86400)
-    month = day.astype("datetime64[D]").astype("datetime64[M]")
-    first = month.astype("datetime64[D]").astype(np.int64)
-    months = month.astype(np.int64)
-    columns = (
-        months // 12 + 70,
-        months % 12 + 1,
-        day - first + 1,
-        rest // 3600,
-        rest // 60 % 60,
-        rest % 60,
-    )
-    return np.column_stack(columns).astype(np.uint8)
+    return (dates_of(seconds) - (1900, 0, 0, 0, 0, 0)).astype(np.uint8)
 
 
 def _seconds(date: NDArray[np.uint8]) -> NDArray[np.int64]:

@@ -19,11 +19,11 @@ from recon4.recording.packets.livox.models import (
     SDK1_VERSION,
     SDK2_HEADER,
     SDK2_IMU_TYPE,
-    UTC_STAMP,
     UTC_TIME_TYPE,
     LivoxModel,
     PointLayout,
 )
+from recon4.recording.packets.livox.sound import date_stamps
 from recon4.recording.packets.livox.tuning import LIVOX_PACKETS
 from recon4.units import STANDARD_GRAVITY_M_S2
 
@@ -105,21 +105,8 @@ def _header(t_ns: Times, sdk: int, data_type: int, *, time_type: int) -> NDArray
     else:
         header["counter"] = np.arange(len(t_ns)) % 65536
     dated = sdk == 1 and time_type == UTC_TIME_TYPE
-    header["stamp"] = _dates(t_ns) if dated else _bytes(np.asarray(t_ns, "<u8"))
+    header["stamp"] = date_stamps(t_ns) if dated else _bytes(np.asarray(t_ns, "<u8"))
     return header
-
-
-def _dates(t_ns: Times) -> NDArray[np.uint8]:
-    """Stamps of the time type with a date, (N, 8)."""
-    dates = np.zeros(len(t_ns), UTC_STAMP)
-    time = np.asarray(t_ns).astype("M8[ns]")
-    year, month, day = (time.astype(f"M8[{unit}]") for unit in "YMD")
-    dates["year"] = year.astype(np.int64) + 1970 - 2000
-    dates["month"] = month.astype(np.int64) % 12 + 1
-    dates["day"] = (day - month.astype("M8[D]")).astype(np.int64) + 1
-    us = np.asarray(t_ns) // 1000 % (24 * 3_600_000_000)
-    dates["hour"], dates["us"] = us // 3_600_000_000, us % 3_600_000_000
-    return _bytes(dates)
 
 
 def _bytes(values: NDArray[np.generic]) -> NDArray[np.uint8]:

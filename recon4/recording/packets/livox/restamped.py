@@ -7,16 +7,14 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import (
     CRC_FROM,
     SDK1_HEADER,
     SDK2_HEADER,
-    UTC_STAMP,
     UTC_TIME_TYPE,
 )
-from recon4.recording.packets.livox.sound import has_crc, stamps_ns
+from recon4.recording.packets.livox.sound import date_stamps, has_crc, stamps_ns
 
 
 def restamped(payloads: Payloads, sound: NDArray[np.bool_], sdk: int, *, shift_ns: int) -> Payloads:
@@ -38,23 +36,10 @@ def restamped(payloads: Payloads, sound: NDArray[np.bool_], sdk: int, *, shift_n
     out[timed, at : at + 8] = t_ns.astype("<u8").view(np.uint8).reshape(-1, 8)
     if sdk == 1:
         dated = payloads[timed, header.fields["time_type"][1]] == UTC_TIME_TYPE
-        out[timed[dated], at : at + 8] = _dates(t_ns[dated])
+        out[timed[dated], at : at + 8] = date_stamps(t_ns[dated])
     else:
         crc_at = header.fields["crc"][1]
         for row in timed[has_crc(payloads[timed])].tolist():
             total = zlib.crc32(out[row, CRC_FROM:].tobytes())
             out[row, crc_at : crc_at + 4] = np.frombuffer(total.to_bytes(4, "little"), np.uint8)
     return out
-
-
-def _dates(t_ns: Times) -> Payloads:
-    """Times as date and microseconds past the hour, (N, 8)."""
-    hours, us = np.divmod(t_ns // 1000, 3_600_000_000)
-    day = (hours // 24).astype("datetime64[D]")
-    month = day.astype("datetime64[M]")
-    months = month.astype(np.int64)
-    stamp = np.zeros(len(t_ns), UTC_STAMP)
-    stamp["year"], stamp["month"] = months // 12 - 30, months % 12 + 1
-    stamp["day"] = (day - month.astype("datetime64[D]")).astype(np.int64) + 1
-    stamp["hour"], stamp["us"] = hours % 24, us
-    return stamp.view(np.uint8).reshape(-1, 8)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.limits import LIMITS
+from recon4.recording.packets.dates import dates_of
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import (
     CRC_FROM,
@@ -23,6 +24,7 @@ from recon4.recording.packets.livox.models import (
 )
 from recon4.recording.packets.livox.tuning import LIVOX_PACKETS
 from recon4.recording.report import ImportReport
+from recon4.units import SECOND_US
 
 
 def sound_points(
@@ -99,3 +101,14 @@ def stamps_ns(payloads: Payloads, sdk: int) -> Times:
     hours = 24 * days + date["hour"]
     dated = 1000 * (3_600_000_000 * hours + date["us"])
     return np.where(headers["time_type"] == UTC_TIME_TYPE, dated, counted).astype(np.int64)
+
+
+def date_stamps(t_ns: Times) -> NDArray[np.uint8]:
+    """Times as date and microseconds past the hour, the inverse of `stamps_ns`, (N, 8)."""
+    us = np.asarray(t_ns, np.int64) // 1000
+    date = dates_of(us // SECOND_US) - (2000, 0, 0, 0, 0, 0)
+    stamps = np.zeros(len(us), UTC_STAMP)
+    for column, name in enumerate(("year", "month", "day", "hour")):
+        stamps[name] = date[:, column]
+    stamps["us"] = us % (3600 * SECOND_US)
+    return stamps.view(np.uint8).reshape(-1, UTC_STAMP.itemsize)

@@ -25,7 +25,7 @@ from recon4.recording.packets.robosense.models import (
     TYPE_AT,
     RoboSenseModel,
 )
-from recon4.recording.packets.robosense.packets import block_bytes
+from recon4.recording.packets.robosense.packets import block_bytes, stamp_bytes
 from recon4.recording.packets.robosense.solid import (
     SOLID_HEADER,
     SOLID_ID,
@@ -83,7 +83,7 @@ def encode_spinning(t_ns: Times, blocks: SpinningBlocks, model: RoboSenseModel) 
         payloads[:, TYPE_AT : TYPE_AT + 2] = 3, 4
     if model.name == "Airy":
         payloads[:, TYPE_AT + 1] = AIRY_VARIANT
-    payloads[:, model.stamp_at : model.stamp_at + 10] = _stamp_bytes(t_ns, model.stamp)
+    payloads[:, model.stamp_at : model.stamp_at + 10] = stamp_bytes(t_ns, model.stamp)
     written = block_bytes(payloads, model)
     written[:, :, : len(model.flag)] = np.frombuffer(model.flag, np.uint8)
     written[:, :, 2:4] = _words(np.asarray(blocks.azimuth_cdeg) % 36000)
@@ -126,7 +126,7 @@ def encode_solid(t_ns: Times, blocks: NDArray[np.void], model: SolidModel) -> Pa
     """
     payloads = np.zeros((len(t_ns), model.size), np.uint8)
     payloads[:, :4] = np.frombuffer(SOLID_ID, np.uint8)
-    payloads[:, SOLID_STAMP_AT : SOLID_STAMP_AT + 10] = _stamp_bytes(t_ns, "us")
+    payloads[:, SOLID_STAMP_AT : SOLID_STAMP_AT + 10] = stamp_bytes(t_ns, "us")
     body = np.frombuffer(blocks.tobytes(), np.uint8).reshape(len(t_ns), -1)
     payloads[:, SOLID_HEADER : SOLID_HEADER + body.shape[1]] = body
     return payloads
@@ -136,27 +136,3 @@ def _words(values: NDArray[np.integer]) -> NDArray[np.uint8]:
     """Big-endian words, (…, 2)."""
     words = np.asarray(values).astype(">u2")
     return words[..., None].view(np.uint8)
-
-
-def _stamp_bytes(t_ns: Times, kind: str) -> NDArray[np.uint8]:
-    seconds, rest_ns = np.divmod(np.asarray(t_ns, np.int64), SECOND_NS)
-    if kind == "date":
-        return _date_bytes(seconds, rest_ns // 1000)
-    stamp = np.zeros(len(seconds), [("high", ">u2"), ("seconds", ">u4"), ("rest", ">u4")])
-    stamp["seconds"] = seconds
-    stamp["rest"] = rest_ns if kind == "ns" else rest_ns // 1000
-    return stamp.view(np.uint8).reshape(-1, 10)
-
-
-def _date_bytes(seconds: NDArray[np.int64], us: NDArray[np.int64]) -> NDArray[np.uint8]:
-    moment = seconds.astype("datetime64[s]")
-    day, month = moment.astype("datetime64[D]"), moment.astype("datetime64[M]")
-    rest = seconds % 86400
-    columns = [
-        month.astype(np.int64) // 12 - 30,
-        month.astype(np.int64) % 12 + 1,
-        (day - month.astype("datetime64[D]")).astype(np.int64) + 1,
-        *(rest // 3600, rest // 60 % 60, rest % 60),
-    ]
-    words = np.stack([us // 1000, us % 1000], axis=1).astype(">u2")
-    return np.hstack([np.stack(columns, axis=1).astype(np.uint8), words.view(np.uint8)])

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.kernels.spinning import BlockRoles
 from recon4.model.trajectory import Times
+from recon4.recording.packets.dates import dates_of
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.angles import LaserAngles
 from recon4.recording.packets.robosense.models import LATEST_S, RoboSenseModel
@@ -119,6 +120,19 @@ def _dates_ns(date: NDArray[np.void]) -> tuple[Times, NDArray[np.bool_]]:
     minutes = (days * 24 + date["hour"]) * 60 + date["minute"]
     us = ((minutes * 60 + date["second"]) * 1000 + date["ms"]) * 1000 + date["us"]
     return np.where(right, us * 1000, 0), right
+
+
+def stamp_bytes(t_ns: Times, kind: str) -> NDArray[np.uint8]:
+    """Times as a model states them, inverse of `stamps`: ``date``, ``us`` or ``ns``, (N, 10)."""
+    seconds, rest_ns = np.divmod(np.asarray(t_ns, np.int64), SECOND_NS)
+    if kind != "date":
+        stamp = np.zeros(len(seconds), STAMP)
+        stamp["seconds"], stamp["rest"] = seconds, rest_ns // (1 if kind == "ns" else 1000)
+        return stamp.view(np.uint8).reshape(-1, 10)
+    us = rest_ns // 1000
+    date = dates_of(seconds) - (2000, 0, 0, 0, 0, 0)
+    words = np.stack([us // 1000, us % 1000], axis=1).astype(">u2")
+    return np.hstack([date.astype(np.uint8), words.view(np.uint8)])
 
 
 def variants_of(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.uint8]:

@@ -10,9 +10,8 @@ from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.imu_packets import is_imu
 from recon4.recording.packets.robosense.models import IMU_PACKET, IMU_SIZE, MODELS, SIZE
 from recon4.recording.packets.robosense.packets import (
-    DATE,
-    STAMP,
     sound_packets,
+    stamp_bytes,
     stamps,
     stamps_of,
 )
@@ -23,7 +22,6 @@ from recon4.recording.packets.robosense.solid import (
     sound_solid,
 )
 from recon4.recording.report import ImportReport
-from recon4.units import SECOND_NS
 
 
 def restamped(payloads: Payloads, *, shift_ns: int) -> Payloads | None:
@@ -61,27 +59,5 @@ def _written(
         return None
     rows = np.flatnonzero(sound & (t_ns >= 0))
     out = payloads.copy()
-    made = _dates(t_ns[rows]) if kind == "date" else _counted(t_ns[rows], ns=kind == "ns")
-    out[rows, at : at + 10] = made
+    out[rows, at : at + 10] = stamp_bytes(t_ns[rows], kind)
     return out
-
-
-def _counted(t_ns: Times, *, ns: bool) -> Payloads:
-    """Times as seconds of 6 bytes and µs or ns of 4 bytes, (N, 10)."""
-    stamp = np.zeros(len(t_ns), STAMP)
-    stamp["seconds"], stamp["rest"] = t_ns // SECOND_NS, t_ns % SECOND_NS // (1 if ns else 1000)
-    return stamp.view(np.uint8).reshape(-1, 10)
-
-
-def _dates(t_ns: Times) -> Payloads:
-    """Times as a date, (N, 10)."""
-    seconds, us = np.divmod(t_ns // 1000, 1_000_000)
-    day = (seconds // 86400).astype("datetime64[D]")
-    month = day.astype("datetime64[M]")
-    months = month.astype(np.int64)
-    stamp = np.zeros(len(t_ns), DATE)
-    stamp["year"], stamp["month"] = months // 12 - 30, months % 12 + 1
-    stamp["day"] = (day - month.astype("datetime64[D]")).astype(np.int64) + 1
-    stamp["hour"], stamp["minute"] = seconds // 3600 % 24, seconds // 60 % 60
-    stamp["second"], stamp["ms"], stamp["us"] = seconds % 60, us // 1000, us % 1000
-    return stamp.view(np.uint8).reshape(-1, 10)
