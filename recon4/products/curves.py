@@ -78,17 +78,27 @@ def _cut(cells: WallCells) -> NDArray[np.bool_]:
 def _circles(faces: list[Face]) -> Iterator[tuple[Array, float]]:
     """Center and signed radius by pairs of neighboring chords; > 0 = seen from inside."""
     least, most = CURVES.radius_m
-    for k, a in enumerate(faces):
-        for b in faces[k + 1 :]:
-            ends = np.array([[a.start - b.end], [a.end - b.start], [a.start - b.start]])
-            turn = float(np.arccos(np.clip(a.n @ b.n, -1.0, 1.0)))
-            near = float(np.linalg.norm(ends, axis=2).min()) <= CURVES.near_m
-            if not near or not CURVES.turn_rad[0] <= turn <= CURVES.turn_rad[1]:
-                continue
-            apart, bend = (a.start + a.end - b.start - b.end) / 2.0, a.n - b.n
-            rho = -float(apart @ bend) / float(bend @ bend)
-            if least <= abs(rho) <= most:
-                yield (a.start + a.end) / 2.0 + rho * a.n, rho
+    for a, b in _neighbors(faces):
+        turn = float(np.arccos(np.clip(a.n @ b.n, -1.0, 1.0)))
+        if not CURVES.turn_rad[0] <= turn <= CURVES.turn_rad[1]:
+            continue
+        apart, bend = (a.start + a.end - b.start - b.end) / 2.0, a.n - b.n
+        rho = -float(apart @ bend) / float(bend @ bend)
+        if least <= abs(rho) <= most:
+            yield (a.start + a.end) / 2.0 + rho * a.n, rho
+
+
+def _neighbors(faces: list[Face]) -> Iterator[tuple[Face, Face]]:
+    """Pairs of faces of which an end of one is near an end of the other."""
+    from scipy.spatial import cKDTree
+
+    if not faces:
+        return
+    ends = np.array([end for face in faces for end in (face.start, face.end)])
+    close = cKDTree(ends).query_pairs(CURVES.near_m, output_type="ndarray") // 2
+    pairs = np.unique(close[close[:, 0] != close[:, 1]], axis=0)
+    for i, k in pairs.tolist():
+        yield faces[i], faces[k]
 
 
 def _arcs(
