@@ -60,9 +60,9 @@ class AssistantEndpoint:
 
     async def _start(self, *, allow_write: bool) -> StreamableHTTPSessionManager:
         manager = await asyncio.to_thread(_manager, allow_write=allow_write)
-        ready = asyncio.Event()
+        ready = asyncio.get_running_loop().create_future()
         self._running.append(asyncio.create_task(_serve(manager, ready)))
-        await ready.wait()
+        await ready
         return manager
 
 
@@ -78,10 +78,15 @@ class _Answer(Response):
             await self._manager.handle_request(scope, receive, send)
 
 
-async def _serve(manager: StreamableHTTPSessionManager, ready: asyncio.Event) -> None:
-    async with manager.run():
-        ready.set()
-        await asyncio.Event().wait()
+async def _serve(manager: StreamableHTTPSessionManager, ready: asyncio.Future[None]) -> None:
+    try:
+        async with manager.run():
+            ready.set_result(None)
+            await asyncio.Event().wait()
+    except Exception as error:
+        if ready.done():
+            raise
+        ready.set_exception(error)
 
 
 def _manager(*, allow_write: bool) -> StreamableHTTPSessionManager:
