@@ -96,7 +96,8 @@ def _nearest(tiles: TileSet, picked: PickedThing, pending: ClassVolumes) -> tupl
         near = np.flatnonzero(np.all(np.abs(p_map - at) <= LIKENESS.reach_m, axis=1))
         classes = columns["classification"][near].copy()
         pending.apply(classes, p_map[near])
-        near, classes = near[(ours := np.isin(classes, picked.classes))], classes[ours]
+        ours = np.isin(classes, picked.classes)
+        near, classes = near[ours], classes[ours]
         if len(near):
             distance = np.linalg.norm(p_map[near] - at, axis=1)
             k = int(distance.argmin())

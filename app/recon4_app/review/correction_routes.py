@@ -10,6 +10,7 @@ from fastapi import Path as InPath
 from starlette.concurrency import run_in_threadpool
 
 from recon4.locales.coded import CodedText, coded
+from recon4.model.alike import Alike
 from recon4.model.class_corrections import GIVEN_CLASSES, ClassCorrection, titles_of
 from recon4.model.classes import CLASSES
 from recon4.review.class_corrections import CorrectionTrial, corrections_in_map, not_in_map
@@ -80,7 +81,7 @@ async def find_alike(
     data = await caller.wait(
         server.slices.run_interactive(terms, correction_work.alike, artifacts, picked, before)
     )
-    return AlikeView.of(correction_work.alike_of(data))
+    return AlikeView.of(correction_work.answered(data, Alike))
 
 
 @router.post("", status_code=201, dependencies=REVIEW, summary="Correct classes")
@@ -138,7 +139,7 @@ async def _tried(
     data = await caller.wait(
         server.slices.run_interactive(terms, correction_work.tried, artifacts, what, before)
     )
-    return correction_work.trial_of(data)
+    return correction_work.answered(data, CorrectionTrial)
 
 
 async def _looked_at(
