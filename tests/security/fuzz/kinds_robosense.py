@@ -49,7 +49,7 @@ def packets_of(name: str) -> Payloads:
         t_ns, SpinningBlocks(azimuth, np.full(shape, 2000), np.full(shape, 90)), model
     )
     laser = np.arange(model.lasers)
-    device = encode_device(np.column_stack([10 * laser, 5 - 10 * laser]), room=max(32, len(laser)))
+    device = encode_device(np.column_stack([10 * laser, 5 - 10 * laser]), model)
     return np.concatenate([data[:6], device, data[6:]])
 
 

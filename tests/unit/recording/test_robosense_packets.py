@@ -17,7 +17,12 @@ from recon4.recording.packets.robosense.encode import (
 )
 from recon4.recording.packets.robosense.family import ROBOSENSE
 from recon4.recording.packets.robosense.imu_packets import IMU_ID
-from recon4.recording.packets.robosense.models import HELIOS_16P_DUAL, IMU_PACKET, MODELS
+from recon4.recording.packets.robosense.models import (
+    AIRY_INSTALLED,
+    IMU_PACKET,
+    MODELS,
+    of_two_returns,
+)
 from recon4.recording.packets.robosense.packets import packet_s
 from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
 from recon4.recording.packets.sensor_clock import SensorClock
@@ -37,7 +42,7 @@ def angles_of(model):
 
 
 def device_of(model, mode=4):
-    return encode_device(angles_of(model), room=max(32, model.lasers), mode=mode)
+    return encode_device(angles_of(model), model, mode=mode)
 
 
 def spin(model, count, *, dual=False):
@@ -97,10 +102,10 @@ def expected(shots, model):
 @pytest.mark.parametrize("name", [name for name in MODELS if name != "Ruby Plus"])
 def test_points_of_every_model_agree_with_the_equations_of_the_manual(name, dual):
     model = MODELS[name]
-    wire = HELIOS_16P_DUAL if dual and name == "Helios 16P" else model
+    wire = of_two_returns(model) if dual and model.lasers == 16 else model
     t_ns, payloads = spin(wire, 12, dual=dual and wire is model)
     if wire is not model:  # both returns of a firing lie in one block
-        t_ns, payloads = helios_16p_of_two_returns(12)
+        t_ns, payloads = returns_in_one_block(model, 12)
     layout = opened(name, beside=datagrams(device_of(model, mode=0 if dual else 4)))
 
     shots = decoded(layout, payloads)
@@ -121,10 +126,9 @@ def test_points_of_every_model_agree_with_the_equations_of_the_manual(name, dual
     assert layout.packet_s == pytest.approx((t_ns[-1] - t_ns[0]) / 11 / 1e9, rel=1e-2)
 
 
-def helios_16p_of_two_returns(count):
+def returns_in_one_block(single, count):
     """Times and packets: 12 firings of 16 lasers, each with its two returns in one block."""
-    single = MODELS["Helios 16P"]
-    firing_us = HELIOS_16P_DUAL.firing_us
+    firing_us = of_two_returns(single).firing_us
     t_ns = T0_NS + 1000 * np.rint(np.arange(count) * 12 * firing_us).astype(np.int64)
     since_s = (t_ns - T0_NS)[:, None] / 1e9 + 1e-6 * firing_us * np.arange(12)
     azimuth = np.rint(since_s * HZ * 36000).astype(np.int64)
@@ -194,7 +198,7 @@ def test_device_packets_overrule_a_file_and_a_file_the_factory():
     file = Companion("Helios5515.csv", text.encode())
     other = Companion("poses.csv", b"time,x,y\n1,2,3\n")
     _, payloads = spin(model, 2)
-    mine = encode_device(angles_of(model) + np.array([0, 200]), room=32)
+    mine = encode_device(angles_of(model) + np.array([0, 200]), model)
 
     def first_azimuth(**fields):
         report = ImportReport()
@@ -211,6 +215,39 @@ def test_device_packets_overrule_a_file_and_a_file_the_factory():
     assert by_device == pytest.approx(-2.07, abs=0.01)
     assert kinds(typical) == [K.ANGLES_TYPICAL]
     assert not right.findings
+
+
+@pytest.mark.parametrize("installed", [0, 1, 2, 255])
+def test_the_way_an_airy_is_installed_decides_when_its_lasers_fire(installed):
+    model = AIRY_INSTALLED.get(installed, MODELS["Airy"])
+    _, payloads = spin(model, 2)
+    device = encode_device(angles_of(model), model, installed=installed)
+
+    shots = decoded(opened("Airy", beside=datagrams(device)), payloads)
+
+    since_us = (shots.t_ns[:384] - shots.t_ns[0]) / 1000 % model.firing_us
+    wanted = np.unique(np.rint(model.time_us))
+    assert np.unique(np.rint(since_us)).tolist() == wanted.tolist()
+
+
+def test_other_packets_of_an_airy_with_the_same_first_bytes_hold_no_points():
+    _, payloads = spin(MODELS["Airy"], 4)
+    payloads[1, 16] = 1
+    layout = opened("Airy", beside=datagrams(device_of(MODELS["Airy"])))
+
+    assert layout.sound(payloads).tolist() == [True, False, True, True]
+
+
+@pytest.mark.parametrize("unit_ns", [1, 1000])
+def test_the_stamps_of_a_ruby_plus_are_ns_or_us_as_its_first_packets_show(unit_ns):
+    model = MODELS["Ruby Plus"]
+    t_ns, payloads = spin(model, 30)
+    rest = ((t_ns % 1_000_000_000) // unit_ns).astype(">u4")
+    payloads[:, 16:20] = rest[:, None].view(np.uint8)
+
+    layout = opened("Ruby Plus", head=datagrams(payloads), beside=datagrams(device_of(model)))
+
+    assert layout.stamps_ns(payloads).tolist() == t_ns.tolist()
 
 
 def test_a_device_packet_among_the_data_is_read_and_no_fault():
@@ -257,7 +294,7 @@ def test_the_head_of_a_stream_tells_the_model(name):
 def test_a_helios_whose_lasers_do_not_look_down_is_no_5515():
     model = MODELS["Helios 32"]
     table = np.column_stack([1600 - 100 * np.arange(32), np.zeros(32, int)])
-    head = datagrams(spin(model, 10)[1], encode_device(table, room=32))
+    head = datagrams(spin(model, 10)[1], encode_device(table, model))
 
     assert ROBOSENSE.recognize(head, ()).model == "Helios 32"
 
@@ -307,12 +344,37 @@ def test_an_m1_points_by_two_angles_and_an_e1_by_a_vector():
     assert shots.ring[:5].tolist() == shots.intensity[:5].tolist() == [0, 1, 2, 3, 4]
 
     blocks = np.zeros((1, 96), e1.block)
-    blocks["us"] = 9 * np.arange(96)
+    blocks["us"] = 3 * np.arange(96)
     blocks["points"]["distance"] = 1000
     blocks["points"]["vector"] = [16384, 0, -16384]
     shots = decoded(opened("E1"), encode_solid(t_ns[:1], blocks, e1))
     assert shots.xyz[95].tolist() == [2.5, 0, -2.5]
-    assert shots.t_ns[95] == t_ns[0] + 95 * 9000
+    assert shots.t_ns[95] == t_ns[0] + 95 * 3000
+
+
+def test_times_of_an_e1_that_would_reach_into_the_next_packets_are_nanoseconds():
+    e1 = SOLID_MODELS["E1"]
+    blocks = np.zeros((1, 96), e1.block)
+    blocks["us"] = 500 * np.arange(96)
+    blocks["points"]["distance"] = 1000
+    blocks["points"]["vector"] = [MIDDLE - 1, 0, 0]
+
+    shots = decoded(opened("E1"), encode_solid(np.array([T0_NS]), blocks, e1))
+
+    assert (shots.t_ns - T0_NS).tolist() == (500 * np.arange(96)).tolist()
+
+
+def test_an_m2_has_five_channels_of_vectors():
+    m2 = SOLID_MODELS["M2"]
+    blocks = np.zeros((1, 25), m2.block)
+    blocks["us"] = 3 * np.arange(25)
+    blocks["points"]["distance"] = 1000
+    blocks["points"]["vector"] = [16384, -16384, 0]
+
+    shots = decoded(opened("M2"), encode_solid(np.array([T0_NS]), blocks, m2))
+
+    assert (len(shots), shots.xyz[124].tolist()) == (125, [2.5, -2.5, 0])
+    assert (shots.ring[:5].tolist(), shots.t_ns[124]) == ([0, 1, 2, 3, 4], T0_NS + 72_000)
 
 
 def test_an_m1_and_an_e1_are_told_by_size_and_first_bytes():

@@ -17,6 +17,7 @@ from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.robosense.angles import device_data
 from recon4.recording.packets.robosense.family import ROBOSENSE
+from recon4.recording.packets.robosense.models import MODELS
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import sensor
@@ -96,7 +97,7 @@ def test_every_point_of_the_helios_reference_is_found_in_its_place(data, datagra
 
 
 def test_the_device_packet_tells_that_it_is_a_helios_5515_on_a_level_floor(data, datagrams):
-    device = device_data(datagrams.payloads(np.arange(len(datagrams)), 1248), 32)
+    device = device_data(datagrams.payloads(np.arange(len(datagrams)), 1248), MODELS["Helios 32"])
     found = ROBOSENSE.recognize(datagrams, ())
     result = decoded(datagrams, found.model, head=datagrams)
     shots = result.shots

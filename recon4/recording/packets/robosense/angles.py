@@ -17,6 +17,8 @@ from recon4.recording.packets.robosense.models import (
     ANGLES_AT,
     DEVICE_ID,
     DUAL_MODE,
+    ELEVATIONS_AT,
+    INSTALLED_AT,
     MODE_AT,
     SIZE,
     RoboSenseModel,
@@ -44,6 +46,8 @@ class DeviceData:
     """Elevation and azimuth of each laser [0.01°], as many as are given, (L, 2)."""
     dual: bool
     """Whether two returns are sent, in the numbers of Helios and Bpearl."""
+    installed: int
+    """How an Airy is installed; without meaning for other models."""
 
 
 def is_device(payloads: Payloads) -> NDArray[np.bool_]:
@@ -53,22 +57,40 @@ def is_device(payloads: Payloads) -> NDArray[np.bool_]:
     return np.asarray((payloads[:, :8] == np.frombuffer(DEVICE_ID, np.uint8)).all(axis=1))
 
 
-def device_data(payloads: Payloads, lasers: int) -> DeviceData | None:
+def device_data(payloads: Payloads, model: RoboSenseModel) -> DeviceData | None:
     """The newest device packet with angles; None = there is none.
 
     Args:
         payloads: Packets, (N, 1248); others than device packets are passed over.
-        lasers: Lasers that the layout has room for.
+        model: Says how and where angles are stated.
     """
     for payload in payloads[is_device(payloads)][::-1]:
-        table = np.ascontiguousarray(payload[ANGLES_AT : ANGLES_AT + 6 * lasers]).view(ANGLE)
-        given = table["sign"].reshape(2, lasers) <= 1
-        count = int(np.argmin(given.all(axis=0))) if not given.all() else lasers
-        signs = 1 - 2 * table["sign"].reshape(2, lasers)[:, :count].astype(np.float64)
-        angles = (signs * table["cdeg"].reshape(2, lasers)[:, :count]).T
-        if count and np.abs(angles).max() < 9000 and np.ptp(angles[:, 0]) > 0:
-            return DeviceData(angles, int(payload[MODE_AT]) == DUAL_MODE)
+        read = _elevations if model.device_angles == "elevations" else _signed_angles
+        angles = read(payload, model)
+        if len(angles) and np.abs(angles).max() < 9000 and np.ptp(angles[:, 0]) > 0:
+            dual = int(payload[MODE_AT]) == DUAL_MODE
+            return DeviceData(angles, dual, int(payload[INSTALLED_AT]))
     return None
+
+
+def _signed_angles(payload: NDArray[np.uint8], model: RoboSenseModel) -> NDArray[np.float64]:
+    """Elevation and azimuth of each laser [0.01°], as many as are given, (L, 2)."""
+    lasers = max(ROBOSENSE_ANGLES.least_room, model.lasers)
+    table = np.ascontiguousarray(payload[ANGLES_AT : ANGLES_AT + 6 * lasers]).view(ANGLE)
+    given = table["sign"].reshape(2, lasers) <= 1
+    count = int(np.argmin(given.all(axis=0))) if not given.all() else lasers
+    signs = 1 - 2 * table["sign"].reshape(2, lasers)[:, :count].astype(np.float64)
+    angles = (signs * table["cdeg"].reshape(2, lasers)[:, :count]).T
+    return angles / 10.0 if model.device_angles == "0.001 deg" else angles
+
+
+def _elevations(payload: NDArray[np.uint8], model: RoboSenseModel) -> NDArray[np.float64]:
+    """Elevation of each laser, with azimuth 0 [0.01°], (L, 2): the first half looks down."""
+    lasers = model.lasers
+    digits = payload[ELEVATIONS_AT : ELEVATIONS_AT + 3 * lasers].reshape(lasers, 3)
+    elevation = 0.01 * (digits.astype(np.int64) @ np.array([1 << 16, 1 << 8, 1]))
+    elevation[: lasers // 2] *= -1.0
+    return np.column_stack([elevation, np.zeros(lasers)])
 
 
 def laser_angles(

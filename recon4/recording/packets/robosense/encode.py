@@ -16,11 +16,15 @@ from recon4.recording.packets.robosense.models import (
     ANGLE,
     ANGLES_AT,
     DEVICE_ID,
+    ELEVATIONS_AT,
     IMU_FULL,
     IMU_LARGEST_RANGE,
     IMU_PACKET,
     IMU_SIZE,
+    INSTALLED_AT,
     MODE_AT,
+    OLD_TYPE_AT,
+    OLD_TYPES,
     SIZE,
     TYPE_AT,
     RoboSenseModel,
@@ -32,6 +36,7 @@ from recon4.recording.packets.robosense.solid import (
     SOLID_STAMP_AT,
     SolidModel,
 )
+from recon4.recording.packets.robosense.tuning import ROBOSENSE_ANGLES
 from recon4.units import SECOND_NS, STANDARD_GRAVITY_M_S2
 
 
@@ -81,6 +86,9 @@ def encode_spinning(t_ns: Times, blocks: SpinningBlocks, model: RoboSenseModel) 
     payloads[:, : len(model.data_id)] = np.frombuffer(model.data_id, np.uint8)
     if model.name == "Bpearl V4":
         payloads[:, TYPE_AT : TYPE_AT + 2] = 3, 4
+    for old_type, name in OLD_TYPES.items():
+        if model.name == name:
+            payloads[:, OLD_TYPE_AT] = old_type
     if model.name == "Airy":
         payloads[:, TYPE_AT + 1] = AIRY_VARIANT
     payloads[:, model.stamp_at : model.stamp_at + 10] = stamp_bytes(t_ns, model.stamp)
@@ -92,23 +100,34 @@ def encode_spinning(t_ns: Times, blocks: SpinningBlocks, model: RoboSenseModel) 
     return payloads
 
 
-def encode_device(angles_cdeg: NDArray[np.integer], *, room: int, mode: int = 4) -> Payloads:
+def encode_device(
+    angles_cdeg: NDArray[np.integer], model: RoboSenseModel, *, mode: int = 4, installed: int = 255
+) -> Payloads:
     """A device packet (DIFOP).
 
     Args:
-        angles_cdeg: Elevation and azimuth of each laser [0.01°], (L, 2).
-        room: Lasers that the packet has room for; 0xFF in the places of those that are not there.
+        angles_cdeg: Elevation and azimuth of each laser [0.01°], (L, 2); more than L places for
+            them are filled with 0xFF.
+        model: How it states angles.
         mode: Return mode; 0 = dual for Helios and Bpearl.
+        installed: How an Airy is installed; 255 = not stated.
 
     Returns:
         UDP payload, (1, 1248).
     """
     payload = np.zeros((1, SIZE), np.uint8)
     payload[0, :8] = np.frombuffer(DEVICE_ID, np.uint8)
-    payload[0, MODE_AT] = mode
+    payload[0, MODE_AT], payload[0, INSTALLED_AT] = mode, installed
+    if model.device_angles == "elevations":
+        fine = 100 * np.abs(angles_cdeg[:, 0])
+        digits = np.stack([fine >> 16, fine >> 8, fine], axis=1) & 255
+        payload[0, ELEVATIONS_AT : ELEVATIONS_AT + digits.size] = digits.reshape(-1)
+        return payload
+    room = max(ROBOSENSE_ANGLES.least_room, model.lasers)
     table = np.frombuffer(b"\xff" * (6 * room), ANGLE).reshape(2, room).copy()
+    scale = 10 if model.device_angles == "0.001 deg" else 1
     table["sign"][:, : len(angles_cdeg)] = (angles_cdeg < 0).T
-    table["cdeg"][:, : len(angles_cdeg)] = np.abs(angles_cdeg).T
+    table["cdeg"][:, : len(angles_cdeg)] = scale * np.abs(angles_cdeg).T
     payload[0, ANGLES_AT : ANGLES_AT + 6 * room] = np.frombuffer(table.tobytes(), np.uint8)
     return payload
 

@@ -34,15 +34,18 @@ from recon4.recording.packets.robosense.angles import (
 from recon4.recording.packets.robosense.imu_packets import imu_samples, is_imu
 from recon4.recording.packets.robosense.messages import MESSAGES
 from recon4.recording.packets.robosense.models import (
+    AIRY_INSTALLED,
     AIRY_UNKNOWN_VARIANT,
     AIRY_VARIANT,
     BPEARL_V4_TYPE,
-    HELIOS_16P_DUAL,
     IMU_SIZE,
     MODELS,
+    OLD_TYPE_AT,
+    OLD_TYPES,
     SIZE,
     TYPE_AT,
     RoboSenseModel,
+    of_two_returns,
 )
 from recon4.recording.packets.robosense.packets import (
     PacketReturns,
@@ -54,6 +57,7 @@ from recon4.recording.packets.robosense.packets import (
     split_blocks,
     stamps,
     variants_of,
+    with_stamp_unit,
 )
 from recon4.recording.packets.robosense.restamped import restamped
 from recon4.recording.packets.robosense.solid import (
@@ -90,12 +94,12 @@ class SpinningFormat:
             ConfigError: If the angles of its lasers are nowhere.
         """
         self._of, self._report = of, of.report
-        self._model = model
+        head = _of_size(of.head, SIZE)
+        self._model = with_stamp_unit(model, head[has_id(head, model)])
         self._device = _device(of.head, model) or _device(of.beside, model)
         self._dual = False
         self._use_angles()
-        rows = np.flatnonzero(of.head.length == SIZE)
-        self._see(of.head.payloads(rows, SIZE))
+        self._see(head)
 
     @property
     def packet_s(self) -> float:
@@ -125,7 +129,7 @@ class SpinningFormat:
     def decode(self, t_ns: Times, payloads: Payloads) -> Shots:
         """Points in firing order."""
         variant = variants_of(payloads, self._model)
-        if self._layout is not self._model:
+        if self._halves:
             payloads, variant = split_blocks(payloads, self._model), np.ones_like(variant)
         columns = spinning_points(t_ns, payloads, variant, tables=self._tables, report=self._report)
         return Shots(self._of.row, *columns)
@@ -147,7 +151,7 @@ class SpinningFormat:
 
     @property
     def _returns_two(self) -> bool:
-        return self._dual or self._layout is not self._model
+        return self._dual or self._halves
 
     def _see(self, payloads: Payloads) -> None:
         """Note whether packets have two returns."""
@@ -158,22 +162,23 @@ class SpinningFormat:
     def _learn(self, payloads: Payloads) -> None:
         """Read device packets: the first one with angles counts."""
         if self._device is None:
-            self._device = device_data(payloads, _room(self._model))
+            self._device = device_data(payloads, self._model)
             if self._device is not None:
                 self._use_angles()
 
     def _use_angles(self) -> None:
-        halves = self._model.lasers == 16 and self._device is not None and self._device.dual
-        self._layout = HELIOS_16P_DUAL if halves else self._model
-        angles = laser_angles(self._model, self._device, self._of.companions)
+        device, model = self._device, self._model
+        if model.name == "Airy" and device is not None:
+            model = AIRY_INSTALLED.get(device.installed, model)
+        self._halves = model.lasers == 16 and device is not None and device.dual
+        self._layout = of_two_returns(model) if self._halves else model
+        angles = laser_angles(model, device, self._of.companions)
         name = self._of.sensor.name
         self._report.derive(
             DerivedKind.ANGLES_FOUND, sensor=name, of="lasers", source=angles.source
         )
         if not angles.measured:
-            self._report.warn(
-                FindingKind.ANGLES_TYPICAL, sensor=name, model=self._model.name, difop=True
-            )
+            self._report.warn(FindingKind.ANGLES_TYPICAL, sensor=name, model=model.name, difop=True)
         self._tables = spinning_tables(self._layout, angles, self._of.settings)
 
 
@@ -272,13 +277,8 @@ def _of_size(head: Datagrams, size: int) -> Payloads:
     return head.payloads(np.flatnonzero(head.length == size), size)
 
 
-def _room(model: RoboSenseModel) -> int:
-    """Lasers that the device packets of a model have room for."""
-    return max(32, model.lasers)
-
-
 def _device(datagrams: Datagrams, model: RoboSenseModel) -> DeviceData | None:
-    return device_data(_of_size(datagrams, SIZE), _room(model))
+    return device_data(_of_size(datagrams, SIZE), model)
 
 
 def _same_bytes(one: RoboSenseModel, other: RoboSenseModel) -> bool:
@@ -313,7 +313,7 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
     kinds = packets[:, TYPE_AT : TYPE_AT + 2]
     kind = tuple(np.median(kinds, axis=0).astype(int).tolist())
     if found.model == "Bpearl":
-        return replace(found, model="Bpearl V4") if kind == BPEARL_V4_TYPE else found
+        return _of_old_id(found, packets, kind)
     if found.model == "Airy" and kind[1] not in (AIRY_VARIANT, AIRY_UNKNOWN_VARIANT):
         reason = f"an Airy of variant {kind[1]} (48 or 192 lines), whose packets are not decoded"
         return replace(found, kind="other", refused=reason)
@@ -327,3 +327,14 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
         return replace(found, model="Helios 16P", packet_s=usual_s)
     low = device is None or float(device.angles_cdeg[:, 0].min()) < ROBOSENSE_ANGLES.low_cdeg
     return replace(found, model="Helios 5515" if low else "Helios 32")
+
+
+def _of_old_id(found: Recognized, packets: Payloads, kind: tuple[int, ...]) -> Recognized:
+    """RS-16, RS-32 or Bpearl by the types in the header."""
+    if kind == BPEARL_V4_TYPE:
+        return replace(found, model="Bpearl V4")
+    name = OLD_TYPES.get(int(np.median(packets[:, OLD_TYPE_AT])), "")
+    if not name:
+        return found
+    usual_s = packet_s(MODELS[name], dual=found.mode == "dual")
+    return replace(found, model=name, packet_s=usual_s)

@@ -1,9 +1,10 @@
 """What RoboSense's manuals say of each model that spins: bytes, firing times, factory angles.
 
 Sources: user manuals RS-Helios (1.5, appendix of firing times and DIFOP), RS-Bpearl (3.2 and V4),
-RS-Ruby Plus (2.0), RS-Airy (1.0); the origins of the beams and the firing times of Bpearl V4, Ruby
-Plus and Airy are those of the maker's driver, rs_driver. Numbers are big-endian.
-All device packets (DIFOP) have the return mode and the measured angles at the same places.
+RS-Ruby Plus (2.0), RS-Airy (1.0); the origins of the beams, the firing times of Bpearl V4, Ruby
+Plus and Airy, and all of RS-16 and RS-32 are those of the maker's driver, rs_driver. Numbers are
+big-endian. All device packets (DIFOP) have the return mode and, but for an RS-16, the measured
+angles at the same places.
 """
 
 from __future__ import annotations
@@ -21,12 +22,18 @@ SIZE = 1248
 """Bytes of a data packet, and of a device packet."""
 DATA_ID = bytes.fromhex("55aa055a")
 OLD_DATA_ID = bytes.fromhex("55aa050a5aa550a0")
-"""First bytes of the data packets of a Bpearl."""
+"""First bytes of the data packets of RS-16, RS-32 and Bpearl."""
 DEVICE_ID = bytes.fromhex("a5ff005a11115555")
 """First bytes of a device packet (DIFOP)."""
 MODE_AT, ANGLES_AT = 300, 468
 """Offsets in a device packet: return mode; elevations, then azimuths of all lasers."""
+INSTALLED_AT, ELEVATIONS_AT = 289, 1165
+"""Offsets in a device packet: how an Airy is installed; elevations of an RS-16."""
 ANGLE = np.dtype([("sign", "u1"), ("cdeg", ">u2")])
+OLD_TYPE_AT = 30
+"""Offset of the type in the header of the oldest models."""
+OLD_TYPES = {1: "RS-16", 2: "RS-32"}
+"""Type there -> model; 3 = Bpearl."""
 TYPE_AT = 31
 """Offset of type and variant in the header: (3, 4) = Bpearl V4; the variant of an Airy."""
 IMU_PACKET = np.dtype(
@@ -65,6 +72,10 @@ class RoboSenseModel:
     """Offset of the time stamp."""
     stamp: Literal["us", "ns", "date"] = "us"
     """Seconds of 6 bytes with µs or ns of 4 bytes; or year to second, ms and µs."""
+    kind_at: int = -1
+    """Offset of a byte that is 0 in packets with points; -1 = there is none."""
+    device_angles: Literal["0.01 deg", "0.001 deg", "elevations"] = "0.01 deg"
+    """How device packets state angles: in these units; elevations alone, 3 bytes in 0.0001°."""
     unit_m: float
     """Meters per unit of distance."""
     along_m: float
@@ -124,6 +135,19 @@ _HELIOS_16P_US = np.concatenate(
 _HELIOS_16P_SECOND_US = 55.56
 """From the first firing of a block to the second."""
 
+
+def of_two_returns(model: RoboSenseModel) -> RoboSenseModel:
+    """A model with 16 lasers, of two returns: a block holds both returns of one firing, see
+    `recon4.recording.packets.robosense.packets.split_blocks`.
+    """
+    return replace(
+        model,
+        layout=_layout(2 * model.layout.blocks, model.lasers, first=0),
+        firing_us=model.firing_us / 2,
+        time_us=model.time_us[:, : model.lasers],
+    )
+
+
 _HELIOS_32 = RoboSenseModel(
     name="Helios 32",
     layout=_layout(12, 32),
@@ -154,13 +178,36 @@ _HELIOS_16P = replace(
         "-133,-395 -267,355 -396,-396 -523,356 -663,-397 -801,357"
     ),
 )
-HELIOS_16P_DUAL = replace(
-    _HELIOS_16P,
-    layout=_layout(24, 16, first=0),
-    firing_us=_HELIOS_16P_SECOND_US,
-    time_us=_HELIOS_16P_US[None],
+
+_RS16_SECOND_US = 55.5
+_RS16_US = 2.8 * np.arange(16.0)
+_RS16 = RoboSenseModel(
+    name="RS-16",
+    data_id=OLD_DATA_ID,
+    layout=_layout(12, 32),
+    stamp="date",
+    device_angles="elevations",
+    unit_m=0.005,
+    along_m=0.03825,
+    firing_us=2 * _RS16_SECOND_US,
+    time_us=np.concatenate([_RS16_US, _RS16_SECOND_US + _RS16_US])[None],
+    lasers=16,
+    factory_cdeg=_angles(
+        "-1500,0 -1300,0 -1100,0 -900,0 -700,0 -500,0 -300,0 -100,0 "
+        "1500,0 1300,0 1100,0 900,0 700,0 500,0 300,0 100,0"
+    ),
 )
-"""A Helios 16P of two returns: a block holds both returns of one firing, see `split_blocks`."""
+_RS32_US = np.concatenate([2.88 * np.arange(15.0), [44.64]])
+_RS32 = replace(
+    _RS16,
+    name="RS-32",
+    device_angles="0.001 deg",
+    along_m=0.03997,
+    firing_us=55.52,
+    time_us=np.concatenate([_RS32_US, 1.44 + _RS32_US])[None],
+    lasers=32,
+    factory_cdeg=None,
+)
 
 _BPEARL_US = 2.56 * np.arange(8)
 _BPEARL = RoboSenseModel(
@@ -220,13 +267,26 @@ _AIRY_US = np.array(
 _AIRY = RoboSenseModel(
     name="Airy",
     layout=_layout(8, 48, mask=0x3FFF),
+    kind_at=16,
     unit_m=0.005,
-    along_m=float(np.hypot(0.0108, 0.00375)),
-    up_m=0.06056,
+    along_m=float(np.hypot(0.0075, 0.00664)),
+    up_m=0.04532,
     firing_us=111.08,
     time_us=np.repeat(_AIRY_US, 8).reshape(2, 48),
     lasers=96,
 )
+_AIRY_UPRIGHT_US = np.array(
+    [0.0, 5.712, 12.376, 19.04, 25.704, 33.32, 41.888, 50.456, 59.024, 70.448, 81.872, 93.296]
+)
+_AIRY_SIDE_US = np.array(
+    [0.0, 11.424, 22.848, 34.272, 45.696, 54.264, 62.832, 71.4, 79.016, 85.68, 92.344, 99.008]
+)
+AIRY_INSTALLED = {
+    0: replace(_AIRY, time_us=np.repeat(_AIRY_UPRIGHT_US, 8).reshape(2, 48)),
+    1: replace(_AIRY, time_us=np.repeat(_AIRY_SIDE_US, 8).reshape(2, 48)),
+}
+"""How it is installed, as device packets say (upright; on its side) -> firing times; else those
+of the table."""
 AIRY_VARIANT = 2
 """Of 96 lines; 1 = 48, 3 = 192 lines, which are packed in another order."""
 
@@ -234,7 +294,7 @@ MODELS = {
     model.name: model
     for model in (
         *(_HELIOS_32, _HELIOS_5515, _HELIOS_16P),
-        *(_BPEARL, _BPEARL_V4, _RUBY_PLUS, _AIRY),
+        *(_BPEARL, _BPEARL_V4, _RS16, _RS32, _RUBY_PLUS, _AIRY),
     )
 }
 """Models that spin, by name."""

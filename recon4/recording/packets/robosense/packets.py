@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import IntEnum
 
 import numpy as np
@@ -13,10 +14,11 @@ from recon4.recording.packets.dates import dates_of
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.angles import LaserAngles
 from recon4.recording.packets.robosense.models import LATEST_S, RoboSenseModel
+from recon4.recording.packets.robosense.tuning import ROBOSENSE_ANGLES
 from recon4.recording.packets.spinning import SpinningTables, beams, distances, variants
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
-from recon4.units import SECOND_NS
+from recon4.units import SECOND_NS, SECOND_US
 
 STAMP = np.dtype([("high", ">u2"), ("seconds", ">u4"), ("rest", ">u4")])
 """Seconds, and µs or ns of the second."""
@@ -54,7 +56,10 @@ def azimuths_cdeg(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.int64
 def has_id(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.bool_]:
     """Which payloads begin as data packets of a model, (N,)."""
     wanted = np.frombuffer(model.data_id, np.uint8)
-    return np.asarray((payloads[:, : len(wanted)] == wanted).all(axis=1))
+    begins = (payloads[:, : len(wanted)] == wanted).all(axis=1)
+    if model.kind_at >= 0:
+        begins &= payloads[:, model.kind_at] == 0
+    return np.asarray(begins)
 
 
 def has_flags(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.bool_]:
@@ -96,6 +101,23 @@ def stamps(payloads: Payloads, model: RoboSenseModel) -> tuple[Times, NDArray[np
     if model.stamp == "date":
         return _dates_ns(raw.view(DATE)[:, 0])
     return stamps_of(raw, ns=model.stamp == "ns")
+
+
+def with_stamp_unit(model: RoboSenseModel, payloads: Payloads) -> RoboSenseModel:
+    """A model whose stamps are in ns, or the same with µs if its packets say so.
+
+    The maker's driver reads µs where the manual of the Ruby Plus has ns: parts of a second that all
+    are below a million are µs.
+
+    Args:
+        model: The sensor.
+        payloads: Its data packets, (N, 1248).
+    """
+    if model.stamp != "ns" or len(payloads) < ROBOSENSE_ANGLES.stamps:
+        return model
+    raw = np.ascontiguousarray(payloads[:, model.stamp_at : model.stamp_at + 10])
+    is_us = int(raw.view(STAMP)["rest"].max()) < SECOND_US
+    return replace(model, stamp="us") if is_us else model
 
 
 def stamps_of(raw: NDArray[np.uint8], *, ns: bool) -> tuple[Times, NDArray[np.bool_]]:

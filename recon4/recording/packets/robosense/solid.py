@@ -1,7 +1,7 @@
-"""RoboSense LiDARs without rotation: M1 and E1, packets to points.
+"""RoboSense LiDARs without rotation: M1, M2 and E1, packets to points.
 
 Sources: user manuals RS-LiDAR-M1 (2.0) and E1 (1.0), and the maker's driver rs_driver. Every point
-has its direction in the packet: two angles (M1) or a vector (E1). x is forward, y left, z up.
+has its direction in the packet: two angles (M1) or a vector (M2, E1). x is forward, y left, z up.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ SOLID_STAMP_AT = 10
 SOLID_HEADER = 32
 """Bytes before the first block."""
 MIDDLE = 32768
-"""Zero of the angles of an M1, one of the vectors of an E1."""
+"""Zero of the angles of an M1, one of the vectors of an M2 or E1."""
 SOLID_UNIT_M = 0.005
 """Meters per unit of distance."""
 SECOND_RETURN = 2
-"""Of ``returned`` in the blocks of an M1: a further return of the shots of the packet before."""
+"""Of ``returned`` in blocks of an M1 or M2: a further return of shots of the packet before."""
 
 _ANGLES = np.deg2rad(0.01 * (np.arange(65536) - MIDDLE))
 _COS, _SIN = np.cos(_ANGLES).astype(np.float32), np.sin(_ANGLES).astype(np.float32)
@@ -40,7 +40,7 @@ _M1_POINT = np.dtype(
         *[("attribute", "u1"), ("elongation", "u1")],
     ]
 )
-_E1_POINT = np.dtype(
+_VECTOR_POINT = np.dtype(
     [("distance", ">u2"), ("vector", ">i2", 3), ("intensity", "u1"), ("attribute", "u1")]
 )
 
@@ -75,11 +75,19 @@ SOLID_MODELS = {
             directions="angles",
         ),
         SolidModel(
+            name="M2",
+            size=1342,
+            block=np.dtype([("us", "u1"), ("returned", "u1"), ("points", _VECTOR_POINT, 5)]),
+            blocks=25,
+            packet_s=0.1 / 1260,
+            directions="vectors",
+        ),
+        SolidModel(
             name="E1",
             size=1200,
-            block=np.dtype([("us", ">u2"), ("points", _E1_POINT, 1)]),
+            block=np.dtype([("us", ">u2"), ("points", _VECTOR_POINT, 1)]),
             blocks=96,
-            packet_s=0.1 / 112,
+            packet_s=0.1 / 288,
             directions="vectors",
         ),
     )
@@ -136,7 +144,7 @@ def decode_solid(t_ns: Times, payloads: Payloads, model: SolidModel, *, of: Pack
         ("points", kept),
     ):
         of.report.count(name, int(which.sum()))
-    time = t_ns[:, None] + 1000 * blocks["us"].astype(np.int64)
+    time = t_ns[:, None] + _offset_unit_ns(blocks, model) * blocks["us"].astype(np.int64)
     echo = np.zeros(shape[:2], np.uint8)
     if "returned" in (model.block.names or ()):
         echo = (blocks["returned"] == SECOND_RETURN).astype(np.uint8)
@@ -151,6 +159,15 @@ def decode_solid(t_ns: Times, payloads: Payloads, model: SolidModel, *, of: Pack
         np.broadcast_to(np.arange(shape[2], dtype=np.uint8), shape)[kept],
         np.broadcast_to(echo[:, :, None], shape)[kept],
     )
+
+
+def _offset_unit_ns(blocks: NDArray[np.void], model: SolidModel) -> int:
+    """Unit of the times in blocks [ns]: µs, or ns where µs would reach beyond the next packets.
+
+    The newer versions of the maker's driver read those of an E1 as ns.
+    """
+    last_us = np.median(blocks["us"].max(axis=1)) if len(blocks) else 0.0
+    return 1 if last_us > 2e6 * model.packet_s else 1000
 
 
 def _rays(points: NDArray[np.void]) -> NDArray[np.float32]:
