@@ -39,7 +39,7 @@ from recon4.recording.formats.message_limits import check_message
 from recon4.recording.formats.point_messages import PointMessage, PointReader, point_readers
 from recon4.recording.formats.scratch import scratch_folder
 from recon4.recording.formats.shared_topics import SharedTopics, TopicSource
-from recon4.recording.formats.typestore import typestore
+from recon4.recording.formats.typestore import MessageTypes
 from recon4.recording.formats.zstd_file import decompress_file
 from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
 from recon4.recording.packets.senders import parts_of
@@ -120,6 +120,7 @@ class Bag:
         """Of each source: its file, or the folder whose description names it."""
         self._stored_bytes = 0
         self._points: dict[str, PointReader] = {}
+        self._types = MessageTypes()
         """Of the types of points other than ``PointCloud2``."""
         self.ros1 = False
         self.topics: tuple[BagTopic, ...] = ()
@@ -209,13 +210,10 @@ class Bag:
         return {source: replace(message, content=part) for source, part in parts.items()}
 
     def _decoded(self, message: BagMessage) -> Any:
-        store = typestore(ros1=self.ros1)
         if message.type in self._points:
             return self._points[message.type].read(message.data, ros1=self.ros1)
         check_message(message.type, message.data, ros1=self.ros1)
-        if self.ros1:
-            return store.deserialize_ros1(message.data, message.type)
-        return store.deserialize_cdr(message.data, message.type)
+        return self._types.decode(message.type, message.data, ros1=self.ros1)
 
     def _left_out(self, topic: str, **why: Value) -> None:
         self.report.count("messages_corrupt")

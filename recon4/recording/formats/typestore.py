@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from contextlib import suppress
 from functools import cache
 from typing import Any
 
-from recon4.recording.packets.messages import DEFINITIONS
+from recon4.recording.packets.messages import DEFINITIONS, PACKET_MESSAGES
 
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 """Of ROS 2 and late ROS 1, of early ROS 1."""
@@ -20,7 +22,61 @@ def typestore(*, ros1: bool) -> Any:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    for name, text in {**DEFINITIONS, **_DEFINITIONS}.items():
+    for name, text in {**DEFINITIONS, **_DEFINITIONS, **_versions()}.items():
         if name not in store.types:
             store.register(get_types_from_msg(text, name))
     return store
+
+
+class MessageTypes:
+    """Decodes the messages of a bag, and keeps which version of a type it holds."""
+
+    def __init__(self) -> None:
+        """Begin with the usual versions."""
+        self._found: dict[str, str] = {}
+
+    def decode(self, kind: str, data: bytes, *, ros1: bool) -> Any:
+        """A message as an object with its fields, by the first version that takes all its bytes.
+
+        Raises:
+            Exception: Of many kinds, from generated code, if it fits none.
+        """
+        store = typestore(ros1=ros1)
+        decode = store.deserialize_ros1 if ros1 else store.deserialize_cdr
+        last, *others = sorted(_names_of(kind), key=self._found.get(kind, kind).__eq__)
+        for name in reversed(others):
+            with suppress(Exception):
+                found = decode(data, name)
+                self._found[kind] = name
+                return found
+        found = decode(data, last)
+        self._found[kind] = last
+        return found
+
+
+def _names_of(kind: str) -> list[str]:
+    """The names in `typestore` of all versions of a type of messages, the usual one last."""
+    row = PACKET_MESSAGES.get(kind)
+    count = len(row.versions) if row is not None else 0
+    return [*(_version(kind, kind, number) for number in range(count, 0, -1)), kind]
+
+
+def _version(kind: str, of: str, number: int) -> str:
+    """A name for a version of a type that a kind of messages consists of."""
+    return f"{of}{kind.rpartition('/')[2]}{number}" if of != kind else f"{kind}Version{number}"
+
+
+def _versions() -> dict[str, str]:
+    """Further versions of all messages of packets under names of their own."""
+    found: dict[str, str] = {}
+    for kind, row in PACKET_MESSAGES.items():
+        for number, texts in enumerate(row.versions, start=1):
+            names = {of: _version(kind, of, number) for of in texts}
+            found |= {names[of]: _renamed(text, names) for of, text in texts.items()}
+    return found
+
+
+def _renamed(text: str, names: Mapping[str, str]) -> str:
+    for of, name in names.items():
+        text = text.replace(of.replace("/msg/", "/"), name.replace("/msg/", "/"))
+    return text

@@ -27,6 +27,7 @@ from recon4.recording.formats.datagrams import NO_DATAGRAMS, Datagrams
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
+from recon4.units import SECOND_NS
 
 Payloads = NDArray[np.uint8]
 """UDP payloads of one size as rows of bytes, (N, size)."""
@@ -238,6 +239,15 @@ def no_sender(payloads: Payloads) -> list[str]:
     return [""] * len(payloads)
 
 
+def stamped_packet(packet: Any) -> tuple[int, bytes]:
+    """Time of arrival [ns] and bytes of a decoded packet with ``stamp`` and ``data``; of a fixed
+    room for ``data`` those that ``size`` counts.
+    """
+    size = int(getattr(packet, "size", len(packet.data)))
+    t_ns = int(packet.stamp.sec) * SECOND_NS + int(packet.stamp.nanosec)
+    return t_ns, np.asarray(packet.data, np.uint8)[:size].tobytes()
+
+
 @dataclass(frozen=True, slots=True)
 class MessagePackets:
     """A type of message that carries packets."""
@@ -249,6 +259,9 @@ class MessagePackets:
     """The packets of a decoded message: arrival time [ns] (0 = that of the message), bytes."""
     samples: bool = False
     """Whether they are other packets of the LiDAR (IMU, device data), not points."""
+    versions: tuple[Mapping[str, str], ...] = ()
+    """Further versions of `definitions`, as other releases of the driver have them; each is whole.
+    A message is decoded by the first that takes all of its bytes."""
     senders: Callable[[Payloads], list[str]] = no_sender
     """Which sensor sent each packet, as its own bytes say: its serial number or its model, (N,);
     empty = they do not. Topics that several sensors share are taken apart by it."""

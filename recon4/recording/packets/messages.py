@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from recon4.recording.packets.families import FAMILIES
-from recon4.recording.packets.family import MessagePackets
+from recon4.recording.packets.family import MessagePackets, stamped_packet
 
+_NEBULA, _NEBULA_PACKET = "nebula_msgs/msg/NebulaPackets", "nebula_msgs/msg/NebulaPacket"
+_OF_ANY_MAKE = {
+    _NEBULA: MessagePackets(
+        {
+            _NEBULA: "std_msgs/Header header\nnebula_msgs/NebulaPacket[] packets\n",
+            _NEBULA_PACKET: "builtin_interfaces/Time stamp\nuint8[] data\n",
+        },
+        packets=lambda message: [stamped_packet(packet) for packet in message.packets],
+    )
+}
+"""Packets of any family: a topic is of one LiDAR."""
 PACKET_MESSAGES: dict[str, MessagePackets] = {
     kind: row for family in FAMILIES for kind, row in family.messages.items()
-}
+} | _OF_ANY_MAKE
 """Type of the message -> how to get its packets."""
 DATA_MESSAGES = frozenset(kind for kind, row in PACKET_MESSAGES.items() if not row.samples)
 """Types that carry data packets."""

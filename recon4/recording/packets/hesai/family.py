@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from recon4.recording.packets.family import (
     PacketSensor,
     Payloads,
     Recognized,
+    stamped_packet,
 )
 from recon4.recording.packets.hesai.angles import Angles, angles_of, is_table
 from recon4.recording.packets.hesai.data_packets import HesaiFormat, HesaiPackets
@@ -39,32 +41,45 @@ from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport, warning
 
 _JT16_IMU = START + bytes((1, 8))
+_HEADER = "std_msgs/Header header\n"
 
-_PANDAR_TYPES = {
-    "pandar_msgs/msg/PandarPacket": (
-        "builtin_interfaces/Time stamp\nuint8[1500] data\nuint32 size\n"
-    ),
-    "pandar_msgs/msg/PandarScan": ("std_msgs/Header header\npandar_msgs/PandarPacket[] packets\n"),
-}
-_UDP_TYPES = {
-    "hesai_ros_driver/msg/UdpPacket": (
-        "builtin_interfaces/Time stamp\nuint8[] data\nuint32 size\n"
-    ),
-    "hesai_ros_driver/msg/UdpFrame": (
-        "std_msgs/Header header\nhesai_ros_driver/UdpPacket[] packets\n"
-    ),
-}
+
+def _scans(scan: str, packet: str, *, data: str, header: str = _HEADER) -> dict[str, str]:
+    """Definitions of a message of packets, by the names of both types."""
+    short = packet.replace("/msg/", "/")
+    return {
+        scan: f"{header}{short}[] packets\n",
+        packet: f"builtin_interfaces/Time stamp\n{data} data\nuint32 size\n",
+    }
+
+
+def _messages() -> dict[str, MessagePackets]:
+    """Of all drivers of Hesai; each has had its packets in arrays of fixed and of any length."""
+    found = {}
+    for package, usual, other in (
+        ("pandar_msgs", "uint8[1500]", "uint8[]"),
+        ("hesai_lidar", "uint8[]", "uint8[1500]"),
+    ):
+        kind, one = f"{package}/msg/PandarScan", f"{package}/msg/PandarPacket"
+        found[kind] = MessagePackets(
+            _scans(kind, one, data=usual),
+            _packets,
+            senders=senders,
+            versions=(_scans(kind, one, data=other),),
+        )
+    kind, one = "hesai_ros_driver/msg/UdpFrame", "hesai_ros_driver/msg/UdpPacket"
+    found[kind] = MessagePackets(
+        _scans(kind, one, data="uint8[]"),
+        _packets,
+        senders=senders,
+        versions=(_scans(kind, one, data="uint8[]", header=""),),
+    )
+    return found
 
 
 def _packets(message: Any) -> list[tuple[int, bytes]]:
     """Arrival times [ns] and payloads of a message."""
-    return [
-        (
-            int(packet.stamp.sec) * 1_000_000_000 + int(packet.stamp.nanosec),
-            bytes(packet.data[: int(packet.size)]),
-        )
-        for packet in message.packets
-    ]
+    return [stamped_packet(packet) for packet in message.packets]
 
 
 def senders(payloads: Payloads) -> list[str]:
@@ -80,10 +95,7 @@ class Hesai:
     """A `recon4.recording.packets.family.PacketFamily`."""
 
     name = "Hesai"
-    messages: Mapping[str, MessagePackets] = {
-        "pandar_msgs/msg/PandarScan": MessagePackets(_PANDAR_TYPES, _packets, senders=senders),
-        "hesai_ros_driver/msg/UdpFrame": MessagePackets(_UDP_TYPES, _packets, senders=senders),
-    }
+    messages: Mapping[str, MessagePackets] = MappingProxyType(_messages())
 
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """What the datagrams are, by the header of the most frequent size; None = not Hesai's."""

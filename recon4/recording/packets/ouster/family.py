@@ -64,9 +64,11 @@ def senders(payloads: Payloads) -> list[str]:
     return [str(number) if number > 0 else "" for number in header_serials(payloads).tolist()]
 
 
+_PACKAGES = ("ouster_ros", "ouster_msgs", "ouster_sensor_msgs")
+"""Of the drivers for ROS 1, early and later ROS 2."""
 _MESSAGES = {
     name: MessagePackets({name: "uint8[] buf\n"}, packets_of_message, senders=senders)
-    for name in ("ouster_ros/msg/PacketMsg", "ouster_sensor_msgs/msg/PacketMsg")
+    for name in (f"{package}/msg/PacketMsg" for package in _PACKAGES)
 }
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.recording.packets.family import MessagePackets, Payloads
+from recon4.recording.packets.family import MessagePackets, Payloads, stamped_packet
 from recon4.recording.packets.robosense.models import MODELS, SIZE, TYPE_AT, RoboSenseModel
 from recon4.recording.packets.robosense.packets import has_flags, has_id
 from recon4.recording.packets.robosense.solid import SOLID_MODELS, SolidModel, sound_solid
@@ -21,11 +21,23 @@ def _messages() -> dict[str, MessagePackets]:
     """Messages of the drivers of Nebula and of the maker, the latter under all its names."""
     header, stamp = "std_msgs/Header header\n", "builtin_interfaces/Time stamp\n"
     scan, packet = "robosense_msgs/msg/RobosenseScan", "robosense_msgs/msg/RobosensePacket"
-    nebula = {
-        scan: f"{header}robosense_msgs/RobosensePacket[] packets\n",
-        packet: f"{stamp}uint8 is_difop\nuint8[1500] data\nuint32 size\n",
-    }
-    found = {scan: MessagePackets(definitions=nebula, packets=_scan, senders=senders)}
+    info = "robosense_msgs/msg/RobosenseInfoPacket"
+    bodies = (
+        f"{stamp}uint8 is_difop\nuint8[1500] data\nuint32 size\n",
+        f"{stamp}uint8[1500] data\nuint32 size\n",
+        f"{stamp}uint8[1248] data\nuint32 size\n",
+        f"{stamp}uint8[1248] data\n",
+    )
+    found = {}
+    for kind, text in (
+        (scan, f"{header}robosense_msgs/RobosensePacket[] packets\n"),
+        (info, "string lidar_model\nrobosense_msgs/RobosensePacket packet\n"),
+    ):
+        usual, *others = ({kind: text, packet: body} for body in bodies)
+        get, samples = (_scan, False) if kind == scan else (_info, True)
+        found[kind] = MessagePackets(
+            usual, get, samples=samples, senders=senders, versions=tuple(others)
+        )
     for package in ("rslidar_msg", "rslidar_msgs"):
         name = f"{package}/msg/RslidarPacket"
         text = f"{header}uint8 is_difop\nuint8 is_frame_begin\nuint8[] data\n"
@@ -37,7 +49,7 @@ def _messages() -> dict[str, MessagePackets]:
         }
         found[old] = MessagePackets(definitions=texts, packets=_scan, senders=senders)
         found[its] = MessagePackets(
-            definitions={its: texts[its]}, packets=lambda one: [_packet(one)], samples=True
+            definitions={its: texts[its]}, packets=lambda one: [stamped_packet(one)], samples=True
         )
     return found
 
@@ -67,13 +79,11 @@ def _none(payloads: Payloads) -> NDArray[np.bool_]:
 
 
 def _scan(message: Any) -> list[tuple[int, bytes]]:
-    return [_packet(packet) for packet in message.packets]
+    return [stamped_packet(packet) for packet in message.packets]
 
 
-def _packet(packet: Any) -> tuple[int, bytes]:
-    size = int(getattr(packet, "size", len(packet.data)))
-    t_ns = int(packet.stamp.sec) * SECOND_NS + int(packet.stamp.nanosec)
-    return t_ns, bytes(np.asarray(packet.data, np.uint8)[:size].tobytes())
+def _info(message: Any) -> list[tuple[int, bytes]]:
+    return [stamped_packet(message.packet)]
 
 
 def _one(message: Any) -> list[tuple[int, bytes]]:
