@@ -42,3 +42,16 @@ def test_the_speed_of_a_jt128_is_in_tenths_of_revolutions_a_minute():
     payloads[:, at : at + 2] = np.array([6000], "<u2").view(np.uint8)
 
     assert HESAI.recognize(datagrams(payloads), ()).rotation_hz == pytest.approx(10.0)
+
+
+@pytest.mark.parametrize(
+    ("version", "shape", "name"),
+    [((7, 2), (120, 1), "FT120"), ((2, 5), (8, 16), "ET25"), ((1, 4), (40, 8), "40, 64 or 90")],
+)
+def test_a_hesai_that_is_not_decoded_is_refused_by_name(version, shape, name):
+    payloads = np.zeros((20, 1000), np.uint8)
+    payloads[:, :12] = (0xEE, 0xFF, *version, 0, 0, *shape, 1, 4, 1, 0)
+
+    found = HESAI.recognize(datagrams(payloads), ())
+
+    assert (found.kind, name in found.refused) == ("other", True)

@@ -31,6 +31,7 @@ from recon4.recording.packets.hesai.layouts import (
     HEADER,
     JT16_IMU_SIZE,
     START,
+    UNREAD,
     read_layout,
 )
 from recon4.recording.packets.hesai.mirrors import MirrorTable, mirrors_of, read_mirrors
@@ -104,7 +105,7 @@ class Hesai:
             return None
         found = _data_packets(payloads)
         if found is None:
-            return self._samples(payloads)
+            return self._samples(payloads) or self._unread(payloads)
         sound = _sound(payloads, found)
         if not sound.mean() * np.mean(head.length == found.layout.size) > 0.5:
             return None
@@ -182,6 +183,16 @@ class Hesai:
         if not (payloads[:, : len(start)] == start).all(axis=1).mean() > 0.5:
             return None
         return Recognized(family=self.name, kind="samples", model="JT16")
+
+    def _unread(self, payloads: Payloads) -> Recognized | None:
+        """Packets of a Hesai that is not decoded, by name."""
+        begins = (payloads[:, :2] == np.frombuffer(START, np.uint8)).all(axis=1)
+        if not begins.mean() > 0.5:
+            return None
+        version = tuple(np.median(payloads[begins, 2:4], axis=0).astype(int).tolist())
+        name = UNREAD.get(version, "")
+        reason = f"{name}, whose packets are not decoded"
+        return Recognized(family=self.name, kind="other", refused=reason) if name else None
 
 
 HESAI = Hesai()

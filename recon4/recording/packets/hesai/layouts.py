@@ -139,6 +139,13 @@ _PROTOCOLS = {
     (4, 3): _Protocol(_AT128, fine_azimuth=True, return_bytes=4, sums=True),
     (6, 1): _Protocol(_XT, return_bytes=4),
 }
+UNREAD = {
+    (1, 4): "a Pandar or OT of 40, 64 or 90 channels",
+    **dict.fromkeys([(2, 4), (2, 5), (2, 6), (2, 7)], "an ET25 or ET30"),
+    (4, 7): "an ATX",
+    (7, 2): "an FT120",
+}
+"""Versions of protocols whose packets are of no model of the table, or of none but the usual."""
 _PANDAR64 = _Protocol(_PANDAR, header=8, return_bytes=3)
 _PANDAR64_SIZES = (1194, 1198)
 _MAX_SHOTS = 1024
