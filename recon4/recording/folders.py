@@ -40,7 +40,7 @@ from recon4.settings import IngestSettings
 
 @dataclass(frozen=True, slots=True)
 class FrameFiles:
-    """Files in the order of their numbers, each with a time."""
+    """Files in the order of their times."""
 
     files: tuple[Path, ...]
     t_ns: Times
@@ -51,6 +51,8 @@ class FrameFiles:
     """Origin of the timestamps; empty = 10 Hz is assumed."""
     findings: tuple[Finding, ...] = ()
     """Why times that are there were not used, or which are damaged."""
+    out_of_order: int = 0
+    """How many files had an earlier time than one before them by number; they are sorted."""
 
     @property
     def rate_hz(self) -> float:
@@ -89,7 +91,11 @@ def list_frames(path: Path) -> FrameFiles:
     period = int(np.median(steps)) if len(steps) else FRAME_TIMES.assumed_ns
     if not FRAME_TIMES.shortest_ns <= period <= FRAME_TIMES.longest_ns:
         period = FRAME_TIMES.assumed_ns
-    return FrameFiles(tuple(found), times.t_ns, period, times.source, times.findings)
+    if times.order is not None:
+        found = [found[row] for row in times.order]
+    return FrameFiles(
+        tuple(found), times.t_ns, period, times.source, times.findings, times.out_of_order
+    )
 
 
 def time_warnings(frames: FrameFiles) -> tuple[Finding, ...]:
@@ -125,10 +131,11 @@ def read_frames(
     decoder = CloudDecoder(0, sensor, report=report, points_lead=True, settings=read_as)
     for found in time_warnings(frames):
         report.add(found)
+    report.count("files", len(frames.files))
+    report.count("files_out_of_order", frames.out_of_order)
     frame_id, last_ns, failed = 0, None, None
     offset_ns = round(sensor.time_offset_s * 1e9)
     for file, stamp in zip(frames.files, frames.t_ns, strict=True):
-        report.count("files")
         try:
             at_ns = int(stamp) + offset_ns
             table = read_points(file, sensor.fields)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -21,11 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
-from recon4.model.finding import Finding
+from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.cloud_files import CLOUD_SUFFIXES
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
+from recon4.recording.frame_order import moved_back, order_of_times, times_by_text
 from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport, warning
 from recon4.recording.stamps import strays
@@ -53,6 +54,10 @@ class FrameTimes:
     """Where they are from; empty = assumed."""
     findings: tuple[Finding, ...] = ()
     """Why times that are there could not be used, or which are damaged."""
+    order: NDArray[np.intp] | None = None
+    """Rows of the files in the order of these times, (N,); None = their own."""
+    out_of_order: int = 0
+    """How many files had an earlier time than one before them."""
 
 
 def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
@@ -64,46 +69,54 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
     """
     named = [name_time_ns(_stem(file)) for file in files]
     known = np.array([t for t in named if t is not None], np.int64)
-    if len(known) == len(files) and np.all(np.diff(known) > 0):
-        return FrameTimes(known, "the file names")
+    if len(known) == len(files) and (in_names := _in_any_order(known, "the file names")):
+        return in_names
     found = list[Finding]()
     for beside in [place / name for place in (folder, folder.parent) for name in TIME_FILES]:
-        if not folder.is_dir() or not beside.is_file():
-            continue
-        try:
-            times = read_times(beside)
-        except CorruptFile as error:
-            found.append(warning(FindingKind.TIMES_UNREADABLE, error=str(error)))
-            continue
-        if len(times) != len(files):
-            found.append(
-                warning(
-                    FindingKind.TIMES_NUMBER,
-                    name=beside.name,
-                    times=len(times),
-                    files=len(files),
-                )
-            )
-            continue
-        sound = _in_order(times)
-        damaged = np.flatnonzero(~sound)
-        if len(damaged):
-            unused = len(damaged) > MAX_RATIO * len(times)
-            first = int(damaged[0]) + 1
-            found.append(
-                warning(
-                    FindingKind.TIMES_UNSORTED if unused else FindingKind.TIMES_DAMAGED,
-                    name=beside.name,
-                    first=first,
-                    damaged=len(damaged),
-                    times=len(times),
-                )
-            )
-            if unused:
-                continue
-        return FrameTimes(_filled(times, sound), beside.name, tuple(found))
+        if folder.is_dir() and beside.is_file():
+            listed = _listed_times(beside, files, found)
+            if listed is not None:
+                return replace(listed, findings=tuple(found))
     assumed = np.arange(len(files), dtype=np.int64) * FRAME_TIMES.assumed_ns
     return FrameTimes(assumed, "", tuple(found))
+
+
+def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> FrameTimes | None:
+    """The times of a text file; ``found`` receives why they are not used, or which are damaged."""
+    try:
+        times = read_times(beside)
+    except CorruptFile as error:
+        found.append(warning(FindingKind.TIMES_UNREADABLE, error=str(error)))
+        return None
+    name, count = beside.name, len(times)
+    if count != len(files):
+        found.append(warning(FindingKind.TIMES_NUMBER, name=name, times=count, files=len(files)))
+        return None
+    sound = _in_order(times)
+    damaged = np.flatnonzero(~sound)
+    if not len(damaged):
+        return FrameTimes(times, name)
+    values: dict[str, Value] = {"name": name, "first": int(damaged[0]) + 1}
+    values |= {"damaged": len(damaged), "times": count}
+    if len(damaged) <= MAX_RATIO * count:
+        found.append(warning(FindingKind.TIMES_DAMAGED, **values))
+        return FrameTimes(_filled(times, sound), name)
+    by_text = times_by_text(times, files)
+    if np.all(np.diff(by_text) > 0):
+        return FrameTimes(by_text, name, out_of_order=moved_back(times))
+    if (sorted_times := _in_any_order(times, name)) is None:
+        found.append(warning(FindingKind.TIMES_UNSORTED, **values))
+    return sorted_times
+
+
+def _in_any_order(t_ns: Times, source: str) -> FrameTimes | None:
+    """The times in their order, and the files with them; None if they are no times of a walk."""
+    if np.all(np.diff(t_ns) > 0):
+        return FrameTimes(t_ns, source)
+    order = order_of_times(t_ns)
+    if order is None:
+        return None
+    return FrameTimes(t_ns[order], source, order=order, out_of_order=moved_back(t_ns))
 
 
 def _stem(file: Path) -> str:

@@ -117,6 +117,12 @@ class FrameTimeTuning(Struct, frozen=True, kw_only=True):
     shortest_ns: int = 20_000_000
     longest_ns: int = 250_000_000
     """Plausible intervals of frames [ns]; outside them each frame counts as one revolution."""
+    even_ratio: float = 0.5
+    """A step between sorted times that is shorter than this ratio of the usual one is uneven …"""
+    uneven_ratio: float = 0.02
+    """… and a larger ratio of such steps is none of a walk whose files are in another order."""
+    run_ratio: float = 0.25
+    """Times that go back in fewer of their steps go on in runs."""
     earliest_ns: int = 300_000_000 * 1_000_000_000
     """Times before 1979 do not count from 1970."""
 

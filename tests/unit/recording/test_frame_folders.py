@@ -161,6 +161,50 @@ def test_times_that_do_not_fit_are_named_before_10_hz_are_assumed(tmp_path, line
     assert warned(describe(folder), kind, **values)
 
 
+_TIMES_OF_FILES = {
+    "backward": [11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 1, 0],
+    "shuffled": [3, 0, 7, 1, 11, 2, 9, 4, 10, 5, 8, 6],
+}
+
+
+@pytest.mark.parametrize("by", [*_TIMES_OF_FILES, "names"])
+def test_files_whose_numbers_are_in_another_order_are_sorted_by_their_times(tmp_path, by):
+    steps = _TIMES_OF_FILES.get(by, _TIMES_OF_FILES["shuffled"])
+    t_ns = [T0_NS + step * 100_000_000 for step in steps]
+    stamps = [f"_{t}" if by == "names" else "" for t in t_ns]
+    folder = frame_folder(tmp_path / "f", [f"{k}{text}.pcd" for k, text in enumerate(stamps)])
+    if by != "names":
+        (folder / "times.txt").write_text("".join(f"{t}\n" for t in t_ns))
+
+    frames = list_frames(folder)
+
+    assert [natural(file)[0][1] for file in frames.files] == np.argsort(steps).tolist()
+    assert np.all(np.diff(frames.t_ns) == 100_000_000)
+    text = f"{frames.out_of_order} of 12 files: numbers in another order than their times, sorted"
+    assert describe(folder).repaired == (text,)
+    counts = run(folder, out=tmp_path / "o").report["counts"]
+    assert counts["files_out_of_order"] == frames.out_of_order > 0
+
+
+def test_times_listed_in_the_order_of_a_plain_sort_belong_to_the_files_of_that_order(tmp_path):
+    folder = frame_folder(tmp_path / "f", [f"{k}.pcd" for k in range(12)])
+    listed = sorted(range(12), key=str)
+    (folder / "times.txt").write_text("".join(f"{0.1 * k}\n" for k in listed))
+
+    frames = list_frames(folder)
+
+    assert [file.name for file in frames.files] == [f"{k}.pcd" for k in range(12)]
+    assert frames.t_ns.tolist() == [k * 100_000_000 for k in range(12)]
+
+
+def test_times_that_start_again_each_minute_are_not_sorted(tmp_path):
+    folder = frame_folder(tmp_path / "f", [f"{k:02d}.pcd" for k in range(12)])
+    seconds = [round(k * 0.7 % 3.3, 3) for k in range(12)]
+    (folder / "times.txt").write_text("".join(f"{s}\n" for s in seconds))
+
+    assert K.TIMES_UNSORTED in kinds(describe(folder))
+
+
 def test_deskewed_clouds_have_no_motion_inside(tmp_path):
     folder = tmp_path / "f"
     folder.mkdir()
