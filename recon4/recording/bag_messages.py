@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Any
 
@@ -66,7 +66,7 @@ class SampleBatch:
         else:
             self._report.count(f"{self._kind}_wrong_time")
             return
-        self._t_ns.append(t_ns)
+        self._t_ns.append(t_ns + self._stamps.shift_ns)
         self._rows.append(self._row(content))
         if len(self._rows) >= BAG_IMU.batch:
             yield from self.flush()
@@ -80,7 +80,18 @@ class SampleBatch:
 
 def stamp_clock(bag: Bag, topic: str) -> StampClock:
     """The clock of the stamps of a topic, from its first messages; without one, a new clock."""
-    return StampClock(first_stamps(bag, topic) if topic else [])
+    return set_clock(bag, topic, first_stamps(bag, topic) if topic else [])
+
+
+def set_clock(bag: Bag, topic: str, head: Sequence[tuple[int, int]]) -> StampClock:
+    """The clock of the stamps of a topic, whose jumps are those of the bag.
+
+    Args:
+        bag: An open bag.
+        topic: Its name.
+        head: Stamps and times of recording of its first messages [ns].
+    """
+    return StampClock(head, lambda ns: bag.stamp_jumps.exact_ns(topic, ns, bag.report))
 
 
 def first_stamps(bag: Bag, topic: str) -> list[tuple[int, int]]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
@@ -11,15 +10,14 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.errors import EmptyRecording, RecordingError
 from recon4.model.derived_kinds import DerivedKind
-from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.bag_clouds import CloudReader
 from recon4.recording.bag_messages import (
     SampleBatch,
     first_stamps,
@@ -27,11 +25,11 @@ from recon4.recording.bag_messages import (
     join_fixes,
     join_poses,
     pose_row,
+    set_clock,
     stamp_clock,
-    stamp_ns,
 )
 from recon4.recording.bag_packets import BagPackets, PacketTopics, imu_in_packets
-from recon4.recording.clock_compare import LIDAR, warn_of_other_joint_clock
+from recon4.recording.clock_compare import warn_of_other_joint_clock
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.driver_topics import no_lidar_text, say_drivers, unread_text, warn_of_drivers
 from recon4.recording.formats.bags import CLOUD, Bag, BagMessage, BagTopic
@@ -52,8 +50,6 @@ from recon4.recording.recipes.bag_points import declared_recipes, say_columns, u
 from recon4.recording.recipes.refuse import require_known
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
-from recon4.recording.stamp_order import StampOrder
-from recon4.recording.stamps import StampClock
 from recon4.recording.topic_choice import (
     FIX_KIND,
     ODOMETRY_KIND,
@@ -231,11 +227,11 @@ class BagRecording:
                     settings=self._settings,
                 )
                 head = first_stamps(bag, topic.name)
-                found[sensor.topic] = _Clouds(
+                found[sensor.topic] = CloudReader(
                     clouds,
                     sensor.time_offset_s,
                     _period_ns(head),
-                    stamps=StampClock(head),
+                    stamps=set_clock(bag, topic.name, head),
                     report=self._report,
                 )
         return found
@@ -338,62 +334,3 @@ def _period_ns(head: Sequence[tuple[int, int]]) -> int:
         if 1e6 < period < 250e6:
             return round(float(period))
     return LIDAR_CHOICE.assumed_period_ns
-
-
-# -- LiDARs
-
-
-class _Clouds:
-    """Decodes messages of points, in the order of their stamps."""
-
-    def __init__(
-        self,
-        decoder: CloudDecoder,
-        offset_s: float,
-        period_ns: int,
-        *,
-        stamps: StampClock,
-        report: ImportReport,
-    ) -> None:
-        self._decoder, self._period_ns, self._report = decoder, period_ns, report
-        self._stamps = stamps
-        self._offset_ns = round(offset_s * 1e9)
-        self._recent: deque[tuple[int, Any]] = deque(maxlen=LIDAR_CHOICE.copies_within)
-        self._order: StampOrder[tuple[BagMessage, Any]] = StampOrder()
-
-    def push(self, message: BagMessage, cloud: Any) -> Iterator[Shots]:
-        t_ns = stamp_ns(cloud.header.stamp)
-        if not self._stamps.is_sound(t_ns, message.t_ns):
-            self._report.count("stamps_missing" if t_ns <= 0 else "stamps_wrong")
-            t_ns = self._stamps.expected_ns(message.t_ns)
-        elif self._is_copy(t_ns, cloud.data):
-            self._report.count("clouds_duplicate")
-            return
-        yield from self._decoded(self._order.push(t_ns, (message, cloud)))
-
-    def flush(self) -> Iterator[Shots]:
-        yield from self._decoded(self._order.flush())
-        self._report.count("clouds_late", self._order.too_late)
-
-    def _decoded(self, clouds: Iterable[tuple[int, tuple[BagMessage, Any]]]) -> Iterator[Shots]:
-        for t_ns, (message, cloud) in clouds:
-            try:
-                table = cloud_table(cloud)
-                shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
-            except CorruptFile as error:
-                self._report.count("messages_corrupt")
-                self._report.warn(
-                    FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=str(error)
-                )
-                continue
-            if len(shots := moved(shots, self._offset_ns)):
-                self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
-                yield shots
-
-    def _is_copy(self, t_ns: int, data: Any) -> bool:
-        """Whether a cloud was recorded before, as in bags that were merged."""
-        copy = t_ns > 0 and any(
-            t == t_ns and np.array_equal(other, data) for t, other in self._recent
-        )
-        self._recent.append((t_ns, data))
-        return copy

@@ -79,6 +79,16 @@ class CloudDecoder:
         self.absolute = False
         """Whether the points of the last cloud had absolute times."""
 
+    @property
+    def stamps_set_ns(self) -> int:
+        """By how much the clock of the stamps was set that are given without it [ns]."""
+        return self._exact.stamps_set_ns
+
+    @stamps_set_ns.setter
+    def stamps_set_ns(self, set_ns: int) -> None:
+        for clock in (self._exact, self._clock.dates):
+            clock.stamps_set_ns = set_ns
+
     def decode(self, table: Table, *, t_ns: int, period_ns: int) -> Shots:
         """Points of one cloud in order of time.
 

@@ -30,6 +30,11 @@ class ExactClock:
         """
         self._name, self._report = name, report
         self._offset_ns: int | None = None
+        self.stamps_set_ns = 0
+        """By how much the clock of the stamps was set while they were recorded; it is taken out of
+        the stamps [ns]."""
+        self._set_ns = 0
+        """The part of it by which the clock of the points was set, too."""
         self._others: list[int] = []
         """Offsets by the last clouds that contradict the known one [ns]."""
 
@@ -76,6 +81,11 @@ class ExactClock:
                     **offset_values(-ahead * 1e-9),
                 )
         if abs(ahead - self._offset_ns) <= POINT_CLOCK.jump_ns:
+            self._others = []
+            return self._offset_ns
+        along_ns = self.stamps_set_ns - self._set_ns
+        if along_ns and abs(ahead + along_ns - self._offset_ns) <= POINT_CLOCK.jump_ns:
+            self._set_ns, self._offset_ns = self.stamps_set_ns, self._offset_ns - along_ns
             self._others = []
             return self._offset_ns
         self._others = [*self._others, ahead][-POINT_CLOCK.confirm :]

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.model.clock_jump import ClockJump
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.events import Remarked
 from recon4.model.gps_time import day_of
@@ -26,6 +27,7 @@ from recon4.progress import Progress
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
+from recon4.recording.clock_jumps import samples_without_jumps, say_jumps
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.gnss.files import read_gnss
@@ -64,6 +66,8 @@ class _Samples:
     gnss_file: GnssFile | None = None
     poses: list[Trajectory] = field(default_factory=list)
     gyro_unit: GyroUnit = "auto"
+    jumps: Sequence[ClockJump] = ()
+    """Where all clocks were set ahead."""
 
     @classmethod
     def of_files(
@@ -76,6 +80,7 @@ class _Samples:
             imu=[read_imu_csv(imu, report)] if imu else [],
             gnss_file=read_gnss(gnss, report) if gnss else None,
             gyro_unit=settings.imu_gyro_unit,
+            jumps=sources.jumps,
         )
 
     def keep(self, item: ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans) -> None:
@@ -186,6 +191,7 @@ def ingest(
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)
+        say_jumps(sources.jumps, written.t_first_ns, report)
         counts = found.lines.close()
         about = _summary(recording, assembler, written, report=report)
         about |= {"recordings": [path.name for path in paths], "frames": len(writer)}
@@ -200,7 +206,12 @@ def _opened(sources: Sources, live: LiveSource, *, settings: IngestSettings) -> 
     """The recording, with the rig of the samples that are used."""
     recording = open_recording(
         OpenRequest(
-            sources.recordings, sources.rig, settings, live.report, open_file=live.open_file
+            sources.recordings,
+            sources.rig,
+            settings,
+            live.report,
+            open_file=live.open_file,
+            jumps=sources.jumps,
         )
     )
     if sources.imu is not None:
@@ -220,7 +231,7 @@ def _sort_out(sources: Sources) -> Sources:
         if kind is RecordingKind.GNSS_FILE and gnss is None:
             gnss = path
     recordings = tuple(path for path in sources.recordings if path not in (imu, gnss))
-    return Sources(recordings, sources.rig, imu, gnss)
+    return replace(sources, recordings=recordings, imu=imu, gnss=gnss)
 
 
 def _write_frames(
@@ -280,6 +291,7 @@ def _imu(
         report=report,
         gyro_unit=given.gyro_unit,
     )
+    clean = samples_without_jumps(clean, given.jumps)
     return covering(clean, written.span, bool(given.imu), report=report)
 
 
@@ -297,6 +309,7 @@ def _gnss(
     if not from_file and not is_same_clock(GNSS_CLOCK, offset_s, report):
         return None
     clean = clean_gnss(samples, offset_s=offset_s, report=report)
+    clean = samples_without_jumps(clean, given.jumps)
     return covering(clean, written.span, given.gnss_file is not None, report=report)
 
 

@@ -180,7 +180,7 @@ class LineRecording:
         if len(content.position) == 0 or (known and not sound):
             self._report.count("head_angles_invalid")
             return
-        t_ns = t_ns if sound else message.t_ns
+        t_ns = t_ns + stamps.shift_ns if sound else message.t_ns
         head.push(t_ns + self._offset_ns(self._row), float(content.position[0]))
 
     def _offset_ns(self, row: int | None) -> int:
@@ -336,6 +336,8 @@ class LineAssembly:
         if not self._stamps.is_sound(t_ns, message.t_ns):
             self._report.count("lines_wrong_time")
             t_ns = self._stamps.expected_ns(message.t_ns)
+        else:
+            t_ns += self._stamps.shift_ns
         t_ns += self._offset_ns
         try:
             if message.type == CLOUD:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from recon4.errors import ConfigError, UnknownFormat
 from recon4.model.derived_kinds import DerivedKind
+from recon4.recording.clock_jumps import with_jumps_removed
 from recon4.recording.clock_rates import with_clock_rates
 from recon4.recording.kinds import PLANAR, FolderContents, RecordingKind, contents_of, recognize
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
@@ -68,7 +69,8 @@ def open_recording(request: OpenRequest, kinds: Kinds = KINDS) -> Recording:
         recording = opener(request)
         if recording is not None:
             named = replace(recording, kind=recording.kind or str(kind))
-            return with_clock_rates(named, request.report)
+            rated = with_clock_rates(named, request.report)
+            return with_jumps_removed(rated, request.jumps)
     raise UnknownFormat(f"{paths[0].name}: {kind}: no reader knows the sensor that made it")
 
 

@@ -78,7 +78,8 @@ class PointClock:
         """
         self._name, self._report, self._points_lead = name, report, points_lead
         self._noted = False
-        self._dates = ExactClock(name, report)
+        self.dates = ExactClock(name, report)
+        """Of points with dates."""
         self._known_unit = 0.0
         """Of the clouds before, for those with few points [ns]; 0 = not known yet."""
 
@@ -201,7 +202,7 @@ class PointClock:
             return middle_ns
         if _is_date(middle_ns) and _is_date(t_ns) and not _is_hours(t_ns - first_ns, near_ns):
             # Drivers repeat stamps; two dates have one offset for the whole walk.
-            return middle_ns + self._dates.offset_ns(first_ns, t_ns, same_ns=near_ns)
+            return middle_ns + self.dates.offset_ns(first_ns, t_ns, same_ns=near_ns)
         if abs(middle_ns - t_ns) <= near_ns < t_ns:
             return middle_ns
         if abs(middle_ns) <= revolution_ns and 0 in cycles_ns:

@@ -103,6 +103,8 @@ class ScanCollector:
         if not self._stamps.is_sound(t_ns, message.t_ns):
             self._report.count("scans_wrong_time")
             t_ns = self._stamps.expected_ns(message.t_ns)
+        else:
+            t_ns += self._stamps.shift_ns
         for stamp_ns, (topic, one) in self._order.push(t_ns, (message.topic, scan)):
             yield from self.add(one, stamp_ns, where=topic)
 

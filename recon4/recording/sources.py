@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from recon4.errors import RecordingError
+from recon4.model.clock_jump import ClockJump
 from recon4.model.rig import Rig, load_rig
 
 
@@ -31,6 +32,8 @@ class Sources:
     near: tuple[Path, ...] = ()
     """Files beside the recordings (`recon4.recording.files_near`), for a process
     that may not list their folders."""
+    jumps: tuple[ClockJump, ...] = ()
+    """Where all clocks were set ahead, as a first reading showed."""
 
     @staticmethod
     def of(

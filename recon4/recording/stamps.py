@@ -2,30 +2,81 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
+from recon4.recording.clock_names import known_offset_s, looks_like
+from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import STAMPS
+from recon4.units import SECOND_NS
+
+
+class StampJumps:
+    """By how much the clocks of the stamps of a bag were set while it was recorded."""
+
+    def __init__(self) -> None:
+        self._known_ns: list[int] = []
+
+    def exact_ns(self, topic: str, measured_ns: int, report: ImportReport) -> int:
+        """A jump as measured by one topic [ns]: the same for all topics, or a known difference.
+
+        Args:
+            topic: Whose stamps jumped.
+            measured_ns: Later stamps minus earlier ones, less the time between them.
+            report: Receives the count ``clock_jumps`` and a warning, once for all topics.
+        """
+        for known_ns in self._known_ns:
+            if abs(known_ns - measured_ns) < STAMPS.same_jump_ns:
+                return known_ns
+        jump_s = known_offset_s(measured_ns / SECOND_NS)
+        self._known_ns.append(round(jump_s * SECOND_NS))
+        looks = looks_like(jump_s)
+        report.count("clock_jumps")
+        report.warn(
+            FindingKind.CLOCK_JUMP,
+            sensor=topic,
+            whose="sensor",
+            jump_s=jump_s,
+            times="without-it",
+            **({"looks": looks} if looks else {}),
+        )
+        return self._known_ns[-1]
 
 
 class StampClock:
-    """Stamps of one topic: stamp minus time of recording changes slowly, or for good."""
+    """Stamps of one topic: stamp minus time of recording changes slowly, or for good.
 
-    def __init__(self, head: Sequence[tuple[int, int]] = ()) -> None:
+    Where it changes for good, the times of recording tell which clock was set. Stamps whose own
+    clock was set go on without the jump, by `shift_ns`; those that go on as before are right, and
+    the recorder paused.
+    """
+
+    def __init__(
+        self,
+        head: Sequence[tuple[int, int]] = (),
+        exact_ns: Callable[[int], int] = lambda measured_ns: measured_ns,
+    ) -> None:
         """Prepare.
 
         Args:
             head: Stamp and time of recording of the first messages [ns]; the first one alone may
                 be wrong.
+            exact_ns: A jump of the bag from one that was measured (`StampJumps`) [ns].
         """
         known = [stamp - recorded for stamp, recorded in head if stamp > 0]
         self.offset_ns: int | None = int(np.median(known)) if known else None
         """Usual stamp minus time of recording; None = no stamp so far."""
         self.was_set = False
         """Whether the last stamp began another clock."""
+        self.shift_ns = 0
+        """To be added to stamps, because their clock was set."""
+        self._exact_ns = exact_ns
+        self._last: tuple[int, int] | None = None
+        """The last sound stamp, and when it was recorded [ns]."""
         self._run, self._run_ns = 0, 0
 
     def is_sound(self, stamp_ns: int, recorded_ns: int) -> bool:
@@ -34,18 +85,32 @@ class StampClock:
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
-        if self.offset_ns is not None and abs(offset_ns - self.offset_ns) > STAMPS.other_ns:
+        if self._is_elsewhere(stamp_ns, offset_ns):
             again = self._run and abs(offset_ns - self._run_ns) <= STAMPS.other_ns
             self._run, self._run_ns = (self._run + 1 if again else 1), offset_ns
             if self._run < STAMPS.confirm:
                 return False
             self.was_set = True
+            self._go_on_without(offset_ns, recorded_ns)
         self.offset_ns, self._run = offset_ns, 0
+        self._last = stamp_ns, recorded_ns
         return True
 
+    def _is_elsewhere(self, stamp_ns: int, offset_ns: int) -> bool:
+        if self.offset_ns is None or abs(offset_ns - self.offset_ns) <= STAMPS.other_ns:
+            return False
+        return self._last is None or not 0 <= stamp_ns - self._last[0] <= STAMPS.other_ns
+
+    def _go_on_without(self, offset_ns: int, recorded_ns: int) -> None:
+        """Take out a jump of the stamps; none if the recording has a gap there, too."""
+        if self._last is None or self.offset_ns is None:
+            return
+        if 0 <= recorded_ns - self._last[1] <= STAMPS.other_ns:
+            self.shift_ns -= self._exact_ns(offset_ns - self.offset_ns)
+
     def expected_ns(self, recorded_ns: int) -> int:
-        """What the stamp of a message would be [ns]."""
-        return recorded_ns + (self.offset_ns or 0)
+        """What the stamp of a message would be, with the shift [ns]."""
+        return recorded_ns + (self.offset_ns or 0) + self.shift_ns
 
 
 def strays(t_ns: Times) -> NDArray[np.bool_]:

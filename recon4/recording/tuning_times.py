@@ -35,6 +35,18 @@ class ClockNameTuning(Struct, frozen=True, kw_only=True):
 CLOCK_NAMES = ClockNameTuning()
 
 
+class ClockJumpTuning(Struct, frozen=True, kw_only=True):
+    """Clocks that were set ahead while a recording ran (`clock_jumps.py`)."""
+
+    known_ns: int = 50_000_000
+    """A jump as measured between two points is this near to the known difference of clocks [ns]."""
+    within: tuple[float, float] = (0.1, 0.9)
+    """Samples in this part of a jump have a clock that was not set."""
+
+
+CLOCK_JUMPS = ClockJumpTuning()
+
+
 class PointClockTuning(Struct, frozen=True, kw_only=True):
     """Points with times of a clock of their own (`exact_times.py`)."""
 
@@ -98,6 +110,8 @@ class StampTuning(Struct, frozen=True, kw_only=True):
     """A stamp that is farther from its place among the others is wrong [ns]."""
     confirm: int = 3
     """Stamps in a row that must agree on another clock: fewer are wrong ones."""
+    same_jump_ns: int = 500_000_000
+    """Jumps of two topics that differ by less are one: messages travel for different times [ns]."""
     strays_ratio: float = 0.05
     """A larger ratio of stamps that are far from their neighbors is no set of wrong ones."""
     ahead: int = 6

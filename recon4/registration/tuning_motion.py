@@ -51,6 +51,30 @@ class BridgeTuning(Struct, frozen=True, kw_only=True):
 BRIDGE = BridgeTuning()
 
 
+class ClocksSetTuning(Struct, frozen=True, kw_only=True):
+    """Gaps in which only the clocks moved on (`clock_jumps.py`)."""
+
+    least_s: float = 2.0
+    """A shorter gap is one [s]: in its time a body hardly leaves the place."""
+    most: int = 20
+    """Gaps of a recording that are looked at."""
+    frames: int = 4
+    """Multiframes on both sides by which the motion is measured."""
+    least_ratio: float = 0.5
+    """Of the points that match, from one multiframe to the next."""
+    moving_m_s: float = 0.25
+    turning_rad_s: float = 0.5
+    """A slower body may have waited at its place."""
+    faster: float = 1.5
+    """Steps of a walker change his speed by this ratio …"""
+    off_m: float = 0.1
+    off_rad: float = 0.1
+    """… and this is added to where he may be beyond the gap."""
+
+
+CLOCKS_SET = ClocksSetTuning()
+
+
 class CarrierTuning(Struct, frozen=True, kw_only=True):
     """What is known of a carrier's motion before any scan."""
 

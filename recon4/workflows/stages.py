@@ -5,7 +5,9 @@ A version goes up whenever the same inputs give another result than before.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from shutil import rmtree
 
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
@@ -53,9 +55,17 @@ def _frames(
 ) -> FrameFigures:
     from recon4.recording.ingest import ingest
     from recon4.recording.sources import Sources
+    from recon4.registration.clock_jumps import clock_jumps
+    from recon4.store.frames import FrameStore
 
     sources = Sources(recordings, rig, imu, gnss)
     ingest(sources, context.out, settings=context.settings.ingest, progress=context.progress)
+    store = FrameStore.open(context.out)
+    jumps = clock_jumps(store, store.index["t_ns"])
+    if jumps:  # read once more, because a revolution may go on across a jump
+        sources = replace(sources, jumps=tuple(jumps))
+        rmtree(context.out)
+        ingest(sources, context.out, settings=context.settings.ingest, progress=context.progress)
     return frames_figures(context.out)
 
 

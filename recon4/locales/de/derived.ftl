@@ -220,6 +220,10 @@ FRAMES-RATE =
 CLOCK-CORRECTED =
     .text1 = { $sensor }: seine Uhr wird seit seiner ersten Messung um { DECIMAL($rate_ppm, digits: 1, sign: 1) } µs je Sekunde korrigiert, wie die Rig-Datei angibt.
 
+CLOCKS-SET =
+    .text1 = Alle Uhren wurden bei { DECIMAL($at_s, digits: 1) } s um { DECIMAL($jump_s, digits: 3) } s vorgestellt. Der Träger ging dabei weiter wie zuvor, es fehlt also nichts: Die Zeiten laufen ohne den Sprung weiter.
+    .text2 = Das sieht aus wie: { WORD($looks) }.
+
 CLOCK-PAST-HOUR =
     .text1 = { $sensor }: seine Zeitstempel laufen über die volle Stunde (3600 s) hinaus: fortgesetzt.
 

@@ -222,6 +222,7 @@ CLOCK-BACK = Uhr geht zurück
 
 CLOCK-JUMP = Uhr gesprungen
     .text1 = { $sensor }: { WORD($whose, of: "CLOCK-JUMP") } ist um { DECIMAL($jump_s, digits: 3, sign: 1) } s gesprungen; { WORD($times, of: "CLOCK-JUMP") }.
+    .text2 = Das sieht aus wie: { WORD($looks) }.
     .word-sensor = seine Uhr
     .word-recorder = die Uhr des Aufzeichnungsrechners
     .word-points = die Uhr seiner Punkte, gegen die der Zeitstempel,

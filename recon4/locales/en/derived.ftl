@@ -217,6 +217,10 @@ FRAMES-RATE =
 CLOCK-CORRECTED =
     .text1 = { $sensor }: its clock is corrected by { DECIMAL($rate_ppm, digits: 1, sign: 1) } µs a second since its first measurement, as the rig file says.
 
+CLOCKS-SET =
+    .text1 = All clocks were set ahead by { DECIMAL($jump_s, digits: 3) } s at { DECIMAL($at_s, digits: 1) } s. The carrier walked on meanwhile as before, so nothing is missing: the times go on without the jump.
+    .text2 = That looks like: { WORD($looks) }.
+
 CLOCK-PAST-HOUR =
     .text1 = { $sensor }: its timestamps run on past the full hour (3600 s): continued.
 

@@ -223,6 +223,7 @@ CLOCK-BACK = Clock goes back
 
 CLOCK-JUMP = Clock jumped
     .text1 = { $sensor }: { WORD($whose, of: "CLOCK-JUMP") } jumped by { DECIMAL($jump_s, digits: 3, sign: 1) } s; { WORD($times, of: "CLOCK-JUMP") }.
+    .text2 = That looks like: { WORD($looks) }.
     .word-sensor = its clock
     .word-recorder = the recorder's clock
     .word-points = the clock of its points, against that of the stamps,

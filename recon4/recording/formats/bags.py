@@ -45,6 +45,7 @@ from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
 from recon4.recording.packets.senders import parts_of
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
+from recon4.recording.stamps import StampJumps
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 IMU = "sensor_msgs/msg/Imu"
@@ -114,15 +115,15 @@ class Bag:
         self._shared = SharedTopics({})
         self.recipes: Mapping[str, PointRecipe] = {}
         self.report = report  # receives damage; may be replaced while the bag is open
+        self.stamp_jumps = StampJumps()  # of the clocks of all topics
         self._stack = ExitStack()
         self._sources: list[StorageFile] = []
         self._origins: list[Path] = []
         """Of each source: its file, or the folder whose description names it."""
-        self._stored_bytes = 0
         self._points: dict[str, PointReader] = {}
         self._types = MessageTypes()
         """Of the types of points other than ``PointCloud2``."""
-        self.ros1 = False
+        self.ros1, self._stored_bytes = False, 0
         self.topics: tuple[BagTopic, ...] = ()
         self.t_first_ns, self.t_last_ns = 0, 0
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from recon4.errors import ConfigError, RecordingError, UnknownFormat
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
+from recon4.recording.clock_jumps import without_jumps
 from recon4.recording.cloud_points import model_of_points
 from recon4.recording.folders import folder_gaps, list_frames, read_frames, read_points
 from recon4.recording.openers.request import OpenRequest, Recording
@@ -25,6 +27,7 @@ def open_frames(request: OpenRequest) -> Recording:
     if len(paths) > 1:
         raise UnknownFormat("give the folder of the frames, not several files or folders")
     frames = list_frames(paths[0])
+    frames = replace(frames, t_ns=without_jumps(frames.t_ns, request.jumps))
     rig = request.rig
     fields = request.fields if rig is None else rig.sensors[0].fields
     period_s = frames.period_ns / 1e9

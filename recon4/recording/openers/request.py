@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon4.model.clock_jump import ClockJump
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
@@ -38,6 +39,8 @@ class OpenRequest:
     """Opens capture files; a live capture uses a tail file."""
     fields: PointRecipe | None = None
     """What the columns of the points are, where no rig says it."""
+    jumps: tuple[ClockJump, ...] = ()
+    """Where all clocks were set ahead, as a first reading showed."""
 
 
 @dataclass(frozen=True, slots=True)

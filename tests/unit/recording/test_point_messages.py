@@ -214,6 +214,23 @@ def test_single_damaged_times_are_dropped_and_a_jump_of_the_clock_is_announced()
     assert warned(report, K.CLOCK_JUMP, whose="points", jump_s=30.0)
 
 
+@pytest.mark.parametrize("points_too", [True, False])
+def test_points_go_on_where_the_clock_of_the_stamps_was_set(points_too):
+    report = ImportReport()
+    clock = ExactClock("livox", report)
+    values = T0_NS + 5000 * np.arange(200)
+    starts = []
+    for k in range(8):
+        set_ns = 37 * 10**9 * (k > 3)
+        clock.stamps_set_ns = set_ns
+        t_ns = T0_NS + k * 10**8  # as the stamps go on without the jump
+        found, _ = clock.times(values + k * 10**8 + set_ns * points_too, t_ns=t_ns, period_ns=10**8)
+        starts.append(int(found[0]))
+
+    assert starts == [T0_NS + k * 10**8 for k in range(8)]
+    assert not report.counts["clock_jumps"]
+
+
 @pytest.mark.parametrize("kind", ["bag1", "mcap"])
 def test_a_point_cloud_of_livox_has_exact_times_lines_and_echoes_of_no_tag(kind, tmp_path):
     """PointXYZRTLT: x y z intensity tag line timestamp, the last one a double of nanoseconds."""
