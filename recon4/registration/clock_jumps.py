@@ -33,10 +33,10 @@ def clock_jumps(frames: Frames, starts_ns: Times) -> list[ClockJump]:
         frames: Multiframes of a walk in order of time.
         starts_ns: Their starts [ns], (N,).
     """
-    steps = np.diff(starts_ns.astype(np.int64))
+    steps = np.diff(starts_ns.astype(np.int64)).astype(np.float64)
     if len(steps) < 2 * CLOCKS_SET.frames:
         return []
-    rows = np.flatnonzero(steps > float(np.median(steps)) + 1e9 * CLOCKS_SET.least_s)
+    rows = np.flatnonzero(steps > np.median(steps) + 1e9 * CLOCKS_SET.least_s)
     return [jump for row in rows[: CLOCKS_SET.most] for jump in _jump_after(frames, int(row))]
 
 
