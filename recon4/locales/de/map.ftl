@@ -75,6 +75,7 @@ stand-here = Hier stehen
 fly = Fliegen
 link = Link
 share = Teilen…
+more-tools = Mehr
 full-window = Vollbild
 panel = Seitenleiste
 keys = Tasten

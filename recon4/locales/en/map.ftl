@@ -75,6 +75,7 @@ stand-here = Stand here
 fly = Fly
 link = Link
 share = Share…
+more-tools = More
 full-window = Full window
 panel = Panel
 keys = Keys
