@@ -143,6 +143,15 @@ def on_both_screens(page: Page, check: Callable[[Page], None]) -> None:
     page.set_viewport_size(own)
 
 
+def open_menu(page: Page) -> None:
+    """Show the links of the head where they are in a menu: on a narrow screen."""
+    menu = page.get_by_role("button", name="Menu")
+    expect(page.locator(".account a").first).to_be_attached()
+    if menu.is_visible():
+        menu.click()
+        expect(menu).to_have_attribute("aria-expanded", "true")
+
+
 def leave_out_viewer(page: Page) -> None:
     """Show an empty page in place of the viewer, where a test is about the page around it.
 

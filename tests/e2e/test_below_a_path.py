@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import EXPECTED_NOISE, browser_context
+from tests.e2e.conftest import EXPECTED_NOISE, browser_context, open_menu
 from tests.service.behind_nginx import behind_nginx, needs_nginx
 from tests.service.secure import PASSWORD
 
@@ -99,13 +99,16 @@ def test_a_person_works_below_the_path(site, page, tmp_path):
     page.wait_for_url(f"{site.url}/projects/office/review/")
     page.get_by_role("link", name="Slices").click()
     page.wait_for_url(f"{site.url}/projects/office/slices/*")
+    open_menu(page)
     page.get_by_role("link", name="Rigs").click()
     page.wait_for_url(f"{site.url}/rigs")
+    open_menu(page)
     page.get_by_role("link", name="Help").click()
     page.wait_for_url(f"{site.url}/docs/")
     page.evaluate("localStorage.setItem('maps/old/x', '1'); localStorage.setItem('other', '2')")
     page.go_back()
     page.wait_for_load_state("networkidle")  # signed out, its requests would be refused
+    open_menu(page)
     page.get_by_role("button", name="Sign out").click()
     page.wait_for_url(f"{site.url}/login")
     assert page.evaluate("Object.keys(localStorage)") == ["other"]

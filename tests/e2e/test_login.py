@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.e2e.axe import barriers, needs_axe
-from tests.e2e.conftest import EXPECTED_NOISE, browser_context, leave_out_viewer, looks
+from tests.e2e.conftest import EXPECTED_NOISE, browser_context, leave_out_viewer, looks, open_menu
 from tests.served import office, served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, Secure, secure_server
@@ -86,6 +86,7 @@ def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
     page.get_by_role("button", name="Sign in").click()
     page.wait_for_url(f"{server.url}/projects/office/")
     expect(page.get_by_role("heading", name="office")).to_be_visible()
+    open_menu(page)
     expect(page.get_by_role("link", name="Account of rita reviewer")).to_be_visible()
 
 
@@ -93,6 +94,8 @@ def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
 def test_signing_out_shows_the_login_and_clears_the_session(server, page):
     sign_in(page, server, "vera")
     expect(page.get_by_role("listitem").filter(has_text="office")).to_be_visible()
+    open_menu(page)
+    expect(page.get_by_role("link", name="Rigs")).to_be_visible()
     expect(page.get_by_role("link", name="People")).to_have_count(0)
     fits(page)
 
@@ -227,6 +230,7 @@ def test_the_first_admin_is_created_in_the_browser(tmp_path, page, look, screens
         page.get_by_label("Password", exact=True).fill(PASSWORD)
         page.get_by_role("button", name="Create admin and sign in").click()
 
+        open_menu(page)
         expect(page.get_by_role("link", name="People")).to_be_visible()
         page.goto("about:blank")  # else its event stream is cut by the end of the server
 

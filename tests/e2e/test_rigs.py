@@ -8,7 +8,7 @@ from playwright.sync_api import expect
 
 from recon4.model.rig import load_rig
 from recon4.review.trusted_keys import STATE
-from tests.e2e.conftest import leave_out_viewer, looks
+from tests.e2e.conftest import leave_out_viewer, looks, open_menu
 from tests.e2e.test_pages import fits
 from tests.rig_projects import TOML, calibrated_project, tilted
 from tests.served import served
@@ -80,6 +80,7 @@ def drawn(canvas):
 def test_a_rig_is_seen_as_drawing_and_numbers(server, page, look, screenshot):
     calibrated_project(server.root / "walk", rig=field_of(server), found=None)
     page.goto(server.url)
+    open_menu(page)
     page.get_by_role("link", name="Rigs").click()
     page.get_by_role("link", name="field").click()
 

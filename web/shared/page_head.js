@@ -12,7 +12,7 @@ import {
   signOut,
   slicesUrl,
 } from "./api.js";
-import { asError, html, nothing, render } from "./dom.js";
+import { asError, html, nothing, render, targetOf, within } from "./dom.js";
 import "./language_choice.js";
 import { t } from "./texts.js";
 
@@ -23,6 +23,7 @@ import { t } from "./texts.js";
  * @property {string} problem with the link to the server
  * @property {boolean} live whether there is a capture to look at
  * @property {Me | null} me
+ * @property {boolean} open whether the menu is, where there is no room for its links
  */
 
 /** @type {Array<[string, string]>} */
@@ -35,13 +36,14 @@ const PAGES = [
 
 export class PageHead extends HTMLElement {
   /** @type {HeadState} */
-  #state = { name: "", problem: "", live: false, me: null };
+  #state = { name: "", problem: "", live: false, me: null, open: false };
 
   connectedCallback() {
     this.className = "bar";
     this.setAttribute("role", "banner");
     const { id } = placeOf(pathHere());
     this.#draw({ name: id });
+    this.#closeAside();
     this.#greet().catch((error) => this.#draw({ problem: asError(error).message }));
   }
 
@@ -51,6 +53,20 @@ export class PageHead extends HTMLElement {
     const captures = me.may.includes("capture");
     this.#draw({ me, live: captures });
     if (!captures) this.#draw({ live: (await readCapture()) !== null });
+  }
+
+  /** A press elsewhere and Esc close the menu. */
+  #closeAside() {
+    addEventListener("pointerdown", (event) => {
+      const inside = targetOf(event).closest?.(".menu, .account");
+      if (!inside && this.#state.open) this.#draw({ open: false });
+    });
+    this.addEventListener("keydown", (event) => {
+      if (event.key !== "Escape" || !this.#state.open) return;
+      event.stopPropagation();
+      this.#draw({ open: false });
+      within(this, ".menu").focus();
+    });
   }
 
   /** The project's name. */
@@ -73,15 +89,24 @@ export class PageHead extends HTMLElement {
   }
 
   #draw(/** @type {Partial<HeadState>} */ changes) {
-    const { name, problem, me, live } = Object.assign(this.#state, changes);
+    const { name, problem, me, live, open } = Object.assign(this.#state, changes);
     const { id, page } = placeOf(pathHere());
     const guest = me !== null && isGuest(me);
     render(
       html`<a class="brand" href=${guest ? mapUrl(id) : at("/")}>recon4</a>
         ${id ? [way(name, guest), tabs(id, page, guest ? guestPages(id) : pagesOf(id))] : nothing}
         <span class="link-state" role="status">${problem}</span>
-        <language-choice></language-choice>
-        <span class="account"
+        <button
+          type="button"
+          class="menu"
+          aria-expanded=${String(open)}
+          aria-controls="head-menu"
+          @click=${() => this.#draw({ open: !open })}
+        >
+          ${t("head-menu")}
+        </button>
+        <span class=${open ? "account open" : "account"} id="head-menu"
+          ><language-choice></language-choice
           >${me ? [guest ? nothing : links(me, live), this.#person(me)] : nothing}</span
         >`,
       this,

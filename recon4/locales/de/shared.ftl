@@ -36,6 +36,7 @@ head-help = Hilfe
 head-people = Personen
 head-account = Konto von { $name } { $role }
 head-sign-out = Abmelden
+head-menu = Menü
 head-lost = Verbindung verloren, neuer Versuch
 
 ## Rollen

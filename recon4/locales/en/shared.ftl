@@ -36,6 +36,7 @@ head-help = Help
 head-people = People
 head-account = Account of { $name } { $role }
 head-sign-out = Sign out
+head-menu = Menu
 head-lost = Connection lost, trying again
 
 ## Roles
