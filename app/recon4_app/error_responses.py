@@ -151,8 +151,9 @@ def _on_full_disk(app: FastAPI) -> None:
 
 
 def _problem_of(request: Request, error: str, text: CodedText) -> ProblemDetail:
-    detail = text.said(language_of(request))
-    return ProblemDetail(error=error, detail=detail, code=text.code, values=dict(text.values))
+    language = language_of(request)
+    values = text.said_values(language)
+    return ProblemDetail(error=error, detail=text.said(language), code=text.code, values=values)
 
 
 def _input_problem(request: Request, error: Recon4Error) -> ProblemDetail:

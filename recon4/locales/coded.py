@@ -70,8 +70,15 @@ class CodedText(str):
         return _again, (self.code, dict(self.values))
 
     def said(self, language: str) -> str:
-        """The text in a language."""
-        return _texts(language)(self.code, **self.values)
+        """The text in a language; a text with a code that it quotes is in that language, too."""
+        return _texts(language)(self.code, **self.said_values(language))
+
+    def said_values(self, language: str) -> dict[str, Shown]:
+        """What the text quotes, by name, as a text of that language quotes it."""
+        return {
+            name: said(value, language) if isinstance(value, str) else value
+            for name, value in self.values.items()
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +96,7 @@ class StoredText:
             return StoredText(text=text)
         values = {
             name: int(value) if isinstance(value, bool) else value
-            for name, value in text.values.items()
+            for name, value in text.said_values(ENGLISH).items()
         }
         return StoredText(text=str(text), code=text.code, values=values)
 

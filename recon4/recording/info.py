@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4.locales.texts import Shown
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
@@ -371,9 +371,9 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         if request.fields is not None:
             raise
         to_complete = error if isinstance(error, RigToComplete) else None
-        missing.append(CodedText("missing-rig", error=str(error), what="rig"))
+        missing.append(CodedText("missing-rig", error=text_of(error), what="rig"))
     except RecordingError as error:
-        missing.append(CodedText("missing-contents", error=str(error)))
+        missing.append(CodedText("missing-contents", error=text_of(error)))
     samples = [*info.samples]
     there = {text.values.get("what") for text in samples}
     if head.imu and "imu" not in there:

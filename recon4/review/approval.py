@@ -17,7 +17,7 @@ from typing import Any, TypedDict
 import msgspec
 
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.acknowledgments import signed_acknowledgments, write_into_report
 from recon4.review.approved import VERSIONS, Approval, approval_of, versions_without_row
@@ -236,7 +236,7 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
     try:
         check_sealed(root, SUMMARY)
     except Altered as error:
-        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
+        raise NotApprovable(CodedText("approve-damaged", detail=text_of(error))) from error
     rows = read_rows(root)
     if record := broken(rows):
         raise NotApprovable(CodedText("approve-journal-altered", detail=record[0]))
@@ -255,7 +255,7 @@ def _verdict(summary: Mapping[str, object]) -> MapVerdict | None:
     try:
         return verdict_in(summary)
     except StoreError as error:
-        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
+        raise NotApprovable(CodedText("approve-damaged", detail=text_of(error))) from error
 
 
 def _conflicts(root: Path, summary: dict[str, Any]) -> int:
@@ -288,14 +288,14 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
         for key in asked.keys.values():
             CheckedArtifact.open(root / "artifacts" / key).check_all()
     except Altered as error:
-        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
+        raise NotApprovable(CodedText("approve-damaged", detail=text_of(error))) from error
 
 
 def _refuse_without_decisions(root: Path, decided: Decided) -> None:
     try:
         is_current = decisions_in_map(root) == decided.key
     except StoreError as error:
-        raise NotApprovable(CodedText("approve-damaged", detail=str(error))) from error
+        raise NotApprovable(CodedText("approve-damaged", detail=text_of(error))) from error
     if not is_current:
         raise NotApprovable(CodedText("approve-decisions-missing"))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from recon4 import __version__
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
 from recon4.store.ledger import FinishedStage as StageRow
@@ -196,7 +196,7 @@ class ProjectStore:
             with Folder.open(self.folder(project_id)) as project:
                 project.describe(**fields)
         except StoreError as error:
-            raise Conflict(CodedText("project-busy", detail=str(error))) from error
+            raise Conflict(CodedText("project-busy", detail=text_of(error))) from error
 
     def clone(self, project_id: str, target: str) -> None:
         """Create a project that reuses the finished stages of another.

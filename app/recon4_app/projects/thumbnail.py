@@ -6,7 +6,7 @@ import asyncio
 from pathlib import Path
 
 from recon4.errors import Recon4Error
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import ComputeFailed, NotFound
@@ -41,7 +41,7 @@ class Thumbnails:
                         Lane.THUMBNAIL, terms, draw_thumbnail, artifact, Path(THUMBNAIL)
                     )
                 except (Recon4Error, ComputeFailed) as error:
-                    raise NotFound(CodedText("thumbnail-missing", detail=str(error))) from error
+                    raise NotFound(CodedText("thumbnail-missing", detail=text_of(error))) from error
         self._making.pop(path, None)
         return path
 

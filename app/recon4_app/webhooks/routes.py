@@ -12,7 +12,7 @@ from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import ConfigError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4_app.access.audit import audit
 from recon4_app.access.login.routes import Text, Wire
 from recon4_app.access.people import Permission, Who, needs, recent_login
@@ -113,4 +113,4 @@ async def _require_reachable(url: str, networks: Sequence[Network]) -> None:
     except TimeoutError:
         raise ConfigError(CodedText("webhook-host-unknown", host=target.host)) from None
     except NotReachable as error:
-        raise ConfigError(CodedText("webhook-url", detail=str(error))) from error
+        raise ConfigError(CodedText("webhook-url", detail=text_of(error))) from error

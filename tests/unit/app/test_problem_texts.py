@@ -71,6 +71,16 @@ def test_a_text_is_english_and_is_said_again_in_another_language():
     assert pickle.loads(pickle.dumps(text)).values == text.values
 
 
+def test_a_text_that_another_one_quotes_is_said_in_its_language():
+    busy = pickle.loads(pickle.dumps(CodedText("project-busy", detail=CodedText("disk-is-full"))))
+
+    german = busy.said("de")
+
+    assert german == f"jetzt nicht möglich: {CodedText('disk-is-full').said('de')}"
+    assert busy == f"not now: {CodedText('disk-is-full')}"
+    assert busy.said_values("de")["detail"] in german
+
+
 def test_words_of_the_server_are_those_of_the_pages():
     text = CodedText("not-allowed", name="Jo", role="viewer", what="process")
 
