@@ -275,3 +275,54 @@ def test_a_project_without_points_says_so(server, page):
 
     expect(page.locator("#message")).to_contain_text("no points in 3-D")
     expect(page.locator("#opening")).to_be_hidden()
+
+
+def pinched(page, middle, before_px, after_px):
+    """Two fingers on the map move apart, or together."""
+    touch = page.context.new_cdp_session(page)
+
+    def send(kind, apart_px):
+        fingers = [{"x": middle[0] + s * apart_px / 2, "y": middle[1], "id": s} for s in (-1, 1)]
+        points = [] if kind == "touchEnd" else fingers
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    send("touchStart", before_px)
+    for part in (0.25, 0.5, 0.75, 1.0):
+        send("touchMove", before_px + part * (after_px - before_px))
+    send("touchEnd", after_px)
+
+
+@looks("phone dark")
+def test_fingers_measure_zoom_and_stand_on_the_walk(server, page):
+    page.emulate_media(reduced_motion="reduce")
+    opened(page, server, f"?{TOP}&z=..")
+    reading = page.locator("#status .reading")
+
+    def tap(name):
+        if not page.get_by_role("button", name=name, exact=True).is_visible():
+            page.get_by_role("toolbar", name="Tools").get_by_role("button", name="More").tap()
+        page.get_by_role("button", name=name, exact=True).tap()
+
+    tap("Distance")
+    page.touchscreen.tap(*at(page, 6.0, 4.0))
+    expect(reading).to_contain_text("σ of the pose")
+    page.touchscreen.tap(*at(page, 10.0, 4.0))
+    expect(reading).to_have_text(re.compile(r"Distance 1: (3\.9|4\.)"))
+
+    tap("Area")
+    for corner in ((6.0, 4.0), (10.0, 4.0), (10.0, 6.0)):
+        page.touchscreen.tap(*at(page, *corner))
+    page.get_by_role("button", name="Done").tap()
+    expect(reading).to_contain_text("Area 1: ")
+    for before_px, after_px, distance in ((80, 160, "7"), (160, 80, "14")):
+        pinched(page, at(page, 8.0, 5.0), before_px, after_px)
+        expect(page).to_have_url(re.compile(rf"camera=[^&]*,0,-90,{distance},1"))
+    assert page.evaluate("recon4Map.page.draft.length") == 0  # two fingers pick nothing
+    page.get_by_role("button", name="End tool").tap()
+    expect(page.get_by_role("button", name="End tool")).to_have_count(0)
+
+    tap("Stand here")
+    page.touchscreen.tap(*at(page, 8.0, 8.0))
+    expect(page).to_have_url(re.compile("standing=1"))
+    x, y, _ = page.evaluate("recon4Map.camera().target")
+    assert np.hypot(x - 8.0, y - 8.0) == pytest.approx(2.0, abs=0.1)  # two meters ahead of the eyes

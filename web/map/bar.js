@@ -20,6 +20,8 @@ import { VIEWS } from "./views.js";
  * @property {() => unknown} whole
  * @property {() => void} panel
  * @property {() => void} help
+ * @property {() => void} finish of a measurement whose corners are not counted
+ * @property {() => void} end of any tool
  * @property {(next: Partial<import("./state.js").MapState>) => void} change
  * @property {(name: string) => void} save
  * @property {(query: string) => void} open

@@ -5,7 +5,10 @@ import { html, nothing, render } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { frameText } from "../shared/frame.js";
 import { t } from "../shared/texts.js";
+import { KINDS } from "./measure.js";
 import { page } from "./page.js";
+
+/** @import {Act} from "./bar.js" */
 
 /** @type {Array<[string, string]>} */
 export const KEYS = [
@@ -42,14 +45,16 @@ export const KEYS = [
 /**
  * @param {HTMLElement} element
  * @param {{points: number, rested: boolean, scale: string}} drawn
+ * @param {Act} act
  */
-export function drawStatus(element, { points, rested, scale }) {
+export function drawStatus(element, { points, rested, scale }, act) {
   const { index, project, reading, flight } = page;
   if (!index) return;
   const shown =
     t("points-shown", { shown: count(points), count: count(index.points) }) + (rested ? "" : " …");
   render(
     html`<div role="status">${reading ? html`<p class="reading">${reading}</p>` : nothing}</div>
+      ${ending(act)}
       <p class="caption">
         <span class="shown">${shown}</span> · <span>${scale}</span
         ><span class="frame"> · ${frameText(index.frame)}</span>
@@ -62,6 +67,22 @@ export function drawStatus(element, { points, rested, scale }) {
       </p>`,
     element,
   );
+}
+
+/** What Enter and Esc do, for fingers. */
+function ending(/** @type {Act} */ { finish, end }) {
+  const { tool, measuring, draft } = page;
+  if (tool === "") return nothing;
+  const { least, most } = KINDS[measuring];
+  const open = tool === "measure" && least < most && draft.length >= least;
+  return html`<div class="ending">
+    ${
+      open
+        ? html`<button type="button" class="primary" @click=${finish}>${t("finish-tool")}</button>`
+        : nothing
+    }
+    <button type="button" @click=${end}>${t("end-tool")}</button>
+  </div>`;
 }
 
 export const drawHelp = (/** @type {HTMLElement} */ dialog) =>

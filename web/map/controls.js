@@ -18,6 +18,7 @@ import { add, axesOf, lookedAround, orbited, panned, zoomed } from "./camera.js"
  */
 
 const CLICK_PX = 5;
+const TAP_PX = 12; // a finger rolls as it lifts
 const SAME_PLACE_MS = 350; // turns of the wheel within this time zoom to one point
 
 /**
@@ -69,7 +70,7 @@ export function moveByGestures(element, on) {
     onDrag(from, to, event) {
       const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
       const all = Math.hypot(to[0] - press.from[0], to[1] - press.from[1]);
-      if (!press.far && all < CLICK_PX) return;
+      if (!press.far && all < (event.pointerType === "touch" ? TAP_PX : CLICK_PX)) return;
       if (!press.far) press.grabbed = on.under(press.from);
       press.far = true;
       const sideways = event.shiftKey || event.ctrlKey || (event.buttons & 6) !== 0;

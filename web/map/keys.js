@@ -9,8 +9,6 @@ import { VIEWS } from "./views.js";
  * @property {() => unknown} color the next one
  * @property {() => unknown} ceilings with or without
  * @property {() => unknown} walk shown or not
- * @property {() => unknown} end of any tool
- * @property {() => unknown} finish of a measurement
  * @property {() => unknown} press what is in the middle of the image
  * @property {(x: number, y: number) => unknown} step by a part of the image
  * @property {(times: number) => unknown} zoom nearer (below 1) or farther
@@ -50,8 +48,8 @@ const keysOf = (act, more) => ({
   "=": () => more.zoom(0.8), // the key of + without shift
   "-": () => more.zoom(1.25),
   "?": act.help,
-  Escape: more.end,
-  Enter: more.finish,
+  Escape: act.end,
+  Enter: act.finish,
   " ": more.press,
   ArrowLeft: () => more.step(-1, 0),
   ArrowRight: () => more.step(1, 0),

@@ -185,7 +185,7 @@ function drawCaption() {
   const meters = 100 * pixelM(camera(), screen());
   const length = meters < 1 ? `${decimal(100 * meters, 1)} cm` : `${decimal(meters, 2)} m`;
   const scale = `100 px = ${length}`;
-  drawStatus(byId("status"), { points, rested, scale });
+  drawStatus(byId("status"), { points, rested, scale }, act);
 }
 
 const showProblem = (/** @type {unknown} */ error) => showError(byId("message"), error);
@@ -293,6 +293,8 @@ const act = {
     draw();
   },
   help: () => byId("help", HTMLDialogElement).showModal(),
+  finish: () => void finish(stage).catch(showProblem),
+  end,
 };
 
 /** Ends any tool, the flight, what is being measured. */
@@ -340,10 +342,8 @@ function listen() {
   dark.addEventListener("change", draw);
   listenToKeys(act, {
     ...toggles,
-    end,
     step,
     press: aim.press,
-    finish: () => finish(stage).catch(showProblem),
     zoom: (times) => move(zoomed(camera(), times)),
   });
   place().addEventListener("pointerdown", aim.end);
