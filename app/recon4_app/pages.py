@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from functools import cache
 from html import escape
+from os.path import normpath
 from pathlib import Path
 from typing import Annotated
 
@@ -35,6 +36,10 @@ SHARED_TEXTS = "shared"
 _TEXTS = re.compile(r'<html [^>]*data-texts="([a-z -]+)"')
 """Files of texts of a page; the others have the shared ones, around content in English."""
 _TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
+_SCRIPT = re.compile(r'<script type="module" src="/web/([^"]+)"')
+_PRELOAD = '<link rel="modulepreload" href="{}" />\n    '
+_IMPORT = re.compile(r'''^(?:import|export)\b[^;"]*"(\.[^"]+)"''', re.MULTILINE)
+"""What a module loads before it runs."""
 LANGUAGE_COOKIE = "recon4_language"
 """The choice on a page; `web/shared/texts.js` sets it."""
 
@@ -48,7 +53,26 @@ def html_of(file: str, prefix: str = "") -> str:
     """
     head = (WEB / "shared" / "head.html").read_text("utf-8")
     page = (WEB / file).read_text("utf-8").replace(HEAD_HERE, head)
+    page = _SCRIPT.sub(lambda found: _preloads(found[1]) + found[0], page)
     return _ADDRESS.sub(rf"\g<1>{prefix}", page)
+
+
+@cache
+def _preloads(script: str) -> str:
+    """Links to all that a script imports, so that a browser requests it at once.
+
+    Else each level of imports is requested after the one before has come.
+    """
+    found: dict[Path, None] = {}
+    left = [WEB / script]
+    while left:
+        module = left.pop()
+        if module not in found and module.is_file():
+            found[module] = None
+            names = _IMPORT.findall(module.read_text("utf-8"))
+            left += [Path(normpath(module.parent / name)) for name in names]
+    paths = [module.relative_to(WEB).as_posix() for module in found][1:]
+    return "".join(_PRELOAD.format(f"/web/{path}") for path in paths)
 
 
 def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) -> HTMLResponse:

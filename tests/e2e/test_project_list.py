@@ -31,10 +31,14 @@ server = served(many)
 
 @one_look
 def test_projects_are_found_ordered_tagged_and_archived(page, server):
+    asked = []
+    page.on("request", lambda one: one.url.endswith("/api/projects") and asked.append(one))
     page.goto(f"{server.url}/")
     cards = page.locator(".card")
     expect(page.get_by_role("button", name="Show more: 53 are left")).to_be_attached()
     expect(cards).to_have_count(48)
+    expect(page.get_by_label("Preset")).to_have_value("indoor")  # the form has read all it needs
+    assert len(asked) == 1
 
     page.get_by_label("Find a project").press_sequentially("walk 9")
     expect(cards).to_have_count(19)

@@ -213,16 +213,12 @@ const fitted = (/** @type {Button} */ { text, rank, pressed }, /** @type {number
 
 /** Notes how wide all buttons are. */
 function measure(/** @type {HTMLElement} */ element, /** @type {Bar[]} */ bars) {
-  const texts = [
-    ...bars.flatMap(({ buttons }) => buttons.map(({ text }) => text)),
-    t("more-tools"),
-  ];
-  render(
-    html`<div role="toolbar">
-      ${texts.map((text) => html`<button class=${text === t("more-tools") ? "more" : ""}>${text}</button>`)}
-    </div>`,
-    element,
+  const more = t("more-tools");
+  const texts = [...bars.flatMap(({ buttons }) => buttons.map(({ text }) => text)), more];
+  const drawn = texts.map(
+    (one) => html`<button class=${one === more ? "more" : ""}>${one}</button>`,
   );
+  render(html`<div role="toolbar">${drawn}</div>`, element);
   const buttons = element.querySelectorAll("button");
   texts.forEach((text, k) => widths.set(text, buttons[k].getBoundingClientRect().width));
 }

@@ -1,6 +1,7 @@
 // The list of projects, with the jobs that run.
 
 import {
+  firstProjects,
   listProjects,
   listSpaces,
   listTrash,
@@ -225,9 +226,9 @@ function drawSoon() {
   requestAnimationFrame(draw);
 }
 
-async function reload() {
+async function reload(read = listProjects) {
   state.reloads = false;
-  state.projects = (await attempt(byId("message"), listProjects)) ?? state.projects;
+  state.projects = (await attempt(byId("message"), read)) ?? state.projects;
   state.twins = twinsOf(state.projects);
   draw();
 }
@@ -244,7 +245,7 @@ async function weigh() {
 function reloadSoon() {
   if (state.reloads) return;
   state.reloads = true;
-  setTimeout(reload, RELOAD_AFTER_MS);
+  setTimeout(() => reload(), RELOAD_AFTER_MS);
 }
 
 async function showTrash() {
@@ -322,5 +323,5 @@ new IntersectionObserver(
   (entries) => entries.some((one) => one.isIntersecting) && showMore(),
   { rootMargin: "600px" }, // before a person sees the end
 ).observe(byId("more"));
+reload(firstProjects);
 begin();
-reload();

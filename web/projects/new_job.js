@@ -1,7 +1,7 @@
 // <new-job>: the form that starts a job: a recording, a name, a preset, settings.
 // With `again` it repeats a job: in the same project, or in a new one that reuses finished stages.
 
-import { addJob, listProjects, listRigs, projectUrl, readChoices } from "../shared/api.js";
+import { addJob, firstProjects, listRigs, projectUrl, readChoices } from "../shared/api.js";
 import {
   asError,
   attempt,
@@ -207,7 +207,7 @@ export class NewJob extends HTMLElement {
   async #offer() {
     const [choices, projects, rigs] =
       (await attempt(this.#message, () =>
-        Promise.all([readChoices(), this.#again ? [] : listProjects(), listRigs()]),
+        Promise.all([readChoices(), this.#again ? [] : firstProjects(), listRigs()]),
       )) ?? [];
     this.#taken = new Set(projects?.flatMap(({ id, name }) => [id, name]));
     const state = this.#state;

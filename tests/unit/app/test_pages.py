@@ -27,3 +27,11 @@ def test_every_file_of_a_head_exists(file):
 
     assert files
     assert [name for name in files if not (WEB / name).is_file()] == []
+
+
+def test_a_page_names_what_its_script_imports_at_any_depth():
+    html = html_of("projects/index.html", "/maps")
+
+    for module in ("projects/organize", "shared/http", "shared/vendor/fluent/scope"):
+        assert html.count(f'<link rel="modulepreload" href="/maps/web/{module}.js" />') == 1
+    assert html.index("modulepreload") < html.index('<script type="module"')

@@ -3,9 +3,13 @@
 import { at } from "../address.js";
 import { name, request } from "../http.js";
 
-/** @import {Freeable, NewJob, ProjectChanges} from "../http_types" */
+/** @import {Freeable, NewJob, ProjectCard, ProjectChanges} from "../http_types" */
+
+const known = { first: /** @type {Promise<ProjectCard[]> | null} */ (null) };
 
 export const listProjects = () => request("GET /api/projects");
+/** The projects when this page was opened, requested once by all of its parts. */
+export const firstProjects = () => (known.first ??= listProjects());
 export const readProject = (/** @type {string} */ project_id) =>
   request("GET /api/projects/{project_id}", { path: { project_id } });
 export const readChoices = () => request("GET /api/choices");
