@@ -68,6 +68,7 @@ _KIND_OF_COLUMNS = {
     frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
     frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_FILE,
 }
+_PACKED = frozenset({".gz", ".xz", ".zst", ".bz2", ".zip", ".7z"})
 _KIND_OF_SUFFIX = {
     **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
     **dict.fromkeys(CLOUD_SUFFIXES, RecordingKind.FRAMES),
@@ -314,9 +315,11 @@ def _no_single_recording(contents: FolderContents) -> RecordingError:
             f"{' …' if len(candidates) > 8 else ''}; give one",
             candidates=candidates,
         )
+    packed = [name for name in names if Path(name).suffix.lower() in _PACKED]
+    remedy = f"unpack its {len(packed)} compressed files first" if packed else _known()
     return UnknownFormat(
         f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
-        f"{' …' if len(names) > 8 else ''}; {_known()}"
+        f"{' …' if len(names) > 8 else ''}; {remedy}"
     )
 
 

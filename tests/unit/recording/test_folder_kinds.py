@@ -53,6 +53,14 @@ def test_a_mesh_alone_is_no_recording(tmp_path, pcap):
         recognize(folder / "model.ply")
 
 
+def test_a_folder_of_compressed_files_says_that_they_must_be_unpacked(tmp_path):
+    for k in range(3):
+        (tmp_path / f"{k}.pcd.gz").write_bytes(b"\x1f\x8b")
+
+    with pytest.raises(UnknownFormat, match="unpack its 3 compressed files first"):
+        recognize(tmp_path)
+
+
 def test_a_folder_of_frames_passes_over_the_model_of_the_place(tmp_path):
     folder = frame_folder(tmp_path / "walk", ["0.ply", "1.ply"])
     write_mesh(folder / "model.ply")
