@@ -75,6 +75,31 @@ class ClocksSetTuning(Struct, frozen=True, kw_only=True):
 CLOCKS_SET = ClocksSetTuning()
 
 
+class PlacedTuning(Struct, frozen=True, kw_only=True):
+    """Clouds that are in the frame of a map already (`placed_clouds.py`)."""
+
+    apart: int = 10
+    """Multiframes from the first to the second one of a pair."""
+    pairs: int = 12
+    least_pairs: int = 4
+    """This many pairs must show it …"""
+    most_others: int = 1
+    """… and at most this many may show a sensor that moves."""
+    least_m: float = 0.15
+    """The middle of the view moves by this in a pair that counts [m]."""
+    still_m: float = 0.08
+    still_rad: float = 0.02
+    """Scans fit without a motion if the best pose is this near to none: up to 0.063 m and 0.0076
+    in clouds that were placed by the truth, 0.7 m and more in those of the sensor."""
+    least_ratio: float = 0.5
+    """Of the points that match."""
+    least_degeneracy: float = 0.05
+    """As of a bridge: along a corridor any motion fits."""
+
+
+PLACED = PlacedTuning()
+
+
 class CarrierTuning(Struct, frozen=True, kw_only=True):
     """What is known of a carrier's motion before any scan."""
 

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
 
+from recon4.errors import UnknownFormat
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
     AuditFigures,
@@ -56,11 +57,14 @@ def _frames(
     from recon4.recording.ingest import ingest
     from recon4.recording.sources import Sources
     from recon4.registration.clock_jumps import clock_jumps
+    from recon4.registration.placed_clouds import placed_text, view_moves_on
     from recon4.store.frames import FrameStore
 
     sources = Sources(recordings, rig, imu, gnss)
     ingest(sources, context.out, settings=context.settings.ingest, progress=context.progress)
     store = FrameStore.open(context.out)
+    if moves_m := view_moves_on(store):
+        raise UnknownFormat(placed_text(recordings[0].name, moves_m))
     jumps = clock_jumps(store, store.index["t_ns"])
     if jumps:  # read once more, because a revolution may go on across a jump
         sources = replace(sources, jumps=tuple(jumps))
