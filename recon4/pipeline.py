@@ -19,6 +19,7 @@ from recon4.progress import Progress, Silent
 from recon4.recording.kinds import located_sources
 from recon4.recording.sources import Sources
 from recon4.review.journal import read_decided
+from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.settings import Settings
 from recon4.settings import preset as settings_of
 from recon4.store.frames import CALIBRATED_RIG
@@ -242,4 +243,5 @@ def _publish(
     out: Path, workflow: Workflow, run: Run, *, settings: Settings, progress: Progress
 ) -> RunSummary:
     about = About(ProjectDescription.read(out), settings)
+    return_freed_memory()
     return publish(out, workflow.results, run.runner.runs, about=about, progress=progress)

@@ -1,11 +1,16 @@
-"""Freed memory returned to the system instead of being kept for later."""
+"""Memory that a process no longer needs, returned to the system instead of being kept for later."""
 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterator
+from contextlib import suppress
 from enum import IntEnum
+from pathlib import Path
 
 from recon4.sandbox.tuning import CONFINEMENT
+
+_MAPPINGS = Path("/proc/self/smaps")
 
 
 class _Mallopt(IntEnum):
@@ -13,6 +18,13 @@ class _Mallopt(IntEnum):
 
     MMAP_THRESHOLD = -3
     TRIM_THRESHOLD = -1
+    ARENA_MAX = -8
+
+
+class _Advice(IntEnum):
+    """Advice of ``madvise``."""
+
+    DONTNEED = 4
 
 
 def return_freed_memory() -> None:
@@ -20,10 +32,35 @@ def return_freed_memory() -> None:
 
     By default glibc keeps blocks of up to 32 MiB once one as large was freed, in an arena of each
     thread: a third of the memory of a map. Smaller blocks at the end of the heap are kept, up to
-    `ConfinementTuning.kept_bytes`. Without effect with another C library.
+    `ConfinementTuning.kept_bytes`. Threads that start from now on share one arena: what one leaves
+    free another may use. Pages of libraries that were read are returned, too; what is needed of
+    them again comes from the cache of the system. Without effect with another C library.
     """
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt") and hasattr(libc, "malloc_trim"):
         libc.mallopt(_Mallopt.MMAP_THRESHOLD, CONFINEMENT.returned_block_bytes)
         libc.mallopt(_Mallopt.TRIM_THRESHOLD, CONFINEMENT.kept_bytes)
+        libc.mallopt(_Mallopt.ARENA_MAX, CONFINEMENT.arenas)
         libc.malloc_trim(0)
+        for begin, size in _unwritten():
+            libc.madvise(ctypes.c_void_p(begin), ctypes.c_size_t(size), _Advice.DONTNEED)
+
+
+def _unwritten() -> Iterator[tuple[int, int]]:
+    """First address and size of each mapping whose pages are all as in its file.
+
+    It may not be written, and none of its pages was when it could be, as those that the loader
+    fills with addresses are.
+    """
+    lines: list[str] = []
+    with suppress(OSError):  # not Linux, or hidden from a confined process
+        lines = _MAPPINGS.read_text(errors="replace").splitlines()
+    span, mode = "", ""
+    for line in lines:
+        words = line.split(maxsplit=5)
+        if not words[0].endswith(":"):
+            of_file = len(words) > 5 and words[5].startswith("/")
+            span, mode = (words[0], words[1]) if of_file else ("", "")
+        elif words[0] == "Anonymous:" and span and "w" not in mode and words[1] == "0":
+            begin, end = (int(address, 16) for address in span.split("-"))
+            yield begin, end - begin

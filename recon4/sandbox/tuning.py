@@ -18,6 +18,9 @@ class ConfinementTuning(Struct, frozen=True, kw_only=True):
     """Longest time of a child that says which barriers hold."""
     returned_block_bytes: int = 4 << 20
     """Freed blocks of this size go back to the system at once."""
+    arenas: int = 1
+    """Heaps of the C library that threads allocate in. Each keeps some of what is freed: in the
+    stage calibration two more held 30 MB."""
     kept_bytes: int = 32 << 20
     """Of smaller ones this much stays with the process: a new page costs as much as the points of a
     packet that are decoded into it. Of an OS1-128 30 % of the time to read multiframes."""

@@ -68,3 +68,53 @@ def test_a_batch_of_points_takes_the_memory_of_the_one_before_it():
     faults = int(subprocess.check_output([sys.executable, "-c", _REUSE], text=True))
 
     assert faults < 2000  # 47 000 pages if each batch takes new ones
+
+
+_LIBRARIES = """
+import ctypes, mmap, re, tempfile, threading
+from pathlib import Path
+import numpy as np
+from recon4.sandbox.freed_memory import return_freed_memory
+
+libc = ctypes.CDLL(None)
+def files_mb():
+    return int(re.search(r"RssFile:\\s+(\\d+)", Path("/proc/self/status").read_text())[1]) / 1024
+
+# What the loader does: it writes a page of a file's mapping, and forbids to write it again.
+file = tempfile.TemporaryFile()
+file.write(bytes(mmap.PAGESIZE))
+file.flush()
+relocated = mmap.mmap(file.fileno(), mmap.PAGESIZE, access=mmap.ACCESS_COPY)
+relocated[0] = 7
+at = ctypes.addressof(ctypes.c_char.from_buffer(relocated))
+assert libc.mprotect(ctypes.c_void_p(at), ctypes.c_size_t(mmap.PAGESIZE), mmap.PROT_READ) == 0
+
+np.linalg.eigh(np.eye(3))
+before = files_mb()
+return_freed_memory()
+after = files_mb()
+
+def allocate():
+    blocks = [bytes(2000) for _ in range(100)]
+for thread in [threading.Thread(target=allocate) for _ in range(4)]:
+    thread.start()
+    thread.join()
+with tempfile.NamedTemporaryFile() as info:
+    libc.fopen.restype = ctypes.c_void_p
+    opened = ctypes.c_void_p(libc.fopen(info.name.encode(), b"w"))
+    libc.malloc_info(0, opened)
+    libc.fclose(opened)
+    arenas = Path(info.name).read_text().count("<heap nr")
+print(before, after, relocated[0], arenas, np.linalg.eigh(np.eye(3))[0].sum())
+"""
+
+
+@glibc
+def test_pages_of_libraries_are_returned_but_not_what_the_loader_wrote_and_threads_share_a_heap():
+    said = subprocess.check_output([sys.executable, "-c", _LIBRARIES], text=True).split()
+    before_mb, after_mb, written, arenas, works = map(float, said)
+
+    assert after_mb < 0.5 * before_mb
+    assert written == 7
+    assert arenas == 1
+    assert works == 3.0
