@@ -30,20 +30,39 @@ OfTracked = TypeVar("OfTracked", bound=Tracked)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Trial(Generic[OfTracked]):
-    """A hypothesis that was tried."""
+class TrialRow:
+    """What the table says of a hypothesis that was tried."""
 
     hypothesis: Hypothesis
-    tracked: OfTracked
+    score: Score
     verdict: TrialVerdict
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Trial(Generic[OfTracked]):
+    """A hypothesis that was tried, with what it left: a walk takes 0.1 GB an hour."""
+
+    row: TrialRow
+    tracked: OfTracked
+
+    @property
+    def hypothesis(self) -> Hypothesis:
+        """What was assumed."""
+        return self.row.hypothesis
+
+    @property
+    def verdict(self) -> TrialVerdict:
+        """How it compares with its rival."""
+        return self.row.verdict
 
 
 @dataclass(slots=True, eq=False)
 class Trials(Generic[OfTracked]):
-    """The table of what was tried, in order."""
+    """The table of what was tried, in order; of only two is kept what they left."""
 
-    rows: list[Trial[OfTracked]] = field(default_factory=list)
+    rows: list[TrialRow] = field(default_factory=list)
     _best: Trial[OfTracked] | None = None
+    _last: Trial[OfTracked] | None = None
 
     @property
     def best(self) -> Trial[OfTracked]:
@@ -54,15 +73,18 @@ class Trials(Generic[OfTracked]):
     @property
     def last(self) -> Trial[OfTracked]:
         """The newest one."""
-        return self.rows[-1]
+        assert self._last is not None, "nothing was tried"
+        return self._last
 
     def add(self, hypothesis: Hypothesis, tracked: OfTracked) -> None:
         """Compare a hypothesis with its rival; it is the best one from now on if it wins."""
         best = self._best.tracked.score if self._best else None
-        trial = Trial(hypothesis, tracked, _verdict(hypothesis, tracked.score, best))
-        self.rows.append(trial)
-        if trial.verdict.wins:
-            self._best = trial
+        score = tracked.score
+        row = TrialRow(hypothesis, score, _verdict(hypothesis, score, best))
+        self.rows.append(row)
+        self._last = Trial(row, tracked)
+        if row.verdict.wins:
+            self._best = self._last
 
 
 def choose(

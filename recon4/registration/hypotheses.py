@@ -57,7 +57,7 @@ def choose_walk(recording: WalkInputs) -> Choice:
     """
     hypotheses = _WalkHypotheses(recording)
     trials = choose(hypotheses.list, partial(track_walk, recording), most=_most_walks(recording))
-    whole = tuple(row_of(row, whole=True, chosen=row is trials.best) for row in trials.rows)
+    whole = tuple(row_of(row, whole=True, chosen=row is trials.best.row) for row in trials.rows)
     return Choice(trials.best, (*hypotheses.windows, *whole), _moving(recording, trials))
 
 
@@ -173,7 +173,7 @@ def is_settled(trials: Trials[TrackedWalk]) -> bool:
     """Whether the best walk is that of all points that stand, as far as walks have shown."""
     hidden = trials.best.hypothesis.hidden
     return hidden is not None and any(
-        row.hypothesis.hidden is hidden and row.tracked.score.is_settled for row in trials.rows
+        row.hypothesis.hidden is hidden and row.score.is_settled for row in trials.rows
     )
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.model.tried_hypotheses import TriedHypothesis
-from recon4.registration.choose import OfTracked, Trial
+from recon4.registration.choose import TrialRow
 
 
-def row_of(trial: Trial[OfTracked], *, whole: bool, chosen: bool) -> TriedHypothesis:
+def row_of(trial: TrialRow, *, whole: bool, chosen: bool) -> TriedHypothesis:
     """A hypothesis as a row of the table.
 
     Args:
@@ -16,7 +16,7 @@ def row_of(trial: Trial[OfTracked], *, whole: bool, chosen: bool) -> TriedHypoth
         whole: Whether the whole recording was tracked.
         chosen: Whether the odometry is made of it.
     """
-    hypothesis, score = trial.hypothesis, trial.tracked.score
+    hypothesis, score = trial.hypothesis, trial.score
     imu, hidden = hypothesis.imu, hypothesis.hidden
     recorded = imu.samples is not None or imu.choice.outcome == "not used"
     return TriedHypothesis(

@@ -264,11 +264,11 @@ def _chosen(stages: list[Trials[TrackedWindows]]) -> ImuTrials:
     imu = best.hypothesis.imu
     if best.verdict is TrialVerdict.CLEARLY_BETTER and imu.choice.outcome in _LESS:
         rival = [row for row in stages[-1].rows if row.verdict.wins][-2]
-        figures = {"with_m": rival.tracked.score.residual_m}
+        figures = {"with_m": rival.score.residual_m}
         figures["without_m"] = best.tracked.score.residual_m
         imu = replace(imu, choice=msgspec.structs.replace(imu.choice, **figures))
     tried = tuple(
-        row_of(row, whole=False, chosen=row is best) for trials in stages for row in trials.rows
+        row_of(row, whole=False, chosen=row is best.row) for trials in stages for row in trials.rows
     )
     return ImuTrials(imu, tried, best.tracked)
 

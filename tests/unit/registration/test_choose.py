@@ -1,5 +1,6 @@
 """The table of hypotheses: who wins, and how often a recording is tracked."""
 
+import weakref
 from dataclasses import replace
 from itertools import islice, pairwise
 
@@ -162,7 +163,32 @@ def test_hypotheses_are_listed_lazily_and_a_loser_stays_in_the_table():
 
     assert rows_before == [0, 1, 2]
     assert [row.verdict for row in trials.rows] == ["first", "loses more multiframes", "no worse"]
-    assert trials.best is trials.rows[2]
+    assert trials.best.row is trials.rows[2]
+
+
+def test_of_all_walks_that_were_tried_the_best_and_the_last_stay_in_memory():
+    made, alive = weakref.WeakSet(), []
+
+    class Walk:
+        def __init__(self, score):
+            self.score = score
+
+    def track(hypothesis):
+        made.add(walk := Walk(score(0, 0.02)))
+        alive.append(len(made))
+        return walk
+
+    first = Hypothesis(
+        because=Because.START, imu=ImuAssumption(None, ImuChoice(outcome="not used"))
+    )
+    loser = replace(first, proof=Proof.CLEARLY_BETTER)
+    trials = choose(lambda _: iter([first, *[loser] * 5]), track, most=6)
+
+    assert alive == [1, 2, 3, 3, 3, 3]
+    assert len(trials.rows) == 6
+    assert [row.score.residual_m for row in trials.rows] == [0.02] * 6
+    assert trials.best.row is trials.rows[0]
+    assert trials.last.row is trials.rows[5]
 
 
 @pytest.mark.parametrize(
