@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from enum import StrEnum
 from functools import cached_property
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -173,7 +174,7 @@ class Edge:
         """The edge with some fields changed; its judgments change by `judged` only."""
         if "judgments" in changes:
             raise TypeError("a verdict is given by Edge.judged, which keeps the earlier ones")
-        return replace(self, **changes)
+        return self._with(**changes)
 
     def judged(self, judgment: Judgment) -> Edge:
         """The edge with another verdict; the earlier ones stay in its history.
@@ -187,7 +188,7 @@ class Edge:
         if last.by is Judge.PERSON and judgment.by is not Judge.PERSON:
             raise ValueError(f"edge {self.i}-{self.j}: the decision of {last.person} stands")
         earlier = self.judgments[:-1] if judgment.repeats(last) else self.judgments
-        return replace(self, judgments=(*earlier, judgment))
+        return self._with(judgments=(*earlier, judgment))
 
     def after(self, earlier: Edge) -> Edge:
         """The edge with the history of its pair before its own.
@@ -200,7 +201,7 @@ class Edge:
             if one != other:
                 break
             known += 1
-        edge = replace(self, judgments=earlier.judgments)
+        edge = self._with(judgments=earlier.judgments)
         for judgment in self.judgments[known:]:
             edge = edge.judged(judgment)
         return edge
@@ -213,7 +214,11 @@ class Edge:
         count = len(self.judgments)
         while count > 1 and self.judgments[count - 1].by in judges:
             count -= 1
-        return replace(self, judgments=self.judgments[:count])
+        return self._with(judgments=self.judgments[:count])
+
+    def _with(self, **changes: Any) -> Edge:
+        """As `dataclasses.replace`, which takes four times as long."""
+        return Edge(**(dict(zip(_EDGE_FIELDS, _edge_values(self), strict=True)) | changes))
 
     @property
     def verdict(self) -> Verdict:
@@ -234,6 +239,10 @@ class Edge:
     def in_graph(self) -> bool:
         """Whether the optimizer uses it."""
         return self.judgments[-1].verdict is not Verdict.REJECTED
+
+
+_EDGE_FIELDS = tuple(one.name for one in fields(Edge))
+_edge_values = attrgetter(*_EDGE_FIELDS)
 
 
 def accepted_unseen() -> tuple[Judgment, ...]:
@@ -370,4 +379,7 @@ class PoseGraph:
 
     def with_poses(self, T_map_body: SE3) -> PoseGraph:
         """The same graph with other poses."""
-        return replace(self, T_map_body=T_map_body)
+        moved = replace(self, T_map_body=T_map_body)
+        if "relations" in vars(self):  # of the same edges
+            vars(moved)["relations"] = self.relations
+        return moved

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import ARM_M, SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.pose_graph.pairs import Pair
 from recon4.pose_graph.tuning import GraphTuning
@@ -85,7 +85,8 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphTuning, limit: int) -> lis
     reach_m = settings.revisit_radius_m + settings.drift_ratio * walked_m
     near = cKDTree(t).query_ball_point(t, r=reach_m)
     for j, found in enumerate(near):
-        earlier = np.sort([i for i in found if i < j - settings.neighbors])
+        earlier = np.sort(np.array(found, np.int64))
+        earlier = earlier[: np.searchsorted(earlier, j - settings.neighbors)]
         if len(earlier) == 0:
             continue
         distance_m = np.linalg.norm(t[earlier] - t[j], axis=1)
@@ -125,13 +126,16 @@ def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float
         move_m: Smaller moves are ignored [m, rotation as at 5 m].
     """
     rejected = [e for e in graph.edges if not e.in_graph and (e.i, e.j) in expected]
-    pairs = []
-    for edge in rejected:
-        T_i_j = graph.T_map_body[edge.i].inverse() @ graph.T_map_body[edge.j]
-        moved = expected[edge.i, edge.j].inverse() @ T_i_j
-        if moved.size_m() > move_m:
-            pairs.append(Pair(edge.i, edge.j, edge.kind, T_i_j))
-    return pairs
+    if not rejected:
+        return []
+    ends = np.array([(e.i, e.j) for e in rejected])
+    T_i_j = graph.T_map_body[ends[:, 0]].inverse() @ graph.T_map_body[ends[:, 1]]
+    moved = SE3.stack(expected[e.i, e.j] for e in rejected).inverse() @ T_i_j
+    size_m = np.linalg.norm(moved.t, axis=1) + ARM_M * moved.angle()
+    return [
+        Pair(rejected[k].i, rejected[k].j, rejected[k].kind, T_i_j[k])
+        for k in np.flatnonzero(size_m > move_m).tolist()
+    ]
 
 
 def _pair(graph: PoseGraph, i: int, j: int, *, settings: GraphTuning) -> Pair:

@@ -10,9 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
+from recon4.model.pose_graph import EdgeKind, Flags, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
-from recon4.pose_graph.density_images import DensityImage, make_density_image
+from recon4.pose_graph.density_images import (
+    DensityImage,
+    Layers,
+    layers_of,
+    make_density_image,
+)
 from recon4.pose_graph.node_views import NodeRangeImages
 from recon4.pose_graph.stored_images import StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
@@ -82,6 +87,7 @@ def make_places(
     settings: RecognitionTuning,
     *,
     leveled: bool,
+    turned: Flags | None = None,
 ) -> Places:
     """Draw the places of a walk with the current poses of its graph.
 
@@ -90,6 +96,8 @@ def make_places(
         views: Segments of every node.
         settings: Spacing and extent of the places.
         leveled: The vertical is known by an IMU.
+        turned: Nodes whose images are laid onto others, (N,); images of other places have no walls.
+            None = all.
     """
     path_m, part = _path_m(graph), _unbroken_parts(graph)
     nodes = _every(path_m, part, settings.spacing_m)
@@ -100,8 +108,9 @@ def make_places(
         # A node belongs to several places in a row.
         drawn = {k: drawn.get(k) or _walls_of(graph, views, k) for k in members}
         walls_m = np.concatenate([one.walls_m for one in drawn.values()])
-        heights_m = np.concatenate([one.heights_m for one in drawn.values()])
-        images.append(make_density_image(walls_m - graph.T_map_body.t[node, :2], heights_m))
+        layers = np.sum([one.layers for one in drawn.values()], axis=0)
+        image = make_density_image(walls_m - graph.T_map_body.t[node, :2], layers)
+        images.append(image if turned is None or turned[node] else image.without_walls())
     return Places(
         graph=graph,
         node=nodes,
@@ -148,8 +157,8 @@ class _NodeWalls(NamedTuple):
 
     walls_m: Array
     """Horizontal positions of the points on walls in the map [m], (N, 2)."""
-    heights_m: Array
-    """Heights of all points relative to the body [m], (M,)."""
+    layers: Layers
+    """Of all points."""
 
 
 def _walls_of(graph: PoseGraph, views: NodeRangeImages, node: int) -> _NodeWalls:
@@ -160,4 +169,4 @@ def _walls_of(graph: PoseGraph, views: NodeRangeImages, node: int) -> _NodeWalls
     p_map = T_map_body @ p_body
     height = p_map[:, 2] - T_map_body.t[2]
     is_wall = (height > -PLACES.below_m) & (height < PLACES.above_m)
-    return _NodeWalls(p_map[is_wall, :2], height)
+    return _NodeWalls(p_map[is_wall, :2], layers_of(height))

@@ -78,11 +78,15 @@ def recognize(
         An edge for every registered pair, accepted or rejected with its reason.
     """
     settings = registrar.recognition
-    if _closed_nodes(graph)[place_nodes(graph, settings)].all():
-        return []  # nothing is open: no place has to be drawn
-    places = make_places(graph, registrar.views, settings, leveled=leveled)
+    # Where a pair was degenerate, as in a bare corridor, no other pose would be better determined.
+    is_open = ~_closed_nodes(graph)
+    if not is_open[place_nodes(graph, settings)].any():
+        return []  # no place has to be drawn
+    places = make_places(graph, registrar.views, settings, leveled=leveled, turned=is_open)
     hypotheses = [
-        one for place in _open_places(places) for one in _hypotheses(places, place, settings)
+        one
+        for place in np.flatnonzero(is_open[places.node]).tolist()
+        for one in _hypotheses(places, place, settings)
     ]
     pairs, kept = _pairs(places, hypotheses, registrar)
     if not pairs:
@@ -109,14 +113,6 @@ def without_settled(graph: PoseGraph) -> PoseGraph:
             for edge in graph.edges
         )
     )
-
-
-def _open_places(places: Places) -> list[int]:
-    """Places that no loop closure joins to an earlier visit.
-
-    Where a pair was degenerate, as in a bare corridor, no other pose would be better determined.
-    """
-    return np.flatnonzero(~_closed_nodes(places.graph)[places.node]).tolist()
 
 
 def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:

@@ -22,6 +22,7 @@ from recon4.pose_graph import best_paths
 from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density_images import (
     TurnedImage,
+    layers_of,
     make_density_image,
     overlays,
     yaws_within,
@@ -52,7 +53,7 @@ def turned(p, yaw_rad, shift_m):
 
 
 def image(walls_m):
-    return make_density_image(walls_m, np.array([-1.2, 1.4]))
+    return make_density_image(walls_m, layers_of(np.array([-1.2, 1.4])))
 
 
 # -- images from above
@@ -66,6 +67,19 @@ def test_the_best_overlay_is_the_rotation_and_shift_between_two_visits():
 
     back = turned(seen, best.yaw_rad, np.array(best.shift_m))
     assert np.linalg.norm(back - walls, axis=1).max() < 0.7
+
+
+def test_an_image_without_walls_is_laid_onto_like_any_other(tmp_path):
+    walls = walls_of(TWO_CUBES)
+    stored = StoredImages(tmp_path)
+    stored.append(image(walls))
+    stored.append(image(walls).without_walls())
+    source = TurnedImage(image(turned(walls, 0.5, np.array([1.0, -2.0]))))
+
+    whole, bare = (overlays(one, source, yaws=yaws_within(0.6), most=2) for one in stored)
+
+    assert len(stored[1].walls_m) == 0
+    assert bare == whole
 
 
 def test_the_descriptor_depends_neither_on_heading_nor_on_position():
