@@ -8,7 +8,29 @@ from pathlib import Path
 from recon4.errors import ConfigError
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, format_rig
+from recon4.recording.packets.companions import companion_paths, with_descriptions
+from recon4.recording.rig_choice import RigToComplete
 from recon4.store.atomic import write_text
+
+
+def first_rig_of(found: Rig | None, to_complete: RigToComplete | None, recording: Path) -> str:
+    """A rig file of the sensors of a recording, as text; empty = none is known.
+
+    It holds the descriptions that lie beside the recording: a live capture has no other.
+
+    Args:
+        found: The rig that was chosen.
+        to_complete: A rig that a person must complete, in its place.
+        recording: File or folder.
+    """
+    rig = found if to_complete is None else to_complete.rig
+    if rig is None:
+        return ""
+    rig, _ = with_descriptions(rig, [recording, *companion_paths([recording])])
+    if to_complete is None:
+        return first_rig_text(rig, recording.name, mounted=True)
+    mounted, uncertain = len(rig.sensors) == 1, to_complete.uncertain
+    return first_rig_text(rig, recording.name, mounted=mounted, uncertain=uncertain)
 
 
 def first_rig_text(

@@ -23,7 +23,7 @@ from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.bag_packets import BagPackets
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, describe_capture
-from recon4.recording.first_rig import first_rig_text
+from recon4.recording.first_rig import first_rig_of
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
@@ -340,16 +340,6 @@ def _with_rotation(
     )
 
 
-def _first_rig(found: Rig | None, to_complete: RigToComplete | None, recording: str) -> str:
-    """A rig file of the sensors, as text; empty = none is known."""
-    if to_complete is None:
-        return first_rig_text(found, recording, mounted=True) if found is not None else ""
-    rig = to_complete.rig
-    several = len(rig.sensors) > 1
-    uncertain = to_complete.uncertain
-    return first_rig_text(rig, recording, mounted=not several, uncertain=uncertain)
-
-
 def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
     """Add the findings of opening the recording and reading its first second."""
     path, settings, report = request.paths[0], request.settings, request.report
@@ -395,5 +385,5 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         lost=tuple(report.lost()),
         repaired=tuple(report.repaired()),
         findings=tuple(report.findings),
-        first_rig=_first_rig(rig, to_complete, path.name),
+        first_rig=first_rig_of(rig, to_complete, path),
     )

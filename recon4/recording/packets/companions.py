@@ -46,12 +46,18 @@ def with_descriptions(rig: Rig, files: Sequence[Path]) -> tuple[Rig, dict[str, s
         alike = [s for s in rig.sensors if _maker(s) == _maker(sensor)]
         fit = [one for one in found if not sensor.description and _is_described(sensor, one)]
         own = [one for one in fit if one.name.startswith(sensor.name)] or fit * (len(alike) == 1)
-        if len(own) == 1:
+        if len(own := _most_alike(own)) == 1:
             used[sensor.name] = own[0].name
             sensors.append(replace(sensor, description=own[0].content.decode(errors="replace")))
         else:
             sensors.append(sensor)
     return replace(rig, sensors=tuple(sensors)), used
+
+
+def _most_alike(found: list[Companion]) -> list[Companion]:
+    """The files whose names are most like that of a recording among the files, if there is one."""
+    best = max((one.likeness for one in found), default=0)
+    return [one for one in found if one.likeness == best]
 
 
 def _maker(sensor: Sensor) -> str:

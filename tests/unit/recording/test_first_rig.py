@@ -1,5 +1,7 @@
 """A first rig file of the sensors in a recording, and the rigs that are shipped for each make."""
 
+from shutil import copy
+
 import numpy as np
 import pytest
 
@@ -20,6 +22,17 @@ def test_a_recording_of_two_lidars_gives_a_rig_to_complete(data):
     assert {s.address for s in rig.sensors} == {"169.254.238.111", "169.254.92.158"}
     assert rig.imu_sensor == "lidar0"
     assert "Measure xyz_m [m] and rpy_deg" in found.first_rig
+
+
+def test_it_holds_the_description_beside_the_recording_for_a_live_capture(data, tmp_path):
+    name = "OS-1-128_v2.3.0_1024x10"
+    pcap = data(f"packets/ouster/{name}_lb_n3.pcap")
+    for file in (pcap, *(pcap.with_name(f"{one}.json") for one in (name, "duplicate_id"))):
+        copy(file, tmp_path)
+
+    (lidar,) = parse_rig(describe(tmp_path / pcap.name).first_rig, where="first rig").sensors
+
+    assert lidar.description == pcap.with_name(f"{name}.json").read_text()
 
 
 def test_info_writes_it_to_a_new_file_only(data, tmp_path, capsys):
