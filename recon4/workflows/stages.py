@@ -329,7 +329,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 35, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    48,
+    49,
     OdometryReads,
     _odometry,
     OdometryFigures,

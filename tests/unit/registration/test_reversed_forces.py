@@ -42,6 +42,14 @@ def test_forces_against_the_motion_of_the_lidars_are_reversed(frames):
     assert reversed_forces(frames, SETTINGS) is None
 
 
+def test_an_imu_that_is_turned_over_in_its_rig_has_no_reversed_forces(frames):
+    """By the rig file it is upright: its gyroscope contradicts the LiDARs, too."""
+    imu, over = frames.imu, np.diag([-1.0, 1.0, -1.0])
+    turned = replace(imu, gyro_rad_s=imu.gyro_rad_s @ over, accel_m_s2=imu.accel_m_s2 @ over)
+
+    assert reversed_forces(Walk(frames, imu=turned), SETTINGS) is None
+
+
 @pytest.mark.study
 def test_a_lidar_that_hangs_has_no_reversed_forces(frames):
     assert reversed_forces(Walk(frames, rig=hanging(frames.rig)), SETTINGS) is None
