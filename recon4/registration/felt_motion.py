@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
 from recon4.geometry.distinct import distinct
-from recon4.geometry.se3 import TRANSLATION, Array
+from recon4.geometry.se3 import SE3, TRANSLATION, Array
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -53,9 +53,11 @@ class FeltMotion:
     """(N - 1, 3)."""
     cov: Array
     """[m²], (N - 1, 3, 3)."""
-    pulled_sd_m: Array
+    pull_m: Array
     """How wrong the shifts of the odometry are along the weak direction, as far as the
-    accelerometer shows it: see `_MeasuredShifts.pulled_m` [m], (N - 1,)."""
+    accelerometer shows it: ``dt s d dᵀ u`` in odom axes [m], (N - 1, 3) …"""
+    pull_sd_m: Array
+    """… and the standard deviation of what it does not show [m], (N - 1,)."""
     per_second: int
     """Multiframes in a second."""
 
@@ -108,6 +110,39 @@ def felt_motion(
     return _smoothed(felt, _measured(steps), accel_noise)
 
 
+def moved_back(
+    steps: WalkSteps, trajectory: Trajectory, felt: FeltMotion
+) -> tuple[Trajectory, FeltMotion]:
+    """Move all heights back by what the points pull them along by, ``Σ dt s eᶻ dᵀu d``.
+
+    Between two multiframes in proportion to the time. Sideways an accelerometer knows less: a tilt
+    of the body, which is taken for known, pushes there by a part of gravity.
+
+    Args:
+        steps: Of all multiframes; they are moved, too.
+        trajectory: ``T_odom_body``, dense.
+        felt: What the accelerometer says of both.
+
+    Returns:
+        The dense poses that are left, and what is felt of them: nothing known pulls their heights.
+    """
+    at_ns, start_ns = steps.column("t_mid_ns"), trajectory.t_ns[0]
+    along_m = np.concatenate([[0.0], np.cumsum(felt.pull_m[:, 2])])
+
+    def moved(T: SE3, t_ns: Times) -> SE3:
+        t_m = T.t.copy()
+        t_m[:, 2] -= np.interp(t_ns - start_ns, at_ns - start_ns, along_m)
+        return SE3(T.R, t_m)
+
+    T = moved(steps.T_odom_body, at_ns)
+    steps.update(
+        (k, replace(step, T_odom_body=T[k], T_dense=moved(step.T_dense, step.t_ns)))
+        for k, step in enumerate(steps)
+    )
+    poses = Trajectory(trajectory.t_ns, moved(trajectory.T_a_b, trajectory.t_ns))
+    return poses, replace(felt, pull_m=felt.pull_m * [1.0, 1.0, 0.0])
+
+
 def carried(steps: WalkSteps, felt: FeltMotion) -> Iterator[tuple[int, OdometryStep]]:
     """What the accelerometer says of motions that the points hardly observe: steps by number.
 
@@ -119,13 +154,14 @@ def carried(steps: WalkSteps, felt: FeltMotion) -> Iterator[tuple[int, OdometryS
     shifts, weak = np.diff(steps.T_odom_body.t, axis=0), are_carried(steps)[1:]
     directions = steps.column("weak_direction")[1:]
     sd_m = felt.sd_m(shifts, np.where(weak[:, None], directions, 0.0)).tolist()
-    pulled = ~weak & (felt.pulled_sd_m > 0.0) & np.isfinite(directions).all(axis=1)
+    pulled_sd_m = np.hypot(felt.pull_sd_m, np.linalg.norm(felt.pull_m, axis=1))
+    pulled = ~weak & (pulled_sd_m > 0.0) & np.isfinite(directions).all(axis=1)
     for row in np.flatnonzero(weak | pulled).tolist():
         step = steps[row + 1]
         if weak[row]:
             yield row + 1, _with_weak_motion(step, max(sd_m[row], FELT.least_sd_m))
         else:
-            yield row + 1, _pulled(step, float(felt.pulled_sd_m[row]))
+            yield row + 1, _pulled(step, float(pulled_sd_m[row]))
 
 
 def are_carried(steps: WalkSteps) -> NDArray[np.bool_]:
@@ -272,7 +308,7 @@ def _smoothed(felt: _Felt, measured: _MeasuredShifts, accel_noise: float) -> Fel
         states[k], covs_of[k] = x, P
         x, P = _ahead(felt, k, x, F=F), F @ P @ F.T + Q
     shifts_m, covs = np.zeros((n, 3)), np.zeros((n, 3, 3))
-    pulled_sd_m = np.zeros(n)
+    pull_m, pull_sd_m = np.zeros((n, 3)), np.zeros(n)
     for k in range(n - 1, -1, -1):
         F, Q = _transition(felt, measured, k, accel_noise=accel_noise)
         known = states[k], covs_of[k]
@@ -283,9 +319,10 @@ def _smoothed(felt: _Felt, measured: _MeasuredShifts, accel_noise: float) -> Fel
         H = _shift_by_state(felt, k)
         shifts_m[k], covs[k] = H @ x + felt.shift[k, :, 0], H @ P @ H.T
         pull = _along(measured.pulled_m[k])
-        pulled = P[_PULLED, _PULLED] + np.outer(x[_PULLED], x[_PULLED])
-        pulled_sd_m[k] = np.sqrt(max(float(np.trace(pull @ pulled @ pull.T)), 0.0))
-    return FeltMotion(shifts_m, covs, pulled_sd_m, max(1, round(1.0 / float(np.median(felt.dt_s)))))
+        pull_m[k] = pull @ x[_PULLED]
+        pull_sd_m[k] = np.sqrt(max(float(np.trace(pull @ P[_PULLED, _PULLED] @ pull.T)), 0.0))
+    per_second = max(1, round(1.0 / float(np.median(felt.dt_s))))
+    return FeltMotion(shifts_m, covs, pull_m, pull_sd_m, per_second)
 
 
 def _along(pulled_m: Array) -> Array:

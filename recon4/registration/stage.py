@@ -12,13 +12,13 @@ from recon4.model.hidden_points import FORCES_REVERSED, MOVING_POINTS, HiddenPoi
 from recon4.model.odometry_figures import OdometryFigures, TurnDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.registration.felt_motion import are_carried, carried, felt_motion
+from recon4.registration.felt_motion import are_carried, carried, felt_motion, moved_back
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.pulled_motion import less_sure
 from recon4.registration.reversed_forces import reversed_forces, with_opposite_forces
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
-from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs
+from recon4.registration.walk import EarlierWalks, WalkInputs
 from recon4.registration.walk_steps import WalkSteps
 from recon4.registration.weak_turns import weak_turns
 from recon4.settings.tuning import tuned
@@ -40,15 +40,15 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     """
     recording, found = _with_right_forces(recording, out)
     choice = choose_walk(recording)
-    hypothesis, tracked = choice.best.hypothesis, choice.best.tracked
+    hypothesis = choice.best.hypothesis
     if hypothesis.hidden is not None:
         save_record(out / MOVING_POINTS, hypothesis.hidden)
     write_tried(out, choice.tried)
-    save_trajectory(out / "trajectory.npz", tracked.trajectory)
     used = hypothesis.imu.samples if recording.settings.odometry.use_imu else None
     if used is not None:
-        _carry(recording, tracked, used)
-    steps = tracked.steps
+        choice = carried_by_accelerometer(recording, choice, used)
+    save_trajectory(out / "trajectory.npz", choice.best.tracked.trajectory)
+    steps = choice.best.tracked.steps
     steps.update(less_sure(steps, choice.moving, with_imu=used is not None))
     _save_steps(out / "steps.npz", steps)
     figures = _figures(recording, choice, with_imu=used is not None)
@@ -65,16 +65,32 @@ def _with_right_forces(recording: WalkInputs, out: Path) -> tuple[WalkInputs, fl
     return dataclasses.replace(recording, frames=frames), found
 
 
-def _carry(recording: WalkInputs, tracked: TrackedWalk, imu: ImuSamples) -> None:
-    """Note what the accelerometer says where the LiDARs hardly observe the motion."""
-    steps = tracked.steps
+def carried_by_accelerometer(recording: WalkInputs, choice: Choice, imu: ImuSamples) -> Choice:
+    """The walk with what the accelerometer says where the LiDARs hardly observe the motion.
+
+    Args:
+        recording: Its rig and settings, and whether fixes aid.
+        choice: The walk; its steps are changed.
+        imu: As it was used.
+
+    Returns:
+        The walk with heights moved back by what false planes pulled them along, unless fixes hold
+        them or they contradict the accelerometer, and with what is known of weak motions; as it is
+        if all are observed. No false plane explains a ride: all that LiDARs see rides along.
+    """
+    best, tracked = choice.best, choice.best.tracked
+    steps, poses, rig = tracked.steps, tracked.trajectory, recording.frames.rig
     if not are_carried(steps)[1:].any():
-        return
+        return choice
     noise = tuned(OdometryTuning, recording.settings.odometry).accel_noise
-    rig = recording.frames.rig
-    felt = felt_motion(steps, tracked.trajectory, imu, rig=rig, accel_noise=noise)
-    if felt is not None:
-        steps.update(carried(steps, felt))
+    felt = felt_motion(steps, poses, imu, rig=rig, accel_noise=noise)
+    if felt is None:
+        return choice
+    if best.hypothesis.aiding is None and not _rides(choice, rig):
+        poses, felt = moved_back(steps, poses, felt)
+    steps.update(carried(steps, felt))
+    carried_by_it = dataclasses.replace(tracked, trajectory=poses)
+    return dataclasses.replace(choice, best=dataclasses.replace(best, tracked=carried_by_it))
 
 
 def earlier_walks(odometry: Path) -> EarlierWalks:

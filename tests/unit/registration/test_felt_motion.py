@@ -1,18 +1,31 @@
 """The accelerometer carries a motion that no LiDAR observes, and contradicts a wrong one."""
 
 from dataclasses import replace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 from msgspec import structs
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.odometry_figures import MovingFigures
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.model.tried_hypotheses import Because, TrialVerdict
+from recon4.progress import Silent
 from recon4.registration import felt_motion as module
-from recon4.registration.felt_motion import FeltMotion, carried, felt_motion
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.choose import Trial
+from recon4.registration.felt_motion import FeltMotion, carried, felt_motion, moved_back
+from recon4.registration.hypotheses import Choice
+from recon4.registration.hypothesis import Hypothesis, ImuAssumption
+from recon4.registration.imu_choice import AS_RECORDED
+from recon4.registration.score import Score
+from recon4.registration.stage import carried_by_accelerometer
 from recon4.registration.step import OdometryStep
+from recon4.registration.walk import TrackedWalk, WalkInputs
 from recon4.registration.walk_steps import WalkSteps
+from recon4.settings import Settings
 from tests.unit.registration.test_unseen_rides import RIG, walked
 
 ALONG_X, UP = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
@@ -81,11 +94,11 @@ def test_five_unobserved_seconds_are_known_to_centimeters(direction: Array, seed
     assert all((step.motion_cov == STATED).all() for step in others)
 
 
-def dragged(trajectory: Trajectory, m_s: float) -> Trajectory:
-    """The walk as an odometry makes of it that slides along x while nothing observes it."""
+def dragged(trajectory: Trajectory, m_s: float, along: Array = ALONG_X) -> Trajectory:
+    """The walk as an odometry makes of it that slides back while nothing observes it."""
     start_ns = trajectory.t_ns[0] + 100_000_000 * WEAK.start
     since_s = np.clip((trajectory.t_ns - start_ns) / 1e9, 0.0, 5.0)
-    slid = trajectory.T_a_b.t - m_s * since_s[:, None] * ALONG_X
+    slid = trajectory.T_a_b.t - m_s * since_s[:, None] * along
     return Trajectory(trajectory.t_ns, SE3(trajectory.T_a_b.R, slid))
 
 
@@ -114,7 +127,7 @@ def test_no_threshold_parts_observed_from_weak_steps() -> None:
     below, above = (as_weak_as(sd_m)[0] for sd_m in (0.0199, 0.0201))
 
     np.testing.assert_allclose(below.cov, above.cov, rtol=0.05, atol=1e-9)
-    assert np.all(below.pulled_sd_m[WEAK] > 5.0 * as_weak_as(0.005)[0].pulled_sd_m[WEAK])
+    assert np.all(below.pull_sd_m[WEAK] > 5.0 * as_weak_as(0.005)[0].pull_sd_m[WEAK])
 
 
 def test_steps_that_are_nearly_weak_and_slide_do_not_pull_the_accelerometer_along() -> None:
@@ -140,11 +153,44 @@ def test_a_step_that_undoes_a_slide_is_known_to_be_wrong() -> None:
     assert felt is not None
     jump = WEAK.stop - 1
     assert steps[jump + 1].weak_sd_m < 0.01
-    assert felt.pulled_sd_m[jump] == pytest.approx(0.15, rel=0.5)
-    assert felt.pulled_sd_m[jump + 1 :].max() < 3e-4
+    assert felt.pull_m[jump] == pytest.approx([0.15, 0.0, 0.0], rel=0.5, abs=1e-9)
+    assert felt.pull_sd_m[jump + 1 :].max() < 3e-4
     stated = dict(carried(steps, felt))[jump + 1]
     assert stated.weak_motion_sd_m == pytest.approx(0.06)
     np.testing.assert_array_equal(stated.motion_cov, STATED)
+
+
+def test_heights_are_moved_back_by_what_false_planes_pulled_them_along() -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+    seen = dragged(trajectory, 0.1, UP)
+    steps = steps_of(seen, UP)
+    felt = felt_motion(steps, seen, imu, rig=RIG, accel_noise=ACCEL_NOISE)
+    assert felt is not None
+
+    poses, left = moved_back(steps, seen, felt)
+
+    wrong_m = poses.T_a_b.t - trajectory.T_a_b.t
+    assert abs(wrong_m[:, 2]).max() < 0.1 * 5.0 * 0.1
+    np.testing.assert_array_equal(poses.T_a_b.t[:, :2], seen.T_a_b.t[:, :2])
+    np.testing.assert_array_equal(poses.T_a_b.R, seen.T_a_b.R)
+    at_mid = poses.at(steps.column("t_mid_ns")).t
+    np.testing.assert_allclose(steps.T_odom_body.t, at_mid, atol=1e-3)
+    np.testing.assert_allclose(steps.column("t_ends_m")[:, 0], at_mid, atol=1e-3)
+    assert not left.pull_m.any()
+
+
+def test_sideways_a_contradiction_is_stated_and_nothing_is_moved() -> None:
+    """A tilt of 1 mrad pushes a body sideways by 1.6 m in 18 s."""
+    trajectory, imu = walked("office", seconds=15.0)
+    seen = dragged(trajectory, 0.1)
+    steps = steps_of(seen, ALONG_X)
+    felt = felt_motion(steps, seen, imu, rig=RIG, accel_noise=ACCEL_NOISE)
+    assert felt is not None
+
+    poses, left = moved_back(steps, seen, felt)
+
+    np.testing.assert_allclose(poses.T_a_b.t, seen.T_a_b.t, atol=1e-12)
+    np.testing.assert_array_equal(left.pull_m[:, 0], felt.pull_m[:, 0])
 
 
 def test_nothing_is_less_sure_than_before_and_other_directions_stay() -> None:
@@ -168,6 +214,38 @@ def test_across_missing_samples_nothing_is_carried() -> None:
     assert stated_m(after(trajectory, holey, ALONG_X)) > 3.0 * stated_m(
         after(trajectory, imu, ALONG_X)
     )
+
+
+def carried_walk(trajectory: Trajectory, imu: ImuSamples, *, fixes: bool = False) -> TrackedWalk:
+    """What the stage makes of a walk whose height is hardly observed for a while."""
+    steps, aiding = steps_of(trajectory, UP), Mock(GnssAiding) if fixes else None
+    assumed = ImuAssumption(imu, AS_RECORDED)
+    start = Hypothesis(because=Because.START, imu=assumed, aiding=aiding)
+    nothing = MovingFigures(t_s=(), ratio=())
+    score = Score(multiframes=len(steps), lost=0, residuals_m=np.zeros(len(steps)))
+    tracked = TrackedWalk(steps, trajectory, score, nothing, None)
+    choice = Choice(Trial(start, tracked, TrialVerdict.FIRST), (), nothing)
+    recording = WalkInputs(Mock(rig=RIG), Settings(), Silent(), aiding)
+    return carried_by_accelerometer(recording, choice, imu).best.tracked
+
+
+@pytest.mark.parametrize("fixes", [False, True], ids=["without fixes", "with fixes"])
+def test_fixes_hold_heights_better_than_the_accelerometer(fixes: bool) -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+    seen = dragged(trajectory, 0.1, UP)
+
+    made = carried_walk(seen, imu, fixes=fixes)
+
+    assert np.array_equal(made.trajectory.T_a_b.t, seen.T_a_b.t) is fixes
+    assert (stated_m(made.steps) > 0.8 * 5.0 * 0.1) is fixes
+
+
+def test_no_false_plane_explains_a_ride() -> None:
+    trajectory, imu = walked("elevator:1", seconds=30.0)
+
+    made = carried_walk(trajectory, imu)
+
+    np.testing.assert_array_equal(made.trajectory.T_a_b.t, trajectory.T_a_b.t)
 
 
 def test_without_an_accelerometer_nothing_is_felt() -> None:
