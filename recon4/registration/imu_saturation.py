@@ -28,11 +28,16 @@ class SaturatedAxis:
 def saturated_axes(imu: ImuSamples) -> list[SaturatedAxis]:
     """The axes that are saturated at some time.
 
+    A sample that packets repeat until the next one is there counts once.
+
     Args:
         imu: As recorded, in its own axes.
     """
-    gyro = _saturated("gyroscope", imu.gyro_rad_s, SATURATION.slowest_rad_s)
-    return gyro + _saturated("accelerometer", imu.accel_m_s2, SATURATION.weakest_m_s2)
+    both = np.hstack([imu.gyro_rad_s, imu.accel_m_s2])
+    new = np.flatnonzero((both != np.roll(both, 1, axis=0)).any(axis=1))
+    gyro = _saturated("gyroscope", imu.gyro_rad_s, new, least=SATURATION.slowest_rad_s)
+    accel = _saturated("accelerometer", imu.accel_m_s2, new, least=SATURATION.weakest_m_s2)
+    return gyro + accel
 
 
 def saturated_samples(imu: ImuSamples) -> NDArray[np.bool_]:
@@ -45,11 +50,13 @@ def saturated_samples(imu: ImuSamples) -> NDArray[np.bool_]:
     return found
 
 
-def _saturated(sensor: str, values: Array, least: float) -> list[SaturatedAxis]:
-    """The saturated axes of a sensor, (N, 3)."""
+def _saturated(
+    sensor: str, values: Array, new: NDArray[np.intp], *, least: float
+) -> list[SaturatedAxis]:
+    """The saturated axes of a sensor, (N, 3), by its new samples."""
     found = []
     for axis, column in zip("xyz", values.T, strict=True):
-        runs = _runs_at_the_end(column, least)
+        runs = [new[run] for run in _runs_at_the_end(column[new], least)]
         if sum(map(len, runs)) >= SATURATION.least_samples:
             largest = float(np.nanmax(np.abs(column)))
             found.append(SaturatedAxis(sensor, axis, largest, runs))

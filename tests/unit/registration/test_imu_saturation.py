@@ -48,6 +48,19 @@ def test_an_imu_within_its_range_is_not():
     assert saturated_texts(samples()) == []
 
 
+def held(imu, times=6):
+    """The samples as packets have them that come more often: each again until the next one."""
+    t_ns = imu.t_ns[0] + np.arange(times * len(imu)) * (5_000_000 // times)
+    gyro, accel = (np.repeat(one, times, axis=0) for one in (imu.gyro_rad_s, imu.accel_m_s2))
+    return ImuSamples(t_ns=t_ns, gyro_rad_s=gyro, accel_m_s2=accel)
+
+
+def test_samples_that_packets_repeat_do_not_saturate_an_imu():
+    assert saturated_texts(held(samples())) == []
+    (text,) = saturated_texts(held(samples(gyro_range_deg_s=250.0)))
+    assert "250°/s about z, 5 times" in text
+
+
 def test_neither_is_one_that_stands_or_has_no_samples():
     still = np.zeros((200, 3))
     t_ns = np.arange(200) * 5_000_000
