@@ -96,18 +96,22 @@ class Raster:
         if chunk.normalized is not None:
             _add(self.normalized_sum, pixel, chunk.normalized[inside])
 
+    @property
+    def seen(self) -> NDArray[np.int64]:
+        """Pixels with points, (S,)."""
+        return np.flatnonzero(self.count)
+
     def mean(self, total: Array) -> Array:
-        """Mean a pixel, NaN where there is no point, (height, width)."""
-        with np.errstate(invalid="ignore"):
-            return (total / self.count).reshape(self.frame.height, self.frame.width)
+        """Mean of each pixel that is `seen`, (S,)."""
+        seen = self.seen
+        return np.asarray(total[seen] / self.count[seen])
 
     @property
     def density(self) -> Array:
-        """Points a pixel on a logarithmic scale, 0..1, (height, width)."""
-        seen = self.count[self.count > 0]
+        """Points of each pixel that is `seen` on a logarithmic scale, above 0 to 1, (S,)."""
+        seen = self.count[self.seen]
         top = np.log1p(np.percentile(seen, 99.5)) if len(seen) else 1.0
-        shade = np.clip(np.log1p(self.count) / top, 0.0, 1.0)
-        return shade.reshape(self.frame.height, self.frame.width)
+        return np.clip(np.log1p(seen) / top, 0.0, 1.0)
 
 
 def _add(
@@ -162,9 +166,9 @@ def ink_png(raster: Raster) -> bytes:
     """Image of the point density: walls seen from above are dark lines."""
     if raster.ink is None:
         shade = _steps(raster.density**1.3)
-        rgba = np.zeros((*shade.shape, 4))
-        rgba[..., 3] = shade
-        raster.ink = _png(rgba)
+        rgba = np.zeros((len(shade), 4))
+        rgba[:, 3] = shade
+        raster.ink = _png(raster, rgba)
     return raster.ink
 
 
@@ -175,8 +179,8 @@ def height_png(raster: Raster) -> tuple[bytes, tuple[float, float]]:
     z_m = raster.mean(raster.z_sum)
     low, high = _ends(z_m, 1.0, 99.0)
     rgba = np.array(colormaps["viridis"](_steps((z_m - low) / (high - low))))
-    rgba[..., 3] = np.where(raster.density > 0, 0.25 + 0.75 * _steps(raster.density), 0.0)
-    return _png(rgba), (low, high)
+    rgba[:, 3] = 0.25 + 0.75 * _steps(raster.density)
+    return _png(raster, rgba), (low, high)
 
 
 def intensity_png(raster: Raster, *, normalized: bool) -> tuple[bytes, tuple[float, float]]:
@@ -184,8 +188,8 @@ def intensity_png(raster: Raster, *, normalized: bool) -> tuple[bytes, tuple[flo
     mean = raster.mean(raster.normalized_sum if normalized else raster.intensity_sum)
     low, high = _ends(mean, 2.0, 98.0)
     shade = _steps((mean - low) / (high - low))
-    seen = np.isfinite(mean)
-    return _png(np.stack([shade, shade, shade, seen.astype(float)], axis=-1)), (low, high)
+    known = np.isfinite(mean).astype(float)
+    return _png(raster, np.stack([shade, shade, shade, known], axis=-1)), (low, high)
 
 
 def _bounds(chunks: Iterable[MapChunk]) -> tuple[Array, Array] | None:
@@ -241,10 +245,12 @@ def _steps(shade: Array) -> Array:
     return np.round(np.nan_to_num(np.clip(shade, 0.0, 1.0)) * MAP_IMAGES.levels) / MAP_IMAGES.levels
 
 
-def _png(rgba: Array) -> bytes:
+def _png(raster: Raster, rgba: Array) -> bytes:
+    """An image of the pixels with points, colors 0 to 1, (S, 4); the others are transparent."""
     from PIL import Image
 
+    pixels = np.zeros((raster.frame.height, raster.frame.width, 4), np.uint8)
+    pixels.reshape(-1, 4)[raster.seen] = np.round(255.0 * rgba)
     buffer = BytesIO()
-    pixels: NDArray[np.uint8] = np.round(255.0 * rgba).astype(np.uint8)
     Image.fromarray(pixels, "RGBA").save(buffer, "PNG")
     return buffer.getvalue()
