@@ -17,14 +17,15 @@ from tests.short_capture import process_short
 UNFINISHED = (".tmp-", "buckets-")
 """Beginnings of the names of unfinished files and folders."""
 RESULTS = sorted({*ALL_RESULTS} - {"report.html"})  # it says when it was made
-ENDED_AFTER = {
+ENDED_AFTER = {"odometry:": signal.SIGKILL, "graph:": signal.SIGINT, "intensity:": signal.SIGTERM}
+"""Every stage of a job, by a gate: ``tests/service/test_killing.py``."""
+EARLIER_AND_LATER = {
     "hash": signal.SIGTERM,
     "odometry:": signal.SIGKILL,
     "graph:": signal.SIGINT,
     "refine:": signal.SIGKILL,
     "intensity:": signal.SIGTERM,
 }
-"""Every stage of a job, by a gate: ``tests/service/test_killing.py``."""
 
 
 def results(out):
@@ -56,8 +57,13 @@ def test_one_thread_gives_the_bytes_of_two(short_recording, short_project, tmp_p
     assert_same(results(tmp_path / "one"), results(short_project))
 
 
-def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(
-    short_recording, short_project, tmp_path
+@pytest.mark.parametrize(
+    "ended_after",
+    [ENDED_AFTER, pytest.param(EARLIER_AND_LATER, marks=pytest.mark.study)],
+    ids=["three", "five"],
+)
+def test_a_run_ended_in_many_stages_resumes_to_the_same_bytes(
+    short_recording, short_project, tmp_path, ended_after
 ):
     """Each run is ended a random while after a stage ended, so that the next one is hit.
 
@@ -67,7 +73,7 @@ def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(
     rng = np.random.default_rng(5)
     out = tmp_path / "ended"
     finished = []
-    for stage, sign in ENDED_AFTER.items():
+    for stage, sign in ended_after.items():
         run = process_short(short_recording, out)
         code, said = run_and_end(run, news=stage, seconds=rng.uniform(0.0, 0.3), sign=sign)
         finished.append(len([*(out / "artifacts").glob("[!.]*")]))
@@ -83,7 +89,9 @@ def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(
     assert main(process_short(short_recording, out)) == 0
 
     assert_same(results(out), results(short_project))
-    assert len(set(finished)) >= 4, f"signals should fall into different stages: {finished}"
+    assert len(set(finished)) >= len(ended_after) - 1, (
+        f"signals should fall into different stages: {finished}"
+    )
     assert not list(out.glob("**/.tmp-*"))
     assert main(["verify", str(out)]) == 0
 

@@ -320,6 +320,7 @@ def test_a_calibrated_rig_of_other_sensors_is_refused(right, dance):
         FrameStore.open(right.frames.folder, replace(dance.rig, sensors=renamed))
 
 
+@pytest.mark.study
 def test_tracking_with_the_calibrated_rig_is_better(wrong, calibrated, tmp_path):
     repeated = tracked(tmp_path, wrong.frames.with_rig(calibrated.rig), wrong.true)
 

@@ -297,17 +297,19 @@ def test_cells_and_tiles_are_whole_numbers_of_voxels():
     assert grid.tile_m == pytest.approx(0.09 * round(20 / 0.09))
 
 
-def fitted_and_raw(tmp_path, **options):
+@pytest.fixture(scope="module")
+def fitted_and_raw(tmp_path_factory):
+    """Maps of one walk in the folders of these names, which tests only read; and their parent."""
+    root = tmp_path_factory.mktemp("surfaces")
     walk = room_walk(frames=30, points=20_000, noise_m=0.01)
     walk.frames[3].xyz[7] = [1.0, 0.5, 0.3]
-    return [
-        build(walk, tmp_path / surface, MapSettings(surface=surface), **options)
-        for surface in ("fitted", "raw")
-    ]
+    return root, *(
+        build(walk, root / surface, MapSettings(surface=surface)) for surface in ("fitted", "raw")
+    )
 
 
-def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp_path):
-    fitted, raw = fitted_and_raw(tmp_path)
+def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(fitted_and_raw):
+    _, fitted, raw = fitted_and_raw
 
     assert fitted.strays >= 1
     assert len(fitted) + fitted.strays == len(raw) + raw.notes.removed["lonely"]
@@ -327,9 +329,11 @@ def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp
     assert raw.as_measured() is raw
 
 
-def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(tmp_path):
-    fitted, _ = fitted_and_raw(tmp_path)
-    current, folder = tmp_path / "fitted", tmp_path / "earlier"
+def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(
+    fitted_and_raw, tmp_path
+):
+    root, fitted, _ = fitted_and_raw
+    current, folder = root / "fitted", tmp_path / "earlier"
     write_earlier(current, folder)
     facts = json.loads((folder / "tiles.json").read_text())
     for earlier, now in TILE_FIELDS.items():
@@ -343,8 +347,8 @@ def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(
     for name in TILE_FIELDS.values():
         np.testing.assert_array_equal(points(found, name), points(fitted, name))
     for map_ in (current, folder):
-        export_laz(map_, map_ / "map.laz")
-    assert (folder / "map.laz").read_bytes() == (current / "map.laz").read_bytes()
+        export_laz(map_, tmp_path / f"{map_.name}.laz")
+    assert (tmp_path / "earlier.laz").read_bytes() == (tmp_path / "fitted.laz").read_bytes()
     (folder / "tiles" / "returns.npy").unlink()
     with pytest.raises(StoreError, match=r"surface_returns\.npy.*no file"):
         TileSet.open(folder)

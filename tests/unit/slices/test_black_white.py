@@ -36,7 +36,7 @@ def board(uv, *, at=(0.0, 0.0), turn=0.0, half_m=0.1):
 def test_centers_are_found_at_any_turn_with_the_deviation_that_is_stated():
     rng = np.random.default_rng(2)
     off, stated = [], []
-    for _ in range(12):
+    for _ in range(8):
         at, turn = rng.uniform(-0.05, 0.05, 2), rng.uniform(0.0, np.pi)
         points, intensity, T = wall(rng, lambda uv, at=at, turn=turn: board(uv, at=at, turn=turn))
 
@@ -90,7 +90,7 @@ def test_a_board_of_which_a_corner_is_hidden_still_has_its_center():
 )
 def test_what_has_no_four_sectors_is_no_target(painted):
     rng = np.random.default_rng(4)
-    for _ in range(4):
+    for _ in range(2):
         points, intensity, _ = wall(rng, painted)
         assert black_white_at(points, intensity, CENTER) is None
 
