@@ -15,13 +15,13 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.packets.velodyne.encode import (
     PacketBlocks,
     PcapWriter,
-    encode_vlp16,
-    vlp16_firings,
+    encode_packets,
 )
+from recon4.recording.packets.velodyne.models import MODELS
 
 ROOM_M = np.array([8.0, 6.0, 3.0])
 T0_NS = 1_700_000_000_000_000_000
-ELEVATION = np.sort(vlp16_firings().elevation_rad)
+ELEVATION = np.sort(MODELS["VLP-16"].elevation_rad)
 
 _PCD_WORDS = ("FIELDS", "SIZE", "TYPE", "COUNT")
 _SCAN = "velodyne_msgs/msg/VelodyneScan"
@@ -82,15 +82,14 @@ def room_packets(*, seconds=1.0, rate_hz=10.0, t0_ns=T0_NS):
     t_block_s = t_packet_s[:, None] + np.arange(12) * block_s
     turn_cdeg = 36000.0 * rate_hz
     azimuth_cdeg = np.rint(t_block_s * turn_cdeg).astype(np.int64)
-    model = vlp16_firings()
+    model = MODELS["VLP-16"]
     t_shot_s = t_block_s[..., None] + model.channel_time_s
     azimuth = -np.deg2rad(t_shot_s * turn_cdeg / 100)
     distance, _ = room_range(azimuth, np.tile(model.elevation_rad, 2))
     t_ns = t0_ns + np.rint(t_packet_s * 1e9).astype(np.int64)
     units = np.rint(distance / 0.002).astype(np.int64)
-    payloads = encode_vlp16(
-        t_ns // 1000, PacketBlocks(azimuth_cdeg, units, np.full(units.shape, 40))
-    )
+    blocks = PacketBlocks(azimuth_cdeg, units, np.full(units.shape, 40))
+    payloads = encode_packets(t_ns // 1000, blocks, model=model)
     return t_ns, payloads
 
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
 from recon4.model.lidars import LIDARS, lidar_model
-from recon4.recording.packets.ouster.facts import STAGGER_DEG, STAGGER_OS2_DEG
 from recon4.recording.packets.ouster.layouts import PROFILES, PacketLayout
 from recon4.recording.packets.ouster.metadata import (
     OusterMetadata,
     usual_beam_origin_m,
     usual_mount,
 )
+
+STAGGER_DEG = {"OS0": (10.9, 3.6, -3.7, -11.0), "OS1": (4.2, 1.4, -1.4, -4.2)}
+"""Azimuth of four beams that follow each other, as in metadata of real sensors."""
+STAGGER_OS2_DEG = (2.1, 0.7, -0.7, -2.1)
 
 
 def nominal_metadata(
@@ -56,4 +60,29 @@ def nominal_metadata(
         port=7502,
         imu_port=7503,
         assumed=(),
+    )
+
+
+def beams_in_turn(metadata: OusterMetadata) -> tuple[Array, Array]:
+    """How the beams leave at each column of a revolution, in the sensor frame.
+
+    Returns:
+        Origins [m] and directions, (W, B, 3) each; a point lies at ``origin + r * direction`` of
+        the range r that is sent. Column w of W is fired at w / W of the revolution.
+    """
+    columns = metadata.columns_per_turn
+    encoder = -2.0 * np.pi / columns * np.arange(columns)
+    angle = encoder[:, None] - metadata.azimuth_rad
+    elevation = metadata.elevation_rad + 0.0 * angle
+    direction = np.stack(
+        [np.cos(elevation) * np.cos(angle), np.cos(elevation) * np.sin(angle), np.sin(elevation)],
+        axis=-1,
+    )
+    x_m, z_m = metadata.p_lidar_beam_m.tolist()
+    leaves = np.stack([x_m * np.cos(encoder), x_m * np.sin(encoder), z_m + 0.0 * encoder], axis=-1)
+    origin = leaves[:, None] - np.hypot(x_m, z_m) * direction
+    R_sensor_lidar, p_sensor_lidar = np.split(metadata.T_sensor_lidar[:3], [3], axis=1)
+    return (
+        origin @ R_sensor_lidar.T + p_sensor_lidar[:, 0],
+        direction @ R_sensor_lidar.T,
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import StoreError
-from recon4.export.clouds import CLOUD_FORMATS, cloud_writer
+from recon4.export.clouds import cloud_writer
 from recon4.export.e57 import ScanPoses, export_e57
 from recon4.export.names import check_name
 from recon4.export.options import ExportOptions
@@ -33,7 +33,6 @@ from recon4.store.project import read_artifacts
 
 SCANS = ".e57"
 """Ending of a file that has a scan for each node of the pose graph."""
-MAP_ENDINGS = (*CLOUD_FORMATS, SCANS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,7 +127,7 @@ def write_map(map_: MapToExport, path: Path, *, progress: Progress) -> int:
 
     Args:
         map_: The map.
-        path: File to write; its ending is one of `MAP_ENDINGS`.
+        path: File to write; its ending is one of `CLOUD_FORMATS`, or `SCANS`.
         progress: Counts points.
 
     Returns:
@@ -162,7 +161,7 @@ def export_map(
 
     Args:
         project: The project folder.
-        path: File to write; its ending is one of `MAP_ENDINGS`.
+        path: File to write; its ending is one of `CLOUD_FORMATS`, or `SCANS`.
         wanted: Coordinates and points.
         progress: Counts points.
 

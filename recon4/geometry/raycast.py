@@ -81,11 +81,6 @@ class Scene:
         return out
 
 
-def distance_to_mesh(mesh: WorldMesh, points: Array) -> Array:
-    """Distance of points in the map to the nearest triangle [m], (N, 3) -> (N,)."""
-    return Scene(mesh).distance(points)
-
-
 def _scene(mesh: WorldMesh) -> Any:
     import open3d as o3d
 

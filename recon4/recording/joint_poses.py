@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -29,10 +29,6 @@ class _StatedPoses:
     t_ns: list[int] = field(default_factory=list)
     numbers: list[tuple[float, ...]] = field(default_factory=list)
     """Position and quaternion of its transform, or its position alone."""
-
-
-_Wanted = Mapping[tuple[str, str], Sequence[_StatedPoses]]
-"""Parent and child, or topic and name of the driver -> who wants the statement."""
 
 
 def read_joint_poses(

@@ -18,8 +18,6 @@ from typing import Any
 from recon4.errors import ConfigError, StoreError
 from recon4.report.client import ClientReport
 
-STANDARDS = ["a-2a", "ua-1"]
-"""PDF/A-2a (archives) and PDF/UA-1 (read aloud)."""
 INSTALL = "pip install 'recon4[pdf]'"
 _UNPRINTABLE = {"Cc", "Cf", "Cs", "Co", "Cn"}
 
@@ -31,17 +29,26 @@ def pdf_of(report: ClientReport) -> bytes:
         ConfigError: If the extra ``pdf`` is not installed.
         StoreError: If it cannot be laid out.
     """
-    return _compiled(report, format="pdf", pdf_standards=STANDARDS)[0]
+    require_pdf()
+    import typst
 
-
-def pages_of(report: ClientReport, *, ppi: float = 80.0) -> list[bytes]:
-    """The pages as PNG images.
-
-    Raises:
-        ConfigError: If the extra ``pdf`` is not installed.
-        StoreError: If it cannot be laid out.
-    """
-    return _compiled(report, format="png", ppi=ppi)
+    template = resources.files("recon4.report").joinpath("client.typ").read_bytes()
+    given = json.dumps(_printable(asdict(report)), ensure_ascii=False)
+    try:
+        compiled: Any = typst.compile  # its types refuse bytes beside paths of fonts
+        made = compiled(
+            template,
+            sys_inputs={"report": given},
+            font_paths=[_fonts()],
+            ignore_system_fonts=True,
+            timestamp=_time(report.created),
+            format="pdf",
+            pdf_standards=["a-2a", "ua-1"],  # archives; read aloud
+        )
+    except typst.TypstError as error:
+        raise StoreError(f"the report cannot be laid out: {error.message[:400]}") from error
+    assert isinstance(made, bytes)
+    return made
 
 
 def require_pdf() -> None:
@@ -57,27 +64,6 @@ def require_pdf() -> None:
         raise ConfigError(
             f"a PDF needs the extra packages typst and pyhanko: {INSTALL} ({error})"
         ) from error
-
-
-def _compiled(report: ClientReport, **wanted: Any) -> list[bytes]:
-    require_pdf()
-    import typst
-
-    template = resources.files("recon4.report").joinpath("client.typ").read_bytes()
-    given = json.dumps(_printable(asdict(report)), ensure_ascii=False)
-    try:
-        made = typst.compile(
-            template,
-            sys_inputs={"report": given},
-            font_paths=[_fonts()],
-            ignore_system_fonts=True,
-            timestamp=_time(report.created),
-            **wanted,
-        )
-    except typst.TypstError as error:
-        raise StoreError(f"the report cannot be laid out: {error.message[:400]}") from error
-    assert made is not None
-    return made if isinstance(made, list) else [made]
 
 
 @cache

@@ -127,15 +127,6 @@ def overview_name(folder: Path) -> str:
     return "overview" if (folder / "overview.png").is_file() else "map"
 
 
-def read_map(folder: Path) -> TrinaryMap:
-    """Read the map in full resolution.
-
-    Raises:
-        StoreError: If its files are missing, damaged or larger than any map.
-    """
-    return _read(folder, "map")
-
-
 def _read(folder: Path, name: str) -> TrinaryMap:
     from PIL import Image
 

@@ -10,7 +10,6 @@ from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
 from recon4.recording.packets.ouster.data_packets import checksums
 from recon4.recording.packets.ouster.encode import (
     ColumnReturns,
-    beams_in_turn,
     encode_packets,
     metadata_json,
 )
@@ -18,7 +17,7 @@ from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.ouster.layouts import PROFILES, PacketLayout
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
-from tests.ouster_models import nominal_metadata
+from tests.ouster_models import beams_in_turn, nominal_metadata
 from tests.unit.recording.ouster_packets import companion, datagrams_of, of_port, opened
 from tests.warned import K, warned
 

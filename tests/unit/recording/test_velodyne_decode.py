@@ -10,7 +10,7 @@ from recon4.recording.packets.velodyne.data_packets import (
     PacketSource,
     decode_packets,
 )
-from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets, encode_vlp16
+from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets
 from recon4.recording.packets.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
@@ -222,7 +222,8 @@ def test_a_change_of_the_return_mode_inside_a_batch_is_followed():
 def test_an_azimuth_of_exactly_360_degrees_is_zero():
     azimuth, distance, intensity = one_packet()
     distance[0, 0, 0] = 500
-    payloads = encode_vlp16(np.array([0]), PacketBlocks(azimuth, distance, intensity))
+    blocks = PacketBlocks(azimuth, distance, intensity)
+    payloads = encode_packets(np.array([0]), blocks, model=MODELS["VLP-16"])
     payloads.view("<u2")[0, 1] = 36000
 
     shots = decode_packets(

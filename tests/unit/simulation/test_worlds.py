@@ -3,7 +3,7 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.geometry.mesh import MeshBuilder, write_ply
-from recon4.geometry.raycast import Scene, distance_to_mesh
+from recon4.geometry.raycast import Scene
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.lidar import Surroundings
 from recon4.simulation.person import GAIT
@@ -95,7 +95,7 @@ def test_markers_lie_on_paint(name, worlds):
     places = np.array([[m.x_m, m.y_m, m.z_m] for m in world.markers])
 
     assert len(places) >= 3
-    assert distance_to_mesh(world.mesh, places).max() < 0.005
+    assert Scene(world.mesh).distance(places).max() < 0.005
     paint = world.mesh.triangles[world.mesh.reflectivity > 1.0]
     corners = world.mesh.vertices_m[paint].reshape(-1, 3)
     nearest = np.linalg.norm(places[:, None] - corners, axis=2).min(axis=1)
@@ -109,7 +109,7 @@ def test_distance_to_a_mesh_is_that_to_its_nearest_triangle():
     points = np.array([[0.5, 0.5, 3.0], [2.0, 2.0, 0.5], [0.5, 0.5, 0.9]])
 
     np.testing.assert_allclose(
-        distance_to_mesh(builder.mesh(), points), [2.0, np.sqrt(2.0), 0.1], atol=1e-6
+        Scene(builder.mesh()).distance(points), [2.0, np.sqrt(2.0), 0.1], atol=1e-6
     )
 
 

@@ -20,7 +20,7 @@ from recon4.recording.sources import Sources
 from recon4.settings import Settings, override
 from recon4.simulation.line_bag import open_line_bag
 from recon4.slam2d import occupancy
-from recon4.slam2d.map_files import read_map
+from recon4.slam2d.map_files import read_overview
 from recon4.store.hashing import hash_file
 from recon4.workflows.planar_results import RESULTS_2D
 from recon4_app.projects.import_folders import ImportFolders
@@ -265,4 +265,4 @@ def test_a_damaged_map_is_named(mapped, tmp_path):
     (tmp_path / "map.yaml").write_bytes((mapped[0] / "out" / "map.yaml").read_bytes())
 
     with pytest.raises(StoreError, match="the 2-D map cannot be read"):
-        read_map(tmp_path)
+        read_overview(tmp_path)

@@ -36,31 +36,6 @@ class ColumnReturns:
     """Signal, or reflectivity where the profile has none, (R, P, C, B)."""
 
 
-def beams_in_turn(metadata: OusterMetadata) -> tuple[Array, Array]:
-    """How the beams leave at each column of a revolution, in the sensor frame.
-
-    Returns:
-        Origins [m] and directions, (W, B, 3) each; a point lies at ``origin + r * direction`` of
-        the range r that is sent. Column w of W is fired at w / W of the revolution.
-    """
-    columns = metadata.columns_per_turn
-    encoder = -2.0 * np.pi / columns * np.arange(columns)
-    angle = encoder[:, None] - metadata.azimuth_rad
-    elevation = metadata.elevation_rad + 0.0 * angle
-    direction = np.stack(
-        [np.cos(elevation) * np.cos(angle), np.cos(elevation) * np.sin(angle), np.sin(elevation)],
-        axis=-1,
-    )
-    x_m, z_m = metadata.p_lidar_beam_m.tolist()
-    leaves = np.stack([x_m * np.cos(encoder), x_m * np.sin(encoder), z_m + 0.0 * encoder], axis=-1)
-    origin = leaves[:, None] - np.hypot(x_m, z_m) * direction
-    R_sensor_lidar, p_sensor_lidar = np.split(metadata.T_sensor_lidar[:3], [3], axis=1)
-    return (
-        origin @ R_sensor_lidar.T + p_sensor_lidar[:, 0],
-        direction @ R_sensor_lidar.T,
-    )
-
-
 def encode_packets(metadata: OusterMetadata, returns: ColumnReturns) -> NDArray[np.uint8]:
     """Data packets of a sensor.
 

@@ -9,8 +9,5 @@ BEAM_ORIGIN_MM = {"OS-0-": 27.67, "OS-1-": 15.806, "OS-2-": 13.762}
 OLDEST_BEAM_ORIGIN_MM = 12.163
 LIDAR_HEIGHT_MM, OS2_HEIGHT_MM = 36.18, 74.296
 """Height of the optical center above the base, where it is not stated."""
-STAGGER_DEG = {"OS0": (10.9, 3.6, -3.7, -11.0), "OS1": (4.2, 1.4, -1.4, -4.2)}
-"""Azimuth of four beams that follow each other, as in metadata of real sensors."""
-STAGGER_OS2_DEG = (2.1, 0.7, -0.7, -2.1)
 COLUMNS_PER_TURN = np.array([512, 1024, 2048, 4096])
 """Columns in a revolution that sensors can be set to."""

@@ -17,7 +17,6 @@ from recon4.recording.packets.velodyne.models import (
     CHANNELS,
     DATA_PACKET,
     DATA_SIZE,
-    MODELS,
     POSITION_SIZE,
     STRONGEST,
     VelodyneModel,
@@ -57,24 +56,6 @@ class PacketBlocks:
     """Distance in units of the model (2 mm for a VLP-16), 0 = no return, (P, 12, 32)."""
     intensity: NDArray[np.integer]
     """0..255, (P, 12, 32)."""
-
-
-def vlp16_firings() -> VelodyneModel:
-    """Beams and firing times of the VLP-16.
-
-    ``elevation_rad``, ``height_m`` and ``laser_time_s`` are (16,); ``firing_time_s()`` is (12, 32):
-    block b holds the firing sequences 2b (channels 0..15) and 2b + 1 (channels 16..31).
-    The beam of a laser at azimuth a (clockwise from x as seen from above) is the ray from
-    ``(0, 0, height_m)`` along ``(cos e cos a, -cos e sin a, sin e)``.
-    """
-    return MODELS["VLP-16"]
-
-
-def encode_vlp16(
-    t_us: NDArray[np.integer], blocks: PacketBlocks, *, return_mode: int = STRONGEST
-) -> NDArray[np.uint8]:
-    """Data packets of a VLP-16, see `encode_packets`."""
-    return encode_packets(t_us, blocks, model=MODELS["VLP-16"], return_mode=return_mode)
 
 
 def encode_packets(
