@@ -152,8 +152,9 @@ def made_facts(folder: Path) -> ReportFacts:
 def facts(tmp_path: Path) -> ReportFacts:
     """Those of a run whose points are not drawn."""
     facts = made_facts(tmp_path)
-    drawn = {"map", "intensity"}
-    return replace(facts, artifacts={k: v for k, v in facts.artifacts.items() if k not in drawn})
+    for drawn in ("map", "intensity"):
+        del facts.artifacts[drawn]
+    return facts
 
 
 @pytest.fixture(scope="module")
@@ -261,8 +262,7 @@ def test_a_report_without_any_artifact_can_still_be_written(
 
     write_report(tmp_path / "report.html", assess(bare))
 
-    text = (tmp_path / "report.html").read_text("utf-8")
-    assert "The run has no results to assess." in text
+    assert "The run has no results to assess." in (tmp_path / "report.html").read_text("utf-8")
 
 
 def test_a_map_without_points_has_no_charts_of_it(facts: ReportFacts, tmp_path: Path) -> None:
@@ -271,9 +271,7 @@ def test_a_map_without_points_has_no_charts_of_it(facts: ReportFacts, tmp_path: 
     with TileWriter(empty, ["xyz", "intensity"], tile_m=10.0):
         pass
 
-    page = render(assess(replace(facts, artifacts={"map": empty})))
-
-    assert "<image" not in page
+    assert "<image" not in render(assess(replace(facts, artifacts={"map": empty})))
 
 
 def test_a_damaged_artifact_is_refused_by_name(facts: ReportFacts, tmp_path: Path) -> None:
@@ -294,9 +292,8 @@ def test_a_name_that_is_not_text_does_not_stop_the_report(
 
 
 def test_an_evaluation_is_shown_with_its_figures(facts: ReportFacts, tmp_path: Path) -> None:
-    found = evaluate(
-        tmp_path / "level" / "trajectory.npz", truth=tmp_path / "odometry" / "trajectory.npz"
-    )
+    walk, truth = (tmp_path / name / "trajectory.npz" for name in ("level", "odometry"))
+    found = evaluate(walk, truth=truth)
 
     text = Tags(render(assess(replace(facts, evaluation=found)))).text
 
