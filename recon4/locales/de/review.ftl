@@ -15,7 +15,7 @@ not-registered-yet = Dieses Paar ist nicht registriert: zuerst ausrichten und ve
 sorting = Schleifenschlüsse werden sortiert…
 no-pairs = Diese Begehung hat kein Paar, über das zu entscheiden ist
 nothing-yet = Es gibt erst etwas zu prüfen, wenn Schleifenschlüsse gesucht und verifiziert sind
-press-j = J zeigt das erste Paar
+press-j = Weiter (J) zeigt das erste Paar
 nothing-to-review = Nichts zu prüfen
 
 ## Urteile
@@ -178,7 +178,7 @@ no-alternative-path = kein alternativer Weg
 ## Felder
 
 no-pair = Kein Paar gewählt
-press-j-first = J zeigt das erste
+press-j-first = Weiter (J) zeigt das erste
 influence = Einfluss auf die Karte
 influence-hint = Wie weit sich die Karte bewegt, wenn diese Kante verworfen statt angenommen wird, oder umgekehrt
 overlap = Überlappung
@@ -253,7 +253,7 @@ by-person = von { $who }
 refining = Wird verfeinert…
 create-edge = Kante anlegen
 refine = Verfeinern
-hint-decided = Entschieden. J zeigt das nächste Paar, U oder Strg Z macht die Entscheidung rückgängig
+hint-decided = Entschieden. Weiter (J) zeigt das nächste Paar, Rückgängig (U oder Strg Z) macht die Entscheidung rückgängig
 hint-moved = Von Hand verschoben. Enter verfeinert von hier
 hint-not-registered = Nicht registriert: verfeinern (wenn weit entfernt, zuerst verschieben), dann die Kante anlegen
 pair-title = Multiframes { $i } und { $j }

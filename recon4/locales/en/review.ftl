@@ -15,7 +15,7 @@ not-registered-yet = This pair is not registered: align it and refine it first
 sorting = Sorting the loop closures…
 no-pairs = This walk has no pair to decide about
 nothing-yet = Nothing to review until loop closures have been searched and verified
-press-j = Press J for the first pair
+press-j = Next (J) shows the first pair
 nothing-to-review = Nothing to review
 
 ## Verdicts
@@ -178,7 +178,7 @@ no-alternative-path = no alternative path
 ## Panels
 
 no-pair = No pair selected
-press-j-first = Press J for the first one
+press-j-first = Next (J) shows the first one
 influence = Influence on the map
 influence-hint = How far the map moves if this edge is rejected instead of accepted, or the reverse
 overlap = Overlap
@@ -253,7 +253,7 @@ by-person = by { $who }
 refining = Refining…
 create-edge = Create edge
 refine = Refine
-hint-decided = Decided. J shows the next pair, U or Ctrl Z undoes the decision
+hint-decided = Decided. Next (J) shows the next pair, Undo (U or Ctrl Z) reverts the decision
 hint-moved = Moved by hand. Enter refines from here
 hint-not-registered = Not registered: refine it (move it first if it is far off), then create the edge
 pair-title = Multiframes { $i } and { $j }

@@ -130,7 +130,7 @@ def test_after_a_decision_keys_do_nothing_until_another_pair_is_drawn(opened, ro
 
     for key in ("a", "a", "r", "a"):
         page.keyboard.press(key)
-    expect(page.locator("#said")).to_contain_text("J shows the next pair")
+    expect(page.locator("#said")).to_contain_text("Next (J) shows the next pair")
     page.keyboard.press("Control+z")
     decidable(page)
     page.keyboard.press("r")
