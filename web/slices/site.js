@@ -66,7 +66,7 @@ export function siteSection(host, id) {
   function draw() {
     const { trial, busy, done } = state;
     render(
-      html`<h3>${t("site-coordinates")}</h3>
+      html`<h2>${t("site-coordinates")}</h2>
         <p class="quiet">${t("site-is")}</p>
         <label
           >EPSG <input size="12" placeholder=${t("site-grid")} aria-label=${t("epsg-code")}

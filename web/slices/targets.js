@@ -168,7 +168,7 @@ export function targetsSection(host, { id, crs, put, go }) {
   function draw() {
     const { found, searching, taken } = state;
     render(
-      html`<h3>${t("targets-of-map")}</h3>
+      html`<h2>${t("targets-of-map")}</h2>
         <p class="quiet">${t("targets-are")}</p>
         <div class="buttons">
           <button type="button" ?disabled=${searching} @click=${() => run(search)}>
