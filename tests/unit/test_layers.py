@@ -204,6 +204,7 @@ ONLY_HERE = {
         "app/recon4_app/viewer/client/panels.py",
         "app/recon4_app/viewer/client/widget_values.py",
         "app/recon4_app/viewer/unix_socket.py",
+        "app/recon4_app/viewer/wakeups.py",
     },
     "matplotlib": {
         "recon4/report",

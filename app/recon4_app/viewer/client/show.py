@@ -32,6 +32,7 @@ from recon4_app.viewer.scene.nodes import (
     alike,
 )
 from recon4_app.viewer.tuning import SHOW
+from recon4_app.viewer.wakeups import wake_every_browser
 
 STORAGE_PREFIX = "recon4.view."
 """Name under which a browser keeps the view of a project."""
@@ -334,6 +335,7 @@ class Viewer:
         on_leave: Callable[[viser.ClientHandle], None],
     ) -> None:
         self._on_leave = on_leave
+        wake_every_browser()
         with unix_socket.listening_on(socket):
             self._server = viser.ViserServer(verbose=False)
         unix_socket.remove_share_tunnel(self._server)
