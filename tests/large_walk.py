@@ -26,7 +26,7 @@ from recon4.model.pose_graph import (
     accepted_unseen,
 )
 from recon4.model.pose_graph import EdgeKind as Kind
-from recon4.pose_graph.pairs import Pair
+from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.tuning import GraphTuning, RecognitionTuning
 from recon4.progress import Progress
 

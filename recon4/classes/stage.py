@@ -7,22 +7,25 @@ vehicle. `docs/explanation/map.md` explains it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import chain
+from functools import partial
+from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.classes.carrier import CarrierCubes, CarrierVolume, near_points
+from recon4.classes.class_parts import ClassedWalk, Classes, OrderedClasses, save_classes
 from recon4.classes.tuning import KNOWN_PLACES, SIGHT, SPREAD, VIEWS, VOLUME
 from recon4.classes.views import RegularViews
+from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
 from recon4.kernels.seen_through import Cubes, RangeViews, find_seen_through, spread_to_neighbors
-from recon4.mapping.mirrors import Mirror, Sight
+from recon4.mapping.mirrors import Mirror, Sight, load_mirrors
 from recon4.mapping.threads import in_order
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.mapping.undistort import place, place_with_origins
@@ -32,39 +35,29 @@ from recon4.model.frames import RecordedFrames
 from recon4.model.multiframe import Multiframe
 from recon4.model.trajectory import Times, Trajectory
 from recon4.progress import Progress, Silent, track
+from recon4.store.arrays import load_trajectory
 from recon4.store.classes import ClassWriter
 
 
-def write_classes(
-    frames: RecordedFrames,
-    trajectory: Trajectory,
-    out: Path,
-    *,
-    mirrors: Sequence[Mirror] = (),
-    progress: Progress | None = None,
-) -> ClassFigures:
-    """Classify all points of a walk, and write the classes into a folder.
+def write_classes(found: Iterable[NDArray[np.uint8]], out: Path) -> ClassFigures:
+    """Write the classes of a walk into a folder.
 
     Memory does not grow with the walk.
 
     Args:
-        frames: The multiframes.
-        trajectory: ``T_map_body``, dense.
+        found: Of each multiframe, as `classify` finds them.
         out: The stage's folder.
-        mirrors: In the map.
-        progress: Receives the progress.
 
     Raises:
-        OutOfRange: If the trajectory does not cover the frames.
         StoreError: If the folder cannot be written (`NoSpace` when the disk is full).
     """
     counts = np.zeros(256, np.int64)
     with ClassWriter(out) as writer:
-        for classes in classify(frames, trajectory, mirrors=mirrors, progress=progress):
+        for classes in found:
             writer.append(classes)
             counts += np.bincount(classes, minlength=256)
-    found = {facts.title: int(counts[k]) for k, facts in CLASSES.items() if counts[k]}
-    return ClassFigures(points=int(counts.sum()), classes=found)
+    shares = {facts.title: int(counts[k]) for k, facts in CLASSES.items() if counts[k]}
+    return ClassFigures(points=int(counts.sum()), classes=shares)
 
 
 def classify(
@@ -73,6 +66,7 @@ def classify(
     *,
     mirrors: Sequence[Mirror] = (),
     progress: Progress | None = None,
+    ordered: OrderedClasses | None = None,
 ) -> Iterator[NDArray[np.uint8]]:
     """Classes of the points of each multiframe, (N,).
 
@@ -81,20 +75,83 @@ def classify(
         trajectory: ``T_map_body``, dense.
         mirrors: In the map.
         progress: Receives the progress.
+        ordered: Workers that classify; None = threads of this process.
+
+    Raises:
+        OutOfRange: If the trajectory does not cover the frames.
     """
     watch = progress or Silent()
-    known = _Compared(frames, trajectory, _learn_carrier(frames, trajectory, watch), mirrors)
-    views = RegularViews(frames, trajectory)
+    carrier = _learn_carrier(frames, trajectory, watch)
+    known = _Compared(frames, trajectory, carrier, mirrors)
+    if ordered is None:
+        found = _by_threads(known)
+    else:
+        here = partial(_of_part, known=known, views=RegularViews(frames, trajectory))
+        found = ordered.found(_parts(frames), carrier, here=here, progress=watch)
+    made = chain.from_iterable(found)
+    yield from track(made, watch, what="classify points", unit="frames", total=len(frames))
 
-    def work(given: tuple[NDArray[np.intp], RangeViews | None]) -> list[NDArray[np.uint8]]:
-        rows, others = given
-        places = KnownPlaces()
-        return [_classes(frames[k], others, known=known, places=places) for k in rows.tolist()]
 
+def _by_threads(known: _Compared) -> Iterator[Classes]:
+    """Classes of the multiframes of each span."""
+    frames = known.frames
+    views = RegularViews(frames, known.trajectory)
     # Images of scans are made here, in order, so that the threads only read them.
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        made = chain.from_iterable(in_order(pool, work, _compared_spans(frames, views)))
-        yield from track(made, watch, what="classify points", unit="frames", total=len(frames))
+        yield from in_order(pool, known.classes, _compared_spans(frames, views))
+
+
+def _parts(frames: RecordedFrames) -> list[range]:
+    """Multiframes of whole spans that a worker classifies at once."""
+    starts = [int(rows[0]) for rows in _spans(frames)[:: VIEWS.part_ns // VIEWS.span_ns]]
+    return [range(*ends) for ends in pairwise([*starts, len(frames)])]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClassMaker:
+    """Classifies parts of a walk on a worker."""
+
+    known: _Compared
+    views: RegularViews
+    folder: Path
+    """Receives the classes."""
+
+    @staticmethod
+    def open(folder: Path) -> ClassMaker:
+        """Read what all parts have in common.
+
+        Raises:
+            StoreError: If a file is missing or damaged.
+        """
+        walk, carrier = ClassedWalk.load(folder)
+        level = Path(walk.level)
+        trajectory = load_trajectory(level / "trajectory.npz")
+        mirrors = load_mirrors(level / "mirrors.npz")
+        frames = walk.folders.open()
+        known = _Compared(frames, trajectory, carrier, mirrors)
+        return ClassMaker(known, RegularViews(frames, trajectory), folder)
+
+    def make(self, numbers: tuple[int, ...]) -> None:
+        """Classify a part and leave its classes in the folder, whole or not at all.
+
+        Args:
+            numbers: The first multiframe and the one after the last.
+
+        Raises:
+            StoreError: If there are none such, or they cannot be written.
+        """
+        rows = range(*numbers)
+        if not (rows and rows[0] >= 0 and rows[-1] < len(self.known.frames)):
+            raise StoreError(f"expected rows of {len(self.known.frames)} multiframes, got {rows}")
+        save_classes(self.folder, rows, _of_part(rows, self.known, self.views))
+
+
+def _of_part(rows: range, known: _Compared, views: RegularViews) -> Classes:
+    """Classes of consecutive multiframes of whole spans."""
+    t_ns = known.frames.t_mid_ns
+    spans = [span for span in _spans(known.frames) if rows.start <= span[0] < rows.stop]
+    near = ((span, views.near(_middle_ns(t_ns[span]))) for span in spans)
+    return [one for given in near for one in known.classes(given)]
 
 
 def _compared_spans(
@@ -148,6 +205,13 @@ class _Compared:
     trajectory: Trajectory
     carrier: CarrierCubes
     mirrors: Sequence[Mirror]
+
+    def classes(self, given: tuple[NDArray[np.intp], RangeViews | None]) -> Classes:
+        """Classes of the multiframes of a span, compared with some scans."""
+        rows, others = given
+        places = KnownPlaces()
+        frames = self.frames
+        return [_classes(frames[k], others, known=self, places=places) for k in rows.tolist()]
 
 
 class KnownPlaces:

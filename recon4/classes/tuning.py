@@ -14,6 +14,9 @@ class ViewTuning(Struct, frozen=True, kw_only=True):
     """Time between two of them [ns]."""
     span_ns: int = 1_000_000_000
     """All points of so long a time are compared with the same ones [ns]."""
+    part_ns: int = 20_000_000_000
+    """A worker classifies so long a time at once [ns]; it has to make images of what is before and
+    after."""
     apart_ns: int = 1_500_000_000
     reach_ns: int = 10_500_000_000
     """They are at least and at most this far away in time [ns]: after a second a person has left

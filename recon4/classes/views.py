@@ -55,10 +55,11 @@ class RegularViews:
     def near(self, t_ns: int) -> RangeViews | None:
         """The scans that points of a time are compared with; None = there are none.
 
-        Those of the last calls stay valid while the times grow by less than `ViewTuning.kept_ns`.
+        Those of the last calls stay valid while the times grow by less than `ViewTuning.kept_ns`:
+        threads may read them. Who reads only the last ones asks for any time.
 
         Args:
-            t_ns: Not before that of the last call [ns].
+            t_ns: When the points were measured [ns].
         """
         away_ns = np.abs(self._t_ns - t_ns)
         near = np.flatnonzero((away_ns >= VIEWS.apart_ns) & (away_ns <= self._reach_ns))

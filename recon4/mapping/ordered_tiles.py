@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from recon4.errors import StoreError
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.finish import finish_tile
 from recon4.mapping.made_tiles import Finished
@@ -16,8 +15,8 @@ from recon4.mapping.tile import Recipe
 from recon4.mapping.tile_files import read_made, save_recipe
 from recon4.mapping.tile_memory import TileMeans
 from recon4.mapping.tile_writer import TileWriter
-from recon4.model.events import Warned
 from recon4.orders.order import OrderKind, Workers
+from recon4.orders.parts import Part, Parts
 from recon4.progress import Progress
 from recon4.sandbox.freed_memory import return_freed_memory
 
@@ -43,39 +42,22 @@ class OrderedTiles:
             writer: Of the map.
         """
         save_recipe(self.buckets, recipe, writer)
-        here = partial(finish_tile, recipe=recipe, means=TileMeans(None, self.each), writer=writer)
-        failures = self._failures()
-        answered: dict[int, str] = {}
-        said: set[str] = set()
-        for number, tile in enumerate(self.tiles):
-            while number not in answered:
-                item, failure = next(failures)
-                answered[item] = failure
-            found, why = self._read(tile, answered.pop(number))
-            if found is None:
-                if why not in said:
-                    said.add(why)
-                    self.progress.event(Warned(text=f"made here instead of by a worker: {why}"))
-                found = here(tile, self.buckets.read(tile))
-                return_freed_memory()
-            yield found
+        means = TileMeans(None, self.each)
 
-    def _failures(self) -> Iterator[tuple[int, str]]:
-        """Number of each tile as it is answered, and why it was not made; empty = it was."""
-        answers = self.workers.make(
-            OrderKind.MAP_TILE,
-            self.buckets.folder,
-            self.tiles,
-            waiting=partial(self.progress.advance, 0),
+        def here(part: Part) -> Finished:
+            i, j, k = part
+            tile = i, j, k
+            records = self.buckets.read(tile)
+            found = finish_tile(tile, records, recipe=recipe, means=means, writer=writer)
+            del records
+            return_freed_memory()
+            return found
+
+        parts = Parts(
+            kind=OrderKind.MAP_TILE,
+            folder=self.buckets.folder,
+            items=self.tiles,
+            read=partial(read_made, self.buckets.folder),
+            here=here,
         )
-        for answer in answers:
-            yield answer.item, answer.failure
-
-    def _read(self, tile: Tile, failure: str) -> tuple[Finished | None, str]:
-        """A tile that was made; None and why not, if it was not."""
-        if failure:
-            return None, failure
-        try:
-            return read_made(self.buckets.folder, tile), ""
-        except StoreError as error:
-            return None, str(error)
+        return parts.made(self.workers, self.progress)

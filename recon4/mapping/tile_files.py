@@ -31,6 +31,7 @@ from recon4.mapping.tile_memory import Scratch, TileMeans
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.volumes import Volume
+from recon4.orders.parts import Part
 from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.settings import MapSettings
 from recon4.store.arrays import (
@@ -94,7 +95,7 @@ def save_recipe(buckets: TileBuckets, recipe: Recipe, writer: TileWriter) -> Non
     (folder / _FACTS).write_bytes(msgspec.json.encode(facts))
 
 
-def read_made(folder: Path, tile: Tile) -> Finished:
+def read_made(folder: Path, tile: Part) -> Finished:
     """Read a tile that a worker has made, and remove its file.
 
     Args:
@@ -168,7 +169,7 @@ class TileMaker:
             return_freed_memory()
 
 
-def _made_path(folder: Path, tile: Tile) -> Path:
+def _made_path(folder: Path, tile: Part) -> Path:
     return folder / "made_{}_{}_{}".format(*tile)
 
 

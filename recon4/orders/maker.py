@@ -93,6 +93,14 @@ def _make(kind: OrderKind, folder: Path) -> Make:
             from recon4.mapping.tile_files import TileMaker
 
             return TileMaker.open(folder).make
+        case OrderKind.PAIRS:
+            from recon4.pose_graph.pair_maker import PairMaker
+
+            return PairMaker.open(folder).make
+        case OrderKind.CLASSES:
+            from recon4.classes.stage import ClassMaker
+
+            return ClassMaker.open(folder).make
 
 
 if __name__ == "__main__":

@@ -36,9 +36,14 @@ class OrderKind(StrEnum):
 
     MAP_TILE = "map-tile"
     """A tile of the map; its numbers are its index along x, y and z."""
+    PAIRS = "pairs"
+    """Pairs of nodes to register; its numbers are the round of the search and the part of it."""
+
+    CLASSES = "classes"
+    """Classes of points; its numbers are the first multiframe and the one after the last."""
 
 
-NUMBERS = {OrderKind.MAP_TILE: 3}
+NUMBERS = {OrderKind.MAP_TILE: 3, OrderKind.PAIRS: 2, OrderKind.CLASSES: 2}
 """How many numbers a part of each kind has."""
 
 

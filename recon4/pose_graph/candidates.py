@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import ARM_M, SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
-from recon4.pose_graph.pairs import Pair
+from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.tuning import GraphTuning
 from recon4.pose_graph.tuning_places import CANDIDATES
 

@@ -77,6 +77,10 @@ class NodeRangeImages:
             parts = view.nearest_m.astype(np.float32), near.astype(np.float32)
             self._rows.write(node, b"".join(part.tobytes() for part in parts))
 
+    def has(self, node: int) -> bool:
+        """Whether a node's are there and whole."""
+        return self._rows.has(node)
+
     def ends(self, node: int) -> Ends:
         """Both ends of the node's segments, thinned evenly [m], (M, 2, 3)."""
         data = self._rows.read(node, start=4 * int(np.prod(self._bins)))

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
 from recon4.geometry.lines import Lines
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import Array
 from recon4.model.events import EdgeTried
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Measure, Reason, Verdict
 from recon4.pose_graph.node_views import NodeRangeImages
+from recon4.pose_graph.ordered_pairs import OrderedPairs
+from recon4.pose_graph.pair import Pair
+from recon4.pose_graph.pair_files import Groups
 from recon4.pose_graph.tried_pairs import TriedPairs
 from recon4.pose_graph.tuning import RecognitionTuning, graph_tuning
 from recon4.pose_graph.tuning_solve import PAIRS
@@ -30,20 +33,8 @@ from recon4.settings.tuning import tuned
 from recon4.store.unfinished import RecordLog, unfinished_file
 
 
-@dataclass(frozen=True, slots=True)
-class Pair:
-    """Two nodes to register, with the predicted relative pose."""
-
-    i: int
-    j: int
-    kind: EdgeKind
-    T_i_j: SE3
-    recognized: bool = False
-    """Nothing predicted it: the free space is compared by `RecognitionTuning`."""
-
-
 class PairRegistrar:
-    """Registers pairs on several threads; the result does not depend on their number."""
+    """Registers pairs on several threads, or on workers; the result does not depend on them."""
 
     def __init__(
         self,
@@ -52,8 +43,9 @@ class PairRegistrar:
         settings: GraphReads,
         *,
         overlap: OverlapTuning = OVERLAP,
+        ordered: OrderedPairs | None = None,
     ) -> None:
-        self._submaps = submaps
+        self._submaps, self._ordered = submaps, ordered
         self.views, self.settings = views, settings
         self._overlaps = overlap
         self._tried = TriedPairs(RecordLog(unfinished_file("pairs")))
@@ -75,18 +67,29 @@ class PairRegistrar:
         rows = (k for k in range(len(pairs)) if k not in edges)
         order = sorted(rows, key=lambda k: (pairs[k].i, pairs[k].j, k))
         groups = _by_target(order, pairs)
-        chunks = [groups[k : k + PAIRS.chunk] for k in range(0, len(groups), PAIRS.chunk)]
+        parts = [groups[k : k + PAIRS.chunk] for k in range(0, len(groups), PAIRS.chunk)]
         progress.start("pairs", len(pairs), "pair")
         for edge in edges.values():
             progress.event(tried_event(edge))
         progress.advance(len(edges))
-        with ThreadPoolExecutor(self.graph.workers) as pool:
-            for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
-                edges.update(done)
-                for edge in done.values():
-                    progress.event(tried_event(edge))
-                progress.advance(len(done))
+        for done in self._done(parts, pairs, progress):
+            edges.update(done)
+            for k, edge in done.items():
+                self._tried.add(pairs[k], edge)
+                progress.event(tried_event(edge))
+            progress.advance(len(done))
         return [edges[k] for k in range(len(pairs))]
+
+    def try_groups(self, groups: Groups, pairs: Mapping[int, Pair]) -> dict[int, Edge]:
+        """Register pairs; row -> what each gave.
+
+        Args:
+            groups: Rows of pairs, by target node.
+            pairs: Row -> pair.
+        """
+        planes = PlaneMap()
+        tried = (self._try_group(planes, group, pairs=pairs) for group in groups)
+        return {k: edge for edges in tried for k, edge in edges}
 
     def most_overlapping(self, pairs: Sequence[Pair]) -> Pair:
         """The pair whose views overlap most at their predicted poses."""
@@ -97,16 +100,23 @@ class PairRegistrar:
         i, j = self._view(edge.i), self._view(edge.j)
         return seen_through(i, j, edge.T_i_j, settings=self._overlaps)
 
-    def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
-        planes = PlaneMap()
-        edges = [self._try_group(planes, group, pairs=pairs) for group in groups]
-        found = {k: edge for tried in edges for k, edge in tried}
-        for k, edge in found.items():
-            self._tried.add(pairs[k], edge)
-        return found
+    def _done(
+        self, parts: Sequence[Groups], pairs: Sequence[Pair], progress: Progress
+    ) -> Iterator[dict[int, Edge]]:
+        """What each part gave, in their order."""
+        by_row = dict(enumerate(pairs))
+
+        def here(groups: Groups) -> dict[int, Edge]:
+            return self.try_groups(groups, by_row)
+
+        if self._ordered is not None and parts:
+            yield from self._ordered.tried(parts, pairs, here=here, progress=progress)
+            return
+        with ThreadPoolExecutor(self.graph.workers) as pool:
+            yield from pool.map(here, parts)
 
     def _try_group(
-        self, planes: PlaneMap, group: list[int], *, pairs: Sequence[Pair]
+        self, planes: PlaneMap, group: list[int], *, pairs: Mapping[int, Pair]
     ) -> list[tuple[int, Edge]]:
         """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
@@ -267,8 +277,8 @@ def _information(found: Registration, settings: GraphReads) -> Array:
     return 0.5 * (information + information.T)
 
 
-def _by_target(order: list[int], pairs: Sequence[Pair]) -> list[list[int]]:
-    groups: list[list[int]] = []
+def _by_target(order: list[int], pairs: Sequence[Pair]) -> Groups:
+    groups: Groups = []
     for k in order:
         if not groups or pairs[groups[-1][0]].i != pairs[k].i:
             groups.append([])

@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
 from recon4.pose_graph.density_images import Overlay, TurnedImage, overlays, yaws_within
-from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.pair import Pair
+from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.places import Places, make_places, place_nodes
 from recon4.pose_graph.recognized_chains import (
     ChainFollower,

@@ -18,7 +18,8 @@ from recon4.model.pose_graph import (
     Rows,
     Verdict,
 )
-from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.pair import Pair
+from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.places import Places
 from recon4.pose_graph.recognized_groups import RecognizedChain, contradicts
 from recon4.pose_graph.tuning_places import DENSITY, FOLLOW

@@ -7,7 +7,7 @@ again. Every pair is kept with the verdict of its last registration.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -22,7 +22,10 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.node_views import NodeRangeImages
-from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.ordered_pairs import OrderedPairs
+from recon4.pose_graph.pair import Pair
+from recon4.pose_graph.pair_files import VIEWS
+from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.priors import Kernel
 from recon4.pose_graph.recognition import recognize, without_settled
@@ -64,10 +67,22 @@ class OdometryTrack:
         return OdometryTrack(trajectory, steps["lost"], steps["motion_cov"], steps["piece"])
 
 
+@dataclass(frozen=True, slots=True)
+class SearchMeans:
+    """What a search is made with; its result does not depend on it."""
+
+    scratch: Path
+    """Folder for unnamed temporary files of 0.2 MB per node."""
+    ordered: OrderedPairs | None = None
+    """Workers that register pairs; None = threads of this process."""
+    views: Path | None = None
+    """File of what the nodes see, which stays; None = an unnamed one."""
+
+
 def build_graph(
     frames: FrameStore, odometry: Path, out: Path, *, settings: GraphReads, progress: Progress
 ) -> GraphFigures:
-    """Run the stage ``graph``: create nodes and odometry edges, search for loop closures.
+    """Run the stage ``graph`` in this process.
 
     Args:
         frames: The multiframes.
@@ -76,9 +91,13 @@ def build_graph(
         settings: Uses nearly all groups of registration.
         progress: Counts pairs and receives an event for each edge.
     """
-    graph = search(
-        frames, OdometryTrack.load(odometry), settings=settings, progress=progress, scratch=out
-    )
+    track, means = OdometryTrack.load(odometry), SearchMeans(out)
+    graph = search(frames, track, settings=settings, progress=progress, means=means)
+    return save_searched(graph, out)
+
+
+def save_searched(graph: PoseGraph, out: Path) -> GraphFigures:
+    """Write ``graph.npz`` and ``edges.json``, and count them."""
     save_graph(out, graph)
     return GraphFigures(
         nodes=len(graph),
@@ -93,22 +112,30 @@ def search(
     *,
     settings: GraphReads,
     progress: Progress,
-    scratch: Path,
+    means: SearchMeans,
 ) -> PoseGraph:
-    """Search for loop closures in all rounds; poses are optimized (Cauchy kernel), not verified.
+    """Create nodes and odometry edges, search for loop closures in all rounds.
+
+    Poses are optimized (Cauchy kernel), not verified.
 
     Args:
         frames: The multiframes.
         odometry: Of the same multiframes.
         settings: Uses segments, overlap, registration, planes, graph.
         progress: Counts pairs and receives an event for each registration.
-        scratch: Folder for unnamed temporary files of 0.2 MB per node.
+        means: Files and workers.
     """
     start = start_graph(frames, odometry, settings=graph_tuning(settings.graph))
     rows = start.frame_ids.astype(np.intp)
+    registrar = make_registrar(
+        TrackedFrames(frames, odometry.trajectory, odometry.lost),
+        rows,
+        settings=settings,
+        means=replace(means, views=unfinished_file(VIEWS)),
+    )
     return close_loops(
         start,
-        make_registrar(frames, odometry, rows, settings=settings, scratch=scratch),
+        registrar,
         pieces=odometry.piece[rows],
         leveled=frames.imu is not None and settings.odometry.use_imu,
         progress=progress,
@@ -129,23 +156,24 @@ def start_graph(frames: FrameStore, odometry: OdometryTrack, *, settings: GraphT
 
 
 def make_registrar(
-    frames: FrameStore,
-    odometry: OdometryTrack,
+    tracked: TrackedFrames,
     rows: NDArray[np.intp],
     *,
     settings: GraphReads,
-    scratch: Path,
+    means: SearchMeans,
 ) -> PairRegistrar:
-    """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""
-    tracked = TrackedFrames(frames, odometry.trajectory, odometry.lost)
-    submaps = Submaps(tracked, rows, scratch=scratch)
-    views = NodeRangeImages(
-        len(rows),
-        graph_tuning(settings.graph),
-        scratch=scratch,
-        kept=unfinished_file("views"),
-    )
-    return PairRegistrar(submaps, views, settings)
+    """Make what registers pairs of nodes.
+
+    Args:
+        tracked: The multiframes.
+        rows: Those that are nodes, (N,).
+        settings: As of `search`.
+        means: Files and workers.
+    """
+    submaps = Submaps(tracked, rows, scratch=means.scratch)
+    g = graph_tuning(settings.graph)
+    views = NodeRangeImages(len(rows), g, scratch=means.scratch, kept=means.views)
+    return PairRegistrar(submaps, views, settings, ordered=means.ordered)
 
 
 def close_loops(

@@ -1,20 +1,17 @@
-"""Registered pairs in a log, so that a search that was killed does not register them again."""
+"""Registered pairs as bytes, and a log of them: a search that was killed goes on after it."""
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Measure, Reason, Verdict
+from recon4.pose_graph.pair import Pair
 from recon4.store.unfinished import RecordLog
-
-if TYPE_CHECKING:
-    from recon4.pose_graph.pairs import Pair
 
 
 class _Tried(msgspec.Struct, array_like=True):
@@ -35,8 +32,8 @@ class TriedPairs:
 
     def __init__(self, log: RecordLog) -> None:
         """Take up the pairs of an earlier process."""
-        self._log, self._lock = log, threading.Lock()
-        found = [msgspec.msgpack.decode(record, type=_Tried) for record in log]
+        self._log = log
+        found = map(_tried, log)
         self._tried: Mapping[bytes, _Tried] = {one.pair: one for one in found}
 
     def known(self, pairs: Sequence[Pair]) -> dict[int, Edge]:
@@ -47,18 +44,36 @@ class TriedPairs:
         return {row: _edge(pairs[row], one) for row, one in found if one is not None}
 
     def add(self, pair: Pair, edge: Edge) -> None:
-        """Note what a pair gave; threads may do so at once."""
-        T, numbers = edge.T_i_j, (edge.overlap, edge.error_m, edge.limit_m, edge.degeneracy)
-        record = _Tried(
-            pair=_key(pair),
-            edge=_bytes(T.R, T.t, edge.information),
-            numbers=tuple(float(one) for one in numbers),  # type: ignore[arg-type]
-            converged=bool(edge.converged),
-            iterations=int(edge.iterations),
-            history=[_row(one) for one in edge.judgments],
-        )
-        with self._lock:
-            self._log.append(msgspec.msgpack.encode(record))
+        """Note what a pair gave."""
+        self._log.append(tried_bytes(pair, edge))
+
+
+def tried_bytes(pair: Pair, edge: Edge) -> bytes:
+    """A pair and what it gave."""
+    T, numbers = edge.T_i_j, (edge.overlap, edge.error_m, edge.limit_m, edge.degeneracy)
+    record = _Tried(
+        pair=_key(pair),
+        edge=_bytes(T.R, T.t, edge.information),
+        numbers=tuple(float(one) for one in numbers),  # type: ignore[arg-type]
+        converged=bool(edge.converged),
+        iterations=int(edge.iterations),
+        history=[_row(one) for one in edge.judgments],
+    )
+    return msgspec.msgpack.encode(record)
+
+
+def tried_edge(pair: Pair, record: bytes) -> Edge | None:
+    """What a pair gave, by `tried_bytes`; None = they are those of another pair.
+
+    Raises:
+        msgspec.DecodeError: If they are damaged.
+    """
+    tried = _tried(record)
+    return _edge(pair, tried) if tried.pair == _key(pair) else None
+
+
+def _tried(record: bytes) -> _Tried:
+    return msgspec.msgpack.decode(record, type=_Tried)
 
 
 def _key(pair: Pair) -> bytes:

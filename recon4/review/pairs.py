@@ -19,7 +19,7 @@ from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.undistort import place
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.pose_graph.node_views import NodeRangeImages
-from recon4.pose_graph.pairs import Pair as TriedPair
+from recon4.pose_graph.pair import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar, too_little_overlap
 from recon4.pose_graph.tuning import graph_tuning
 from recon4.progress import Silent

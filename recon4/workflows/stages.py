@@ -132,13 +132,22 @@ def _graph(
     odometry: Path,
     calibration: Path | None = None,
 ) -> GraphFigures:
-    from recon4.pose_graph.search import build_graph
-    from recon4.store.frames import open_frames
+    from recon4.orders.confined import workers_of_this_process
+    from recon4.pose_graph.ordered_pairs import OrderedPairs
+    from recon4.pose_graph.pair_files import SearchInputs
+    from recon4.pose_graph.search import OdometryTrack, SearchMeans, save_searched, search
+    from recon4.store.frame_folders import FrameFolders
 
-    store = open_frames(frames, calibration, odometry)
-    return build_graph(
-        store, odometry, context.out, settings=context.settings, progress=context.progress
+    folders = FrameFolders.of(frames, odometry, calibration)
+    inputs = SearchInputs(folders=folders, settings=context.settings)
+    graph = search(
+        folders.open(),
+        OdometryTrack.load(odometry),
+        settings=context.settings,
+        progress=context.progress,
+        means=SearchMeans(context.out, OrderedPairs.of(workers_of_this_process(), inputs)),
     )
+    return save_searched(graph, context.out)
 
 
 def _verification(context: StageContext[VerificationReads], *, graph: Path) -> VerificationFigures:
@@ -260,18 +269,23 @@ def _classes(
     level: Path,
     calibration: Path | None = None,
 ) -> ClassFigures:
-    from recon4.classes.stage import write_classes
+    from recon4.classes.class_parts import ClassedWalk, OrderedClasses
+    from recon4.classes.stage import classify, write_classes
     from recon4.mapping.mirrors import load_mirrors
+    from recon4.orders.confined import workers_of_this_process
     from recon4.store.arrays import load_trajectory
-    from recon4.store.frames import open_frames
+    from recon4.store.frame_folders import FrameFolders
 
-    return write_classes(
-        open_frames(frames, calibration, odometry),
+    folders = FrameFolders.of(frames, odometry, calibration)
+    walk = ClassedWalk(folders=folders, level=str(level.absolute()))
+    found = classify(
+        folders.open(),
         load_trajectory(level / "trajectory.npz"),
-        context.out,
         mirrors=load_mirrors(level / "mirrors.npz"),
         progress=context.progress,
+        ordered=OrderedClasses.of(workers_of_this_process(), walk),
     )
+    return write_classes(found, context.out)
 
 
 def _map(

@@ -24,11 +24,18 @@ from recon4.evaluation.table import number, text_table
 from recon4.geometry.se3 import SE3, Array, align_points, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.model.rig import load_rig
-from recon4.pose_graph.search import OdometryTrack, close_loops, make_registrar, start_graph
+from recon4.pose_graph.search import (
+    OdometryTrack,
+    SearchMeans,
+    close_loops,
+    make_registrar,
+    start_graph,
+)
 from recon4.pose_graph.tuning import graph_tuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
+from recon4.registration.submap import TrackedFrames
 from recon4.settings import Settings, preset
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
@@ -149,11 +156,10 @@ def loops_found(walk: DriftedWalk, *, drift_m: float, recognition: bool) -> Loop
     begun = time.process_time()
     with tempfile.TemporaryDirectory() as scratch:
         rows = start.frame_ids.astype(np.intp)
+        tracked = TrackedFrames(walk.frames, walk.odometry.trajectory, walk.odometry.lost)
         graph = close_loops(
             start,
-            make_registrar(
-                walk.frames, walk.odometry, rows, settings=settings, scratch=Path(scratch)
-            ),
+            make_registrar(tracked, rows, settings=settings, means=SearchMeans(Path(scratch))),
             pieces=walk.odometry.piece[rows],
             leveled=walk.frames.imu is not None,
             progress=Silent(),

@@ -25,6 +25,7 @@ BASE = {
 }
 MODEL = BASE | {"recon4.geometry", "recon4.model"}
 STAGE = MODEL | {"recon4.kernels", "recon4.store"}
+ORDERING = STAGE | {"recon4.orders.order", "recon4.orders.parts"}
 
 MAY_IMPORT = {
     "recon4/errors.py": set(),
@@ -42,10 +43,11 @@ MAY_IMPORT = {
     | {"recon4.store.atomic", "recon4.store.json_files"},
     "recon4/orders": {"recon4.errors", "recon4.orders", "recon4.executors.executor"}
     | {"recon4.store.package_versions", "recon4.sandbox", "recon4.system.processes"}
-    | {"recon4.untrusted.names"},
+    | {"recon4.untrusted.names", "recon4.progress", "recon4.model.events"},
     "recon4/orders/child.py": {"recon4"},
     "recon4/orders/maker.py": {"recon4.orders", "recon4.sandbox", "recon4.system.processes"}
-    | {"recon4.recording.formats.scratch", "recon4.mapping.tile_files"},
+    | {"recon4.recording.formats.scratch", "recon4.mapping.tile_files"}
+    | {"recon4.classes.stage", "recon4.pose_graph.pair_maker"},
     "recon4/batch": MODEL
     | {"recon4.batch", "recon4.executors", "recon4.export.cells", "recon4.store"}
     | {"recon4.recording.kinds", "recon4.recording.nearby_samples"}
@@ -75,7 +77,7 @@ MAY_IMPORT = {
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL
     | {"recon4.registration", "recon4.store.arrays", "recon4.store.tried_hypotheses"},
-    "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
+    "recon4/pose_graph": ORDERING | {"recon4.registration", "recon4.pose_graph"},
     "recon4/slam2d": STAGE
     | {"recon4.slam2d"}
     | {f"recon4.pose_graph.{name}" for name in ("files", "solve", "verification")},
@@ -101,9 +103,8 @@ MAY_IMPORT = {
     | {"recon4.classes.corrections", "recon4.classes.likeness"}
     | {"recon4.mapping.tiles", "recon4.review"},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
-    "recon4/mapping": STAGE
-    | {"recon4.mapping", "recon4.orders.order", "recon4.sandbox.freed_memory"},
-    "recon4/classes": STAGE | {"recon4.mapping", "recon4.classes"},
+    "recon4/mapping": ORDERING | {"recon4.mapping", "recon4.sandbox.freed_memory"},
+    "recon4/classes": ORDERING | {"recon4.mapping", "recon4.classes"},
     "recon4/export": STAGE
     | {"recon4.mapping", "recon4.export"}
     | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "three_dtk")},

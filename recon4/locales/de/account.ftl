@@ -184,7 +184,7 @@ phone-signed-in = { $name } unter { $address } ist angemeldet als { $role }
 ## Arbeitsprozesse
 
 workers = Arbeitsprozesse der Aufträge
-workers-what = Die Karte kostet am meisten Rechenzeit. Prozesse von Dask können ihre Kacheln rechnen, hier oder auf anderen Rechnern; die Karte hat dieselben Bytes. Die Wahl gilt für Aufträge, die ab jetzt beginnen.
+workers-what = Schleifenschlüsse, Klassen und Karte kosten am meisten Rechenzeit. Prozesse von Dask können Teile davon rechnen, hier oder auf anderen Rechnern; die Ergebnisse haben dieselben Bytes. Die Wahl gilt für Aufträge, die ab jetzt beginnen.
 workers-here = Prozesse dieses Rechners, 0 = keine
 workers-scheduler = Scheduler von Dask, tls://RECHNER:PORT
 workers-dashboard = Sein Dashboard, für Administratoren

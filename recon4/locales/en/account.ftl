@@ -184,7 +184,7 @@ phone-signed-in = { $name } at { $address } is signed in as { $role }
 ## Workers
 
 workers = Workers of jobs
-workers-what = The map is the dearest part of a job. Processes of Dask can make its tiles, here or on other computers; the map has the same bytes. The choice holds for jobs that begin from now on.
+workers-what = Loop closures, classes and the map take most of the time of a job. Processes of Dask can make parts of them, here or on other computers; the results have the same bytes. The choice holds for jobs that begin from now on.
 workers-here = Processes of this computer, 0 = none
 workers-scheduler = Scheduler of Dask, tls://HOST:PORT
 workers-dashboard = Its dashboard, shown to admins

@@ -111,7 +111,7 @@ def test_the_classes_of_a_walk_are_stored_by_multiframe(tmp_path):
     person = cylinder("person", lambda t_s: (7.0, -2.5 + 0.4 * t_s), 0.25)
     walk, _ = scanned(box("room", *ROOM), person, seconds=6.0)
 
-    figures = write_classes(walk, walk.trajectory, tmp_path)
+    figures = write_classes(classify(walk, walk.trajectory), tmp_path)
     stored = StoredClasses.open(tmp_path)
 
     expected = list(classify(walk, walk.trajectory))
@@ -124,7 +124,7 @@ def test_the_classes_of_a_walk_are_stored_by_multiframe(tmp_path):
 
 def test_damaged_classes_are_refused(tmp_path):
     walk, _ = scanned(box("room", *ROOM), seconds=2.0)
-    write_classes(walk, walk.trajectory, tmp_path)
+    write_classes(classify(walk, walk.trajectory), tmp_path)
     stored = StoredClasses.open(tmp_path)
 
     with pytest.raises(StoreError, match="expected 3 packed bytes"):

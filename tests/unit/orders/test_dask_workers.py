@@ -11,17 +11,7 @@ from recon4.model.events import Warned
 from recon4.progress import Silent
 from tests.cluster_functions import make_part_and_die_once, make_part_slowly
 from tests.clusters import files_in, remote_cluster
-from tests.ordered_maps import DirectWorkers, bytes_of, full_inputs, make_map
-
-
-class Instead:
-    """An executor that runs another function than it is asked to."""
-
-    def __init__(self, executor, function):
-        self.executor, self.function = executor, function
-
-    def run(self, function, tasks, say):
-        return self.executor.run(self.function, tasks, say)
+from tests.ordered_maps import DirectWorkers, Instead, bytes_of, full_inputs, make_map
 
 
 @pytest.fixture(scope="module")

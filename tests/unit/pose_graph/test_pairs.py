@@ -8,7 +8,8 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind, Measure, Reason, Verdict
 from recon4.pose_graph.node_views import NodeRangeImages
-from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.pair import Pair
+from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.progress import Silent
 from recon4.registration.collar_lines import register_lines

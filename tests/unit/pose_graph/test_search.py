@@ -19,7 +19,7 @@ from recon4.pose_graph.candidates import (
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.node_views import NodeRangeImages
 from recon4.pose_graph.pairs import PairRegistrar, tried_event
-from recon4.pose_graph.search import OdometryTrack, build_graph, search
+from recon4.pose_graph.search import OdometryTrack, SearchMeans, build_graph, search
 from recon4.pose_graph.tuning import GraphTuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
@@ -245,7 +245,7 @@ def drifting_search(stroll, folder, watch, *assignments):
             *("registration.max_move_m=0.3", *assignments),
         ),
         progress=watch,
-        scratch=folder,
+        means=SearchMeans(folder),
     )
 
 
@@ -351,7 +351,9 @@ def test_a_recording_without_a_single_point_goes_through(stroll, tmp_path):
 def test_all_lost_leaves_one_node(stroll, tmp_path):
     n = len(stroll)
     odometry = OdometryTrack(stroll.truth, np.ones(n, bool), np.zeros((n, 6, 6)), np.zeros(n, int))
-    graph = search(stroll, odometry, settings=settings_of(), progress=Silent(), scratch=tmp_path)
+    graph = search(
+        stroll, odometry, settings=settings_of(), progress=Silent(), means=SearchMeans(tmp_path)
+    )
 
     assert len(graph) == 1
     assert graph.edges == ()
