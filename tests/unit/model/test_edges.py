@@ -55,5 +55,8 @@ def test_a_graph_keeps_its_nodes_when_edges_or_poses_change():
 
     assert len(moved) == 2
     assert len(moved.edges) == 1
+    relations = moved.relations
+    assert moved.with_poses(graph.T_map_body).relations is relations, "as arrays only once"
+    assert moved.with_edges(()).relations is not relations
     assert moved.T_map_body.t.tolist() == [[1, 1, 1], [1, 1, 1]]
     assert graph.edges == ()
