@@ -86,7 +86,7 @@ def demo(installed, tmp_path_factory):
     """A folder in which the demo has run, and what it wrote."""
     folder = tmp_path_factory.mktemp("demo")
     command = [installed / "python", "-P", "-c", COMMAND_WITH_KERNELS]
-    arguments = ["demo", "--headless", "--seconds", "3"]
+    arguments = ["demo", "--headless", "--seconds", "5"]
     return folder, run([*command, *arguments], folder)
 
 
@@ -147,7 +147,7 @@ def test_the_help_is_that_of_the_installed_package(installed, tmp_path):
 def test_the_demo_makes_a_map(demo):
     folder, done = demo
 
-    assert "30 multiframes (0 lost)" in done.stdout
+    assert "50 multiframes (0 lost)" in done.stdout
     assert (folder / "demo" / "office" / "map.laz").stat().st_size > 1_000_000
 
 
