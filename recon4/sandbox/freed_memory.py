@@ -27,18 +27,21 @@ class _Advice(IntEnum):
     DONTNEED = 4
 
 
-def return_freed_memory() -> None:
-    """Return what is free now, and from now on blocks of 4 MiB or more as they are freed.
+def return_freed_memory(above: int = CONFINEMENT.returned_block_bytes) -> None:
+    """Return what is free now, and from now on large blocks as they are freed.
 
     By default glibc keeps blocks of up to 32 MiB once one as large was freed, in an arena of each
     thread: a third of the memory of a map. Smaller blocks at the end of the heap are kept, up to
     `ConfinementTuning.kept_bytes`. Threads that start from now on share one arena: what one leaves
     free another may use. Pages of libraries that were read are returned, too; what is needed of
     them again comes from the cache of the system. Without effect with another C library.
+
+    Args:
+        above: Blocks of this size or more are returned [bytes].
     """
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt") and hasattr(libc, "malloc_trim"):
-        libc.mallopt(_Mallopt.MMAP_THRESHOLD, CONFINEMENT.returned_block_bytes)
+        libc.mallopt(_Mallopt.MMAP_THRESHOLD, above)
         libc.mallopt(_Mallopt.TRIM_THRESHOLD, CONFINEMENT.kept_bytes)
         libc.mallopt(_Mallopt.ARENA_MAX, CONFINEMENT.arenas)
         libc.malloc_trim(0)

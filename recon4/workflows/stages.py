@@ -58,8 +58,11 @@ def _frames(
     from recon4.recording.sources import Sources
     from recon4.registration.clock_jumps import clock_jumps
     from recon4.registration.placed_clouds import placed_text, view_moves_on
+    from recon4.sandbox.freed_memory import return_freed_memory
+    from recon4.sandbox.tuning import CONFINEMENT
     from recon4.store.frames import FrameStore
 
+    return_freed_memory(above=CONFINEMENT.returned_packet_bytes)
     sources = Sources(recordings, rig, imu, gnss)
     ingest(sources, context.out, settings=context.settings.ingest, progress=context.progress)
     store = FrameStore.open(context.out)

@@ -35,6 +35,7 @@ from recon4.recording.packets.velodyne.wide_encode import encode_wide
 from recon4.recording.packets.velodyne.wide_models import VLS128, WideModel, hdl64_model
 from recon4.recording.report import ImportReport
 from recon4.sandbox.freed_memory import return_freed_memory
+from recon4.sandbox.tuning import CONFINEMENT
 from recon4.settings import IngestSettings
 from tests.security.fuzz.kinds_livox import model_of as livox_model
 from tests.security.fuzz.kinds_livox import packets_of as livox_packets
@@ -196,8 +197,8 @@ def milliseconds(rounds: int, work: Callable[[], int]) -> tuple[float, float, in
 
 
 def main(rounds: int) -> None:
-    """Measure and print, with the memory of a process that makes a map."""
-    return_freed_memory()
+    """Measure and print, with the memory of a process that reads multiframes."""
+    return_freed_memory(above=CONFINEMENT.returned_packet_bytes)
     t_ns, payloads = spin(PACKETS)
     packets = [
         velodyne_decoder.VelodynePacket(float(t) / 1e9, bytes(p))

@@ -48,13 +48,14 @@ def _held_mb(mode):
 
 
 _REUSE = """
-import resource
+import resource, sys
 import numpy as np
 from recon4.sandbox.freed_memory import return_freed_memory
+from recon4.sandbox.tuning import CONFINEMENT
 
-return_freed_memory()
+return_freed_memory(getattr(CONFINEMENT, sys.argv[1]))
 def batch():
-    columns = [np.ones(300_000) for _ in range(4)]  # 2.4 MB each, as points of a tenth of a second
+    columns = [np.ones(int(sys.argv[2])) for _ in range(4)]
 batch()
 before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
 for _ in range(20):
@@ -64,8 +65,13 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
 
 
 @glibc
-def test_a_batch_of_points_takes_the_memory_of_the_one_before_it():
-    faults = int(subprocess.check_output([sys.executable, "-c", _REUSE], text=True))
+@pytest.mark.parametrize(
+    ("above", "numbers"), [("returned_block_bytes", "300000"), ("returned_packet_bytes", "780000")]
+)
+def test_a_batch_of_points_takes_the_memory_of_the_one_before_it(above, numbers):
+    """Columns of 2.4 MB, as points of a tenth of a second; of 6.2 MB while packets are decoded."""
+    command = [sys.executable, "-c", _REUSE, above, numbers]
+    faults = int(subprocess.check_output(command, text=True))
 
     assert faults < 2000  # 47 000 pages if each batch takes new ones
 
