@@ -14,15 +14,18 @@ from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.hesai.layouts import CRC_POLYNOMIAL, HesaiLayout
 
 
-def _table() -> NDArray[np.uint32]:
-    """What each byte adds to the sum, (256,)."""
+def _tables() -> NDArray[np.uint32]:
+    """What each byte adds to the sum, with 0 to 3 bytes behind it, (4, 256)."""
     rest = np.arange(256, dtype=np.uint64) << 24
     for _ in range(8):
         rest = (rest << 1) ^ np.where(rest & 0x80000000, CRC_POLYNOMIAL, 0).astype(np.uint64)
-    return rest.astype(np.uint32)
+    tables = [rest.astype(np.uint32)]
+    for _ in range(3):
+        tables.append((tables[-1] << np.uint32(8)) ^ tables[0][tables[-1] >> np.uint32(24)])
+    return np.stack(tables)
 
 
-_TABLE = _table()
+TABLES = _tables()
 
 
 def crc32(rows: NDArray[np.uint8]) -> NDArray[np.uint32]:
@@ -31,16 +34,7 @@ def crc32(rows: NDArray[np.uint8]) -> NDArray[np.uint32]:
     Args:
         rows: Bytes, (N, K).
     """
-    return crc32_of_rows(rows, _TABLE)
-
-
-def are_right(payloads: Payloads, layout: HesaiLayout) -> NDArray[np.bool_]:
-    """Whether the checksum of the tail fits, (N,); True where packets have none."""
-    at = layout.crc_at
-    if at < 0:
-        return np.ones(len(payloads), dtype=np.bool_)
-    stated = np.ascontiguousarray(payloads[:, at : at + 4]).view("<u4")[:, 0]
-    return np.asarray(crc32(payloads[:, layout.crc_from : at]) == stated)
+    return crc32_of_rows(rows, TABLES)
 
 
 def write(payloads: Payloads, layout: HesaiLayout) -> None:

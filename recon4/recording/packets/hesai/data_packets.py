@@ -80,7 +80,9 @@ class HesaiFormat:
         speed_rpm = packets.model.speed_rpm
         sound = sound_packets(fields, packets.header, speed_rpm, report=self._sensor.report)
         if sound.any():
-            mode = firing_mode(int(fields.firing_key()[sound.argmax()]), fields.layout.blocks)
+            first = int(sound.argmax())
+            key = self._fields(payloads[first : first + 1]).firing_key()
+            mode = firing_mode(int(key[0]), fields.layout.blocks)
             self.packet_s = packet_s(packets.model, fields.layout.blocks, mode)
         return sound
 

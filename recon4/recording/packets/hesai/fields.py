@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.kernels.hesai_packets import SOUND, FieldPlaces, SoundFields, first_faults
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import Payloads
-from recon4.recording.packets.hesai import checksums, stamps
+from recon4.recording.packets.hesai import checksums
 from recon4.recording.packets.hesai.layouts import (
     ECHO_AT,
     HEADER,
@@ -19,7 +23,7 @@ from recon4.recording.packets.hesai.layouts import (
 from recon4.recording.packets.hesai.models import RETURNS
 from recon4.recording.packets.hesai.tuning import HESAI_PACKETS
 from recon4.recording.report import ImportReport
-from recon4.units import TURN_CDEG
+from recon4.units import SECOND_NS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,29 +117,55 @@ def sound_packets(
         report: Takes the counts.
     """
     report.count("packets", len(fields.payloads))
-    sound = _same_header(fields, header)
-    report.count("packets_wrong_header", int((~sound).sum()))
-    checks = (
-        ("packets_wrong_azimuth", (fields.azimuth_cdeg <= TURN_CDEG).all(axis=1)),
-        ("packets_wrong_stamp", stamps.is_date(fields.date, fields.micros)),
-        ("packets_wrong_speed", fields.speed * speed_rpm <= HESAI_PACKETS.fastest_rpm),
-        ("packets_wrong_crc", checksums.are_right(fields.payloads, fields.layout)),
+    if not len(fields.payloads):
+        return np.zeros(0, dtype=np.bool_)
+    faults = first_faults(
+        np.ascontiguousarray(fields.payloads),
+        _places(fields.layout),
+        _right(fields.layout, header, speed_rpm),
     )
-    for name, passed in checks:
-        report.count(name, int((sound & ~passed).sum()))
-        sound = sound & passed
-    return sound
+    counts = np.bincount(faults, minlength=len(_FAULTS) + 1)
+    for name, count in zip(_FAULTS, counts[1:].tolist(), strict=True):
+        report.count(name, count)
+    return faults == SOUND
 
 
-def _same_header(fields: Fields, header: bytes) -> NDArray[np.bool_]:
-    """Header of the sensor, but for what depends on the return mode, (N,)."""
-    payloads, layout = fields.payloads, fields.layout
-    if header[:2] == PANDAR40P_BLOCK:
-        starts = layout.blocks_at + layout.block_bytes * np.arange(layout.blocks)
-        pairs = payloads[:, starts[:, None] + np.arange(2)]
-        return np.asarray((pairs == np.frombuffer(header[:2], np.uint8)).all(axis=(1, 2)))
-    wanted = np.frombuffer(header[:HEADER], np.uint8)
+_FAULTS = (
+    *("packets_wrong_header", "packets_wrong_azimuth", "packets_wrong_stamp"),
+    *("packets_wrong_speed", "packets_wrong_crc"),
+)
+"""Counters of what `first_faults` finds, from 1 on."""
+
+
+@cache
+def _places(layout: HesaiLayout) -> FieldPlaces:
+    tail = layout.tail
+    return FieldPlaces(
+        blocks=layout.blocks,
+        block=layout.block_bytes,
+        start=layout.blocks_at if layout.azimuth_at == len(PANDAR40P_BLOCK) else -1,
+        azimuth=layout.blocks_at + layout.azimuth_at,
+        date=layout.tail_at + tail.date,
+        micros=layout.tail_at + tail.micros,
+        speed=layout.tail_at + tail.speed if tail.speed >= 0 else -1,
+        summed=layout.crc_from,
+        crc=layout.crc_at,
+    )
+
+
+@cache
+def _right(layout: HesaiLayout, header: bytes, speed_rpm: float) -> SoundFields:
+    """Header of the sensor, but for what depends on the return mode; all other limits."""
+    wanted = np.zeros(HEADER, np.uint8)
+    wanted[: len(header[:HEADER])] = np.frombuffer(header[:HEADER], np.uint8)
     fixed = np.ones(HEADER, dtype=np.bool_)
     fixed[[4, 5, ECHO_AT, RETURNED_AT]] = False
     fixed[min(layout.blocks_at, layout.tail_at) :] = False
-    return np.asarray((payloads[:, :HEADER] == wanted)[:, fixed].all(axis=1))
+    return SoundFields(
+        header=wanted,
+        fixed=fixed,
+        start=int.from_bytes(PANDAR40P_BLOCK, "little"),
+        most_speed=HESAI_PACKETS.fastest_rpm / speed_rpm if speed_rpm > 0 else math.inf,
+        latest_s=LIMITS.latest_ns // SECOND_NS,
+        tables=checksums.TABLES,
+    )

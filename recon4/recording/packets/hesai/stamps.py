@@ -28,15 +28,25 @@ def is_date(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> NDArray[np.b
 def time_ns(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> Times:
     """Nanoseconds since 1970 of times that can be true, (N,).
 
-    The year counts from 1900, or from 2000 if it is below 70 (Pandar40P, Pandar64).
+    The year counts from 1900, or from 2000 if it is below 70 (Pandar40P, Pandar64). If all
+    packets are of one second, its date is taken apart once.
+
+    Args:
+        date: Year, month, day, hour, minute, second; or 0 and seconds in big endian, (N, 6).
+        micros: Microseconds, (N,).
     """
+    is_one = len(date) > 0 and bool((date == date[0]).all())
+    seconds = _seconds_since_1970(date[:1] if is_one else date)
+    return np.asarray(seconds * SECOND_NS + micros.astype(np.int64) * 1000)
+
+
+def _seconds_since_1970(date: NDArray[np.uint8]) -> NDArray[np.int64]:
     field = date.astype(np.int64).T
     year = field[0] + np.where(field[0] < 70, 2000, 1900)
     month = ((year - 1970) * 12 + field[1] - 1).astype("datetime64[M]")
     day = month.astype("datetime64[D]").astype(np.int64) + field[2] - 1
     calendar = ((day * 24 + field[3]) * 60 + field[4]) * 60 + field[5]
-    seconds = np.where(field[0] == 0, _seconds(date), calendar)
-    return np.asarray(seconds * SECOND_NS + micros.astype(np.int64) * 1000)
+    return np.where(field[0] == 0, _seconds(date), calendar)
 
 
 def date_of(seconds: NDArray[np.int64]) -> NDArray[np.uint8]:

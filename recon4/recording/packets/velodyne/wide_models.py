@@ -120,7 +120,8 @@ class WideModel:
 def merged(payloads: Payloads, model: WideModel, *, dual: bool) -> Payloads:
     """Packets with one block a firing and return: its azimuth, and all lasers."""
     blocks = payloads[:, : BLOCKS * _BLOCK].reshape(len(payloads), BLOCKS, _BLOCK)
-    blocks = blocks[:, model.order_of(dual=dual)]
+    if dual and model.twins_beside:
+        blocks = blocks[:, model.order_of(dual=dual)]
     firings, width = BLOCKS // model.rows, 3 * model.rows * CHANNELS
     azimuth = blocks[:, :: model.rows, 2:4]
     returns = blocks[:, :, 4:].reshape(len(payloads), firings, width)

@@ -140,9 +140,13 @@ class WideFormat:
         """Points in firing order."""
         dual = dual_packets(payloads, self._model)
         turn_rad = self._turns(t_ns, payloads)
-        blocks = np.empty((len(payloads), self._width), np.uint8)
-        for rows, is_dual in _by_returns(dual):
-            blocks[rows] = merged(payloads[rows], self._model, dual=is_dual)
+        parts = _by_returns(dual)
+        if len(parts) == 1:
+            blocks = merged(payloads, self._model, dual=parts[0][1])
+        else:
+            blocks = np.empty((len(payloads), self._width), np.uint8)
+            for rows, is_dual in parts:
+                blocks[rows] = merged(payloads[rows], self._model, dual=is_dual)
         packets = SpinningPackets(t_ns, blocks, dual.astype(np.uint8), turn_rad)
         columns = points_of(packets, tables=self._tables, report=self._report)
         if self._lasers is not None:
