@@ -16,6 +16,7 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts, texts
 
 Offset = tuple[float | None, float | None, float | None]
+_HEAD = "point de dn dh d2 d3 sd-h sd-v redundancy mde-h mde-v w"
 
 
 class PointTest(msgspec.Struct, frozen=True):
@@ -171,11 +172,11 @@ def outcome_text(
         (
             f"{one.id} ({say(one.role, {})})",
             *_cells(*one.adjusted_m, _length(one.adjusted_m[:2]), _length(one.adjusted_m), say=say),
+            *_cells(*one.sd_m, say=say),
             *_test_cells(one.test, say),
         )
         for one in outcome.points
     ]
-    head = ("point", "de", "dn", "dh", "d2", "d3", "redundancy", "mde-h", "mde-v", "w")
     figures = [
         (
             f"{say(found.role, {})}, {found.points}",
@@ -195,7 +196,7 @@ def outcome_text(
     found = outcome.blunders if blunders is None else blunders
     return "\n".join(
         [
-            text_table((*(say(name, {}) for name in head), ""), rows),
+            text_table((*(say(name, {}) for name in _HEAD.split()), ""), rows),
             text_table(tuple(say(name, {}) for name in names), figures),
             say("known", known),
             *statements(outcome, language),

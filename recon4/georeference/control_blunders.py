@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from itertools import combinations
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from recon4.georeference.control_fit import (
     snoop,
     with_sites,
 )
+from recon4.georeference.control_names import exchanged_among, exchanged_pair
 from recon4.georeference.tuning_control import BLUNDERS
 from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import localized
@@ -38,6 +38,8 @@ class BlunderKind(StrEnum):
     """One point is elsewhere."""
     OFFSET = "offset"
     """Points have a common offset: another datum, another height of a prism or antenna."""
+    CONTRADICTION = "contradiction"
+    """They contradict each other, and too few control each other to say which is wrong."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,10 +95,13 @@ def named_blunders(
     whole = _of_all(targets, fit, leveled=leveled)
     if whole is not None:
         return whole[0], (whole[1],)
-    pair = _exchanged_pair(targets, fit, leveled=leveled)
+    pair = exchanged_pair(targets, fit, leveled=leveled)
     if pair is not None:
-        return pair[0], (pair[1],)
+        names = tuple(targets[k].id for k in pair[1])
+        return pair[0], (Blunder(kind=BlunderKind.NAMES, points=names),)
     found, failed = snoop(targets, leveled=leveled)
+    if not failed and found.rmse_m >= BLUNDERS.least_m and found.sd0 > BLUNDERS.contradicting:
+        return found, (Blunder(kind=BlunderKind.CONTRADICTION, points=()),)
     return found, tuple(_point(name, targets, failed, leveled=leveled) for name in failed)
 
 
@@ -119,42 +124,14 @@ def _of_all(
     return None
 
 
-def _exchanged_pair(
-    targets: Sequence[MeasuredTarget], fit: ControlFit, *, leveled: bool
-) -> tuple[ControlFit, Blunder] | None:
-    if fit.rmse_m < BLUNDERS.least_m or len(targets) < 4:
-        return None  # with three points any exchange may fit
-    order = sorted(range(len(targets)), key=lambda k: -fit.tests[k].w)[: BLUNDERS.pairs]
-    best: tuple[ControlFit, Blunder] | None = None
-    for i, j in combinations(sorted(order), 2):
-        p_site = np.array([one.p_site for one in targets])
-        p_site[[i, j]] = p_site[[j, i]]
-        try:
-            tried = fit_control(with_sites(targets, p_site), leveled=leveled)
-        except GeoreferenceError:
-            continue
-        names = (targets[i].id, targets[j].id)
-        if _explains(tried, best[0] if best else fit, targets, than=fit):
-            best = (tried, Blunder(kind=BlunderKind.NAMES, points=names))
-    return best
-
-
-def _explains(
-    tried: ControlFit,
-    before: ControlFit,
-    targets: Sequence[MeasuredTarget],
-    *,
-    than: ControlFit | None = None,
-) -> bool:
+def _explains(tried: ControlFit, before: ControlFit, targets: Sequence[MeasuredTarget]) -> bool:
     """Whether another reading of the survey fits where its own does not."""
-    than = than or before
     p_map = np.array([one.p_map for one in targets])
     extent_m = float(np.linalg.norm(np.ptp(p_map, axis=0)))
     return (
-        than.rmse_m >= BLUNDERS.least_m
+        before.rmse_m >= BLUNDERS.least_m
         and tried.rmse_m <= min(BLUNDERS.most_m, 0.05 * extent_m)
-        and tried.rmse_m**2 < BLUNDERS.better * than.rmse_m**2
-        and tried.rmse_m < before.rmse_m
+        and tried.rmse_m**2 < BLUNDERS.better * before.rmse_m**2
     )
 
 
@@ -165,6 +142,26 @@ def _point(
     kept = [one for one in targets if one.id == name or one.id not in failed]
     test = next(one for one in fit_control(kept, leveled=leveled).tests if one.id == name)
     return Blunder(kind=BlunderKind.POINT, points=(name,), offset_m=test.blunder_m)
+
+
+def with_exchanged_names(
+    blunders: Sequence[Blunder], names: Sequence[str], p_site: Array, *, off_m: Array
+) -> tuple[Blunder, ...]:
+    """Two points that are off by each other's place become one blunder: exchanged names.
+
+    Args:
+        blunders: Suspected ones of control and check points.
+        names: Ids of all points.
+        p_site: Surveyed places [m], (N, 3).
+        off_m: Map minus survey [m], (N, 3); NaN = not measured.
+    """
+    single = [one.points[0] for one in blunders if one.kind is BlunderKind.POINT]
+    pairs = exchanged_among(p_site, off_m, [names.index(name) for name in single])
+    gone = {names[k] for pair in pairs for k in pair}
+    return (
+        *(Blunder(kind=BlunderKind.NAMES, points=(names[i], names[j])) for i, j in pairs),
+        *(one for one in blunders if one.kind is not BlunderKind.POINT or not gone & {*one.points}),
+    )
 
 
 def check_outliers(names: Sequence[str], off_m: Array) -> tuple[Blunder, ...]:

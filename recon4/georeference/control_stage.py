@@ -20,6 +20,7 @@ from recon4.georeference.control_blunders import (
     check_outliers,
     common_offset,
     named_blunders,
+    with_exchanged_names,
 )
 from recon4.georeference.control_fit import ControlFit, TargetTest
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin, origin_near
@@ -126,7 +127,10 @@ def put_on_control(
     rigid = _rigid(given, adjusted)
     after = offsets(control.targets, p_site, dense)
     blunders = named_blunders(adjusted.measured, leveled=given.leveled)[1]
-    blunders = blunders or suspected_checks(control.targets, after)
+    if not blunders:
+        names = [one.id for one in control.targets]
+        checks = suspected_checks(control.targets, after)
+        blunders = with_exchanged_names(checks, names, p_site, off_m=after)
     texts = [one.text for one in blunders]
     if adjusted.datum_shift_m is not None:
         texts.append(_datum_text(adjusted.datum_shift_m))

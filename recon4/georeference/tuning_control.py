@@ -29,6 +29,10 @@ class ControlFitTuning(Struct, frozen=True, kw_only=True):
     """Of a normal variable at this significance and a power of 80 % (Baarda 1968)."""
     controlled: float = 0.1
     """A coordinate with a smaller redundancy number is controlled by no other point."""
+    few_points: int = 6
+    """With at most this many points a turn of the map may hide an exchange of two names."""
+    most_pairs: int = 60
+    """Exchanges that are tried: each takes a fit."""
 
 
 CONTROL_FIT = ControlFitTuning()
@@ -47,6 +51,10 @@ class BlunderTuning(Struct, frozen=True, kw_only=True):
     """… and is at most this large afterwards, or 5 % of the extent of a smaller site [m]."""
     pairs: int = 40
     """With more control points only pairs of the worst ones are swapped."""
+    contradicting: float = 4.0
+    """Residuals that are this many times as large as stated contradict each other."""
+    other: float = 2.0
+    """Another explanation is as good if its misfit is below this multiple."""
     check_m: float = 0.10
     check_ratio: float = 7.0
     """A check point is named beyond this length [m] and this multiple of their median residual."""

@@ -10,7 +10,7 @@ from recon4.locales.texts import texts
 from recon4.report.client_words import Words
 
 _VALUES = ("names", "offset", "length", "east", "north", "up")
-_SENTENCES = ("feet", "axes", "names", "point", "offset")
+_SENTENCES = ("feet", "axes", "names", "point", "offset", "contradiction")
 
 
 def blunder_in(text: str, words: Words) -> str:

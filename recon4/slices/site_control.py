@@ -14,7 +14,13 @@ from recon4.errors import ConfigError, GeoreferenceError
 from recon4.evaluation.site_control import ControlOutcome, outcome_text
 from recon4.geometry.se3 import Array
 from recon4.georeference.control_adjustment import measured_targets
-from recon4.georeference.control_blunders import Blunder, named_blunders
+from recon4.georeference.control_blunders import (
+    Blunder,
+    BlunderKind,
+    named_blunders,
+    with_exchanged_names,
+)
+from recon4.georeference.control_names import unseen_exchanges
 from recon4.georeference.control_sightings import PickedTarget, sightings
 from recon4.georeference.control_stage import (
     ControlRecord,
@@ -25,6 +31,7 @@ from recon4.georeference.control_stage import (
 )
 from recon4.georeference.crs_file import read_crs
 from recon4.locales.languages import ENGLISH
+from recon4.locales.texts import texts
 from recon4.model.plain import to_plain
 from recon4.model.site_control import SeenTarget, SiteControl
 from recon4.model.trajectory import Trajectory
@@ -64,6 +71,8 @@ class ControlTrial:
     """Suspected blunders; those of control points forbid to place the map."""
     unseen: tuple[str, ...]
     """Surveyed points that were not measured in the map."""
+    unseen_exchanges: tuple[tuple[str, str], ...] = ()
+    """Pairs of control points whose names could be exchanged without a test that fails."""
 
 
 def site_control(
@@ -151,7 +160,11 @@ def try_control(
     fit, blunders = named_blunders(found, leveled=_is_leveled(level))
     laid = Trajectory(trajectory.t_ns, fit.T_map_site.inverse() @ trajectory.T_a_b)
     off = offsets(control.targets, p_site, laid)
-    blunders = blunders or suspected_checks(control.targets, off)
+    if all(one.kind in (BlunderKind.POINT, BlunderKind.NAMES) for one in blunders):
+        checks = suspected_checks(control.targets, off)
+        names = [one.id for one in control.targets]
+        blunders = with_exchanged_names((*blunders, *checks), names, p_site, off_m=off)
+    alike = [] if blunders else unseen_exchanges(found, fit, leveled=_is_leveled(level))
     record = control_record(
         control.targets,
         fit,
@@ -160,7 +173,8 @@ def try_control(
         blunders=[one.text for one in blunders],
     )
     unseen = tuple(one.id for one in points if one.id not in measured)
-    return ControlTrial(control, record, blunders, unseen)
+    pairs = tuple((found[i].id, found[j].id) for i, j in alike)
+    return ControlTrial(control, record, blunders, unseen, pairs)
 
 
 def forbidding(trial: ControlTrial) -> tuple[Blunder, ...]:
@@ -183,7 +197,16 @@ def require_agreement(trial: ControlTrial) -> None:
 def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
     """Residuals, tests and statements of a trial in lines."""
     outcome = msgspec.convert(to_plain(trial.record), ControlOutcome)
-    return outcome_text(outcome, language, [one.said(language) for one in trial.blunders])
+    text = outcome_text(outcome, language, [one.said(language) for one in trial.blunders])
+    if not trial.unseen_exchanges:
+        return text
+    say = texts(language, "report")
+    pairs = [
+        say.part("control-table", "pair", {"one": one, "other": other})
+        for one, other in trial.unseen_exchanges
+    ]
+    line = say.part("control-table", "unseen-exchange", {"pairs": ", ".join(pairs)})
+    return f"{text}\n{line}"
 
 
 def _deviations(point: ControlPoint, accuracy: ControlAccuracy) -> tuple[float, float]:

@@ -8,12 +8,15 @@ import pytest
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.georeference.control_blunders import (
+    Blunder,
     BlunderKind,
     check_outliers,
     common_offset,
     named_blunders,
+    with_exchanged_names,
 )
 from recon4.georeference.control_fit import MeasuredTarget, fit_control, snoop
+from recon4.georeference.control_names import unseen_exchanges
 
 PLACES = np.array(
     [
@@ -132,7 +135,50 @@ def test_an_exchange_that_places_no_map_is_not_tried_further() -> None:
     swapped = sites(found)[[0, 1, 3, 2, 4]]
     with pytest.raises(GeoreferenceError):
         fit_control(surveyed(found, swapped), leveled=True)
-    assert named_blunders(found, leveled=True)[0].freedom == 4
+    _, (one,) = named_blunders(found, leveled=True)
+    assert one.kind is BlunderKind.CONTRADICTION, "two exchanges explain it alike"
+
+
+def test_exchanged_names_of_neighbors_are_found_without_a_large_misfit() -> None:
+    near = np.vstack([PLACES, [[11.06, 7.02, 0.1]]])
+    found = targets(near)
+    p_site = sites(found)
+    p_site[[4, 6]] = p_site[[6, 4]]
+    exchanged = surveyed(found, p_site)
+    assert fit_control(exchanged, leveled=True).rmse_m < 0.05
+    fit, (one,) = named_blunders(exchanged, leveled=True)
+    assert (one.kind, one.points) == (BlunderKind.NAMES, ("C5", "C7"))
+    assert fit.worst is None
+
+
+def test_a_single_blunder_beside_a_neighbor_is_not_called_an_exchange() -> None:
+    found = targets(np.vstack([PLACES, [[11.06, 7.02, 0.1]]]))
+    p_site = sites(found)
+    p_site[4] += [0.05, 0.0, 0.0]
+    _, (one,) = named_blunders(surveyed(found, p_site), leveled=True)
+    assert (one.kind, one.points) == (BlunderKind.POINT, ("C5",))
+
+
+def test_exchanges_that_no_test_sees_are_listed() -> None:
+    found = targets(np.vstack([PLACES, [[11.02, 7.015, 0.1]]]))
+    assert unseen_exchanges(found, fit_control(found, leveled=True), leveled=True) == [(4, 6)]
+    square = targets(np.array([[0.0, 0, 0], [20.0, 0, 0], [20.0, 20.0, 0], [0.0, 20.0, 0]]))
+    assert unseen_exchanges(square, fit_control(square, leveled=True), leveled=True) == []
+
+
+def test_a_check_point_with_the_name_of_a_control_point_is_found() -> None:
+    p_site = PLACES + SITE
+    off_m = np.full((6, 3), 0.002)
+    off_m[1] += p_site[4] - p_site[1]
+    off_m[4] += p_site[1] - p_site[4]
+    off_m[3] += [0.0, 1.0, 0.0]
+    single = [Blunder(kind=BlunderKind.POINT, points=(f"C{k}",)) for k in (1, 3, 4)]
+    names = [f"C{k}" for k in range(6)]
+    found = with_exchanged_names(single, names, p_site, off_m=off_m)
+    assert [(one.kind, one.points) for one in found] == [
+        (BlunderKind.NAMES, ("C1", "C4")),
+        (BlunderKind.POINT, ("C3",)),
+    ]
 
 
 def test_exchanged_axes_are_found() -> None:

@@ -18,6 +18,7 @@ NAMES = {
     BlunderKind.NAMES: ("P1", "P2"),
     BlunderKind.POINT: ("P1",),
     BlunderKind.OFFSET: ("P1", "P2", "P3"),
+    BlunderKind.CONTRADICTION: (),
 }
 
 
