@@ -27,8 +27,11 @@ control.add_typer(targets)
 def control_points(
     project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
     survey: Annotated[
-        Path | None,
-        typer.Argument(help="Surveyed points: id, east, north, height, role (control or check)."),
+        list[Path] | None,
+        typer.Argument(
+            help="Surveyed points: id, east, north, height, role (control or check). A second "
+            "file may have their covariances: id, sE, sN, sH or id, cEE, cEN, cEH, cNN, cNH, cHH."
+        ),
     ] = None,
     *,
     picks: Annotated[
@@ -55,12 +58,14 @@ def control_points(
     from recon4.model.site_control import SiteControl
     from recon4.slices.site_control import require_agreement, trial_text
 
-    if survey is None:
+    if not survey:
         if not apply or picks or crs:
             raise ConfigError("SURVEY: expected a file with surveyed points")
         _make_again(project, SiteControl(targets=(), crs=""))
         return
-    points, crs = surveyed_points(survey, crs)
+    points, crs = surveyed_points(survey[0], crs)
+    if survey[1:]:
+        points = _with_covariances(points, survey[1:])
     trial = _try(project, points, picks, crs=crs)
     write(trial_text(trial))
     if trial.unseen:
@@ -79,12 +84,26 @@ def surveyed_points(survey: Path, crs: str) -> tuple[tuple[ControlPoint, ...], s
 
     data = read_bytes_limited(survey, CONTROL_FILES.max_bytes)
     found = read_control(data, name=survey.name, crs=crs)
-    raise_question(found.table, survey.name)
+    raise_question(found.table, survey.name, in_file=True)
     for line in found.skipped:
         write(f"{survey.name} {line}: left out")
     if found.crs:
         write(f"{survey.name}: latitude and longitude, put into {found.crs}")
     return found.points, found.crs or crs
+
+
+def _with_covariances(
+    points: tuple[ControlPoint, ...], files: list[Path]
+) -> tuple[ControlPoint, ...]:
+    from recon4.recording.tables.spreads import read_covariances
+    from recon4.slices.control_points import with_covariances
+    from recon4.slices.tuning_files import CONTROL_FILES
+    from recon4.untrusted.bounded import read_bytes_limited
+
+    if len(files) > 1:
+        raise ConfigError("SURVEY: expected the survey and at most one file of covariances")
+    data = read_bytes_limited(files[0], CONTROL_FILES.max_bytes)
+    return with_covariances(points, read_covariances(data, files[0].name), files[0].name)
 
 
 def _try(

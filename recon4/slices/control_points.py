@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from recon4.errors import CorruptFile
+from recon4.errors import ConfigError, CorruptFile
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin, to_enu
 from recon4.model.survey_covariance import Covariance
+from recon4.recording.tables.column_names import plain_word
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
 from recon4.recording.tables.points import PointTable, TablePoint, read_point_table
 from recon4.slices.tuning_files import CONTROL_FILES
 
 Role = Literal["control", "check"]
-_ROLES: dict[str, Role] = {"control": "control", "check": "check", "": "check"}
+_CONTROL_WORDS = "control controlpoint gcp passpunkt vlicovacibod"
+_CHECK_WORDS = "check checkpoint kontrollpunkt prufpunkt pruefpunkt kontrolnibod"
+_ROLES: dict[str, Role] = {
+    "": "check",
+    **dict.fromkeys(_CONTROL_WORDS.split(), "control"),
+    **dict.fromkeys(_CHECK_WORDS.split(), "check"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +76,22 @@ def _projected(found: PointTable, crs: str) -> tuple[tuple[TablePoint, ...], str
     ), place.crs
 
 
+def with_covariances(
+    points: Sequence[ControlPoint], covariances: Mapping[str, Covariance], name: str
+) -> tuple[ControlPoint, ...]:
+    """Points with the covariances of a file of their own, in place of those in their rows.
+
+    Raises:
+        ConfigError: If the file names a point that the survey does not have.
+    """
+    unknown = [one for one in covariances if one not in {point.id for point in points}]
+    if unknown:
+        raise ConfigError(f"{name}: not in the survey: {', '.join(unknown[:10])}")
+    return tuple(
+        replace(one, covariance_m2=covariances.get(one.id, one.covariance_m2)) for one in points
+    )
+
+
 def read_control(
     data: bytes,
     *,
@@ -99,14 +123,14 @@ def read_control(
     for row in rows:
         if row.name in points:
             skipped.append(f"line {row.line}: point {row.name[:40]!r} is there already")
-        elif row.role.lower() not in _ROLES:
+        elif (role := plain_word(row.role)) not in _ROLES:
             skipped.append(f"line {row.line}: expected control or check, got {row.role[:40]!r}")
         elif len(points) >= CONTROL_FILES.max_points:
             skipped.append(f"line {row.line}: more than {CONTROL_FILES.max_points} points")
             break
         else:
             points[row.name] = ControlPoint(
-                row.name, row.xyz_m, _ROLES[row.role.lower()], row.radius_m, row.covariance_m2
+                row.name, row.xyz_m, _ROLES[role], row.radius_m, row.covariance_m2
             )
     if not points and not found.preview.question:
         raise CorruptFile(f"{name}: no line of ID,X,Y,Z found; {skipped[0] if skipped else ''}")

@@ -120,9 +120,9 @@ class ColumnName:
 def column_name(text: str) -> ColumnName:
     """The meaning of the name of a column; ``-`` for a name that is not known."""
     bracketed = _BRACKETED.search(text)
-    stated = _plain(bracketed[1]).removesuffix("2") if bracketed else ""
+    stated = plain_word(bracketed[1]).removesuffix("2") if bracketed else ""
     words = _BRACKETED.sub(" ", text).lstrip("/#%! ")
-    plain, unit = _plain(words), _UNIT_WORDS.get(stated)
+    plain, unit = plain_word(words), _UNIT_WORDS.get(stated)
     found = _meaning(plain)
     if found is None and unit is None:
         found, unit = _with_unit_behind(words)
@@ -134,7 +134,7 @@ def column_name(text: str) -> ColumnName:
 
 def is_unit(text: str) -> bool:
     """Whether a cell is the name of a unit, in brackets or without."""
-    return _plain(text) in _UNIT_WORDS
+    return plain_word(text) in _UNIT_WORDS
 
 
 def parse_meanings(text: str) -> tuple[Meaning, ...]:
@@ -190,14 +190,14 @@ def _with_unit_behind(words: str) -> tuple[tuple[Meaning, Family] | None, Unit |
     """A name with its unit behind it: ``x_mm``, ``Easting m``, ``z_us_ft``."""
     parts = [part for part in re.split(r"[\s_.\-]+", words) if part]
     for count in (1, 2):
-        unit = _UNIT_WORDS.get(_plain("".join(parts[-count:])))
-        found = _meaning(_plain("".join(parts[:-count])))
+        unit = _UNIT_WORDS.get(plain_word("".join(parts[-count:])))
+        found = _meaning(plain_word("".join(parts[:-count])))
         if unit and found:
             return found, unit
     return None, None
 
 
-def _plain(text: str) -> str:
+def plain_word(text: str) -> str:
     """Without accents, case, blanks and punctuation."""
     letters = text.replace("ß", "ss").replace("ł", "l").replace("σ", "s")
     bare = unicodedata.normalize("NFKD", letters)

@@ -146,16 +146,26 @@ def table_columns(
     return _columns(layout, found)
 
 
-def raise_question(preview: TablePreview, name: str) -> None:
+def raise_question(preview: TablePreview, name: str, *, in_file: bool = False) -> None:
     """Raise the question of a preview, with the answer that fits best.
+
+    Args:
+        preview: Of the table.
+        name: For messages.
+        in_file: Whether the answer is a line of names in the file; else an option of the command.
 
     Raises:
         ConfigError: If there is one.
     """
     if preview.question:
+        columns = _suggestion(preview.columns)
+        answer = (
+            f"Name the columns in a first line of the file, as {columns} (x east, y north)"
+            if in_file
+            else f"Say which column is what (command: --columns {columns})"
+        )
         raise ConfigError(
-            f"{name}: {preview.question} Say which column is what (command: --columns "
-            f"{_suggestion(preview.columns)}); the first row is "
+            f"{name}: {preview.question} {answer}; the first row is "
             f"{' | '.join(preview.rows[0])[:160]}"
         )
 
@@ -191,17 +201,25 @@ def _columns(layout: TableLayout, found: _Proposal) -> TableColumns:
         id=place_of("id"),
         role=place_of("role"),
         radius=place_of("radius"),
-        spread=_spread(layout, found, own=sizes[2]),
+        spread=spread_columns(layout, found.columns, own=sizes[2]),
         description=_description(layout, found),
     )
 
 
-def _spread(layout: TableLayout, found: _Proposal, *, own: float) -> tuple[tuple[int, float], ...]:
-    """Columns of covariances, else of standard deviations, and their units [m or m²]."""
+def spread_columns(
+    layout: TableLayout, columns: Sequence[Meaning], *, own: float
+) -> tuple[tuple[int, float], ...]:
+    """Columns of covariances, else of standard deviations, and their units [m or m²]; none.
+
+    Args:
+        layout: Of the table.
+        columns: What each column means.
+        own: Meters of one unit where a name states none.
+    """
     for whole, power in ((COVARIANCES, 2), (SIGMAS, 1)):
-        if not {*whole} <= {*found.columns}:
+        if not {*whole} <= {*columns}:
             continue
-        at = [found.columns.index(one) for one in whole]
+        at = [columns.index(one) for one in whole]
         units = [column_name(layout.names[k]).unit if k < len(layout.names) else None for k in at]
         sizes = [UNITS_M[unit] if unit else own for unit in units]
         return tuple((k, size**power) for k, size in zip(at, sizes, strict=True))

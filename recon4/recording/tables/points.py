@@ -131,11 +131,11 @@ def _point(line: int, cells: list[str], columns: TableColumns, *, partial: bool)
         (x, y, z),
         cell(columns.role),
         radius * abs(columns.factor[0]),
-        _covariance([(cell(at), size) for at, size in columns.spread]),
+        spread_of([(cell(at), size) for at, size in columns.spread]),
     )
 
 
-def _covariance(cells: list[tuple[str, float]]) -> Covariance | None:
+def spread_of(cells: list[tuple[str, float]]) -> Covariance | None:
     """Of six covariances, or of three standard deviations, with their units; None = all are empty.
 
     Raises:

@@ -6,11 +6,12 @@ import re
 import numpy as np
 import pytest
 
-from recon4.errors import CorruptFile, GeoreferenceError
+from recon4.errors import ConfigError, CorruptFile, GeoreferenceError
 from recon4.recording.tables.coordinates import ColumnChoice
+from recon4.recording.tables.spreads import read_covariances
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_limits import ControlLimits
-from recon4.slices.control_points import ControlPoint, read_control
+from recon4.slices.control_points import ControlPoint, read_control, with_covariances
 from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, residuals
@@ -321,6 +322,37 @@ def test_points_of_a_topographic_list_are_asked_for_their_axes(data):
     assert (len(found.points), len(found.skipped)) == (388, 58)  # numbers of points come twice
     assert "is 507830.722" in found.table.question
     assert found.points[0].xyz_m == (507830.722, 4273070.997, 66.914)
+
+
+def test_roles_are_read_in_the_words_of_surveyors():
+    rows = ["A,1,2,3,Passpunkt", "B,1,2,4,Kontrollpunkt", "C,2,2,3,GCP", "D,2,2,4,check point"]
+    found = read_control("\n".join(["ID,X,Y,Z,Rolle", *rows]).encode())
+
+    assert [one.role for one in found.points] == ["control", "check", "control", "check"]
+
+
+def test_covariances_come_from_a_file_of_their_own_too():
+    points = read_control(b"id,E,N,H\nA,1,2,3\nB,2,3,4\n").points
+    table = "\ufeffPunkt;E;N;sE [mm];sN [mm];sH [mm]\nB;1,0;2,0;3;4;6,0\n"
+    given = with_covariances(points, read_covariances(table.encode(), "k.csv"), "k.csv")
+
+    assert given[0].covariance_m2 is None
+    assert given[1].covariance_m2 == pytest.approx((9e-6, 0.0, 0.0, 1.6e-5, 0.0, 3.6e-5))
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ("id,E,N\nA,1,2\n", "expected the columns id, sE, sN, sH"),
+        ("id,sE,sN,sH\nA,0.01,0.01,\n", "line 2: 'A': expected a number"),
+        ("id,sE,sN,sH\nA,1,1,1\nA,1,1,1\n", "line 3: 'A': is there already"),
+        ("id,sE,sN,sH\nZ,1,1,1\n", "not in the survey: Z"),
+    ],
+)
+def test_a_file_of_covariances_that_is_wrong_is_refused(table, message):
+    points = read_control(b"id,E,N,H\nA,1,2,3\nB,2,3,4\n").points
+    with pytest.raises(ConfigError, match=message):
+        with_covariances(points, read_covariances(table.encode(), "k.csv"), "k.csv")
 
 
 def test_a_row_that_is_no_point_is_listed_before_the_first_that_is_one_too():
