@@ -39,10 +39,10 @@ def plan(
     draft: DraftOption = False,
 ) -> None:
     """Draw the floor plans of a building: walls, columns, doors, windows, furniture as lines."""
+    opened = _open(project, file, crs, draft=draft)
     from recon4.products.write import ProductOptions
 
-    options = ProductOptions(storey=storey)
-    write(_made("plan", _open(project, file, crs, draft=draft), file, options=options))
+    write(_made("plan", opened, file, options=ProductOptions(storey=storey)))
 
 
 @products.command("orthophoto")
@@ -61,6 +61,7 @@ def orthophoto(
     crs: CrsOption = "",
 ) -> None:
     """Draw a storey from above, or the elevation of a wall, by normalized intensity."""
+    opened = _open(project, file, crs)
     from recon4.products.write import ProductOptions
 
     options = ProductOptions(storey=of, pixel_m=pixel)
@@ -68,7 +69,7 @@ def orthophoto(
         x1, y1, x2, y2, *depth = numbers(of, 5 if of.count(",") == 4 else 4)
         options = replace(options, storey="", line=(x1, y1, x2, y2))
         options = replace(options, depth_m=depth[0]) if depth else options
-    write(_made("orthophoto", _open(project, file, crs), file, options=options))
+    write(_made("orthophoto", opened, file, options=options))
 
 
 @products.command("terrain")
@@ -86,6 +87,7 @@ def terrain_of(
     crs: CrsOption = "",
 ) -> None:
     """Model the terrain of an outdoor walk: its heights, or contours of the ground."""
+    opened = _open(project, file, crs)
     from recon4.products.drawing import DRAWINGS
     from recon4.products.write import ProductOptions
 
@@ -95,7 +97,7 @@ def terrain_of(
         options = (
             replace(options, interval_m=spacing) if lines else replace(options, cell_m=spacing)
         )
-    write(_made("terrain", _open(project, file, crs), file, options=options))
+    write(_made("terrain", opened, file, options=options))
 
 
 @products.command("volume")
@@ -124,6 +126,7 @@ def _surface(name: str) -> TerrainKind:
 
 
 def _open(project: Path, file: Path, crs: str, *, draft: bool = False) -> OpenedMap:
+    """Confine the process and open the map; what imports kernels comes after it."""
     confine_command(write=[file.parent])
     from recon4.api.maps import open_map
     from recon4.review.approval_state import latest_state

@@ -61,6 +61,23 @@ def test_control_points_are_noted_in_no_folder_without_a_map(tmp_path, capsys):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("command", ["plan", "orthophoto", "terrain"])
+def test_a_command_confines_itself_before_it_loads_kernels(command):
+    code = (
+        "import sys, recon4.cli.products as products\n"
+        "class Confined(Exception): pass\n"
+        "def confine(**_):\n"
+        "    raise Confined('numba' in sys.modules)\n"
+        "products.confine_command = confine\n"
+        "from typer.testing import CliRunner\n"
+        f"made = CliRunner().invoke(products.products, ['{command}', 'walk', 'a.tif'])\n"
+        "assert isinstance(made.exception, Confined), made.exception\n"
+        "sys.exit(made.exception.args[0])\n"
+    )
+    # A confined process may not write the shared cache: kernels that come before it look there.
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
 def test_no_command_shows_the_help_and_is_wrong_usage(capsys):
     assert main([]) == 2
     assert "doctor" in capsys.readouterr().out
