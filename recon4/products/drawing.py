@@ -12,6 +12,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.products.tuning import CURVES
 from recon4.slices.map_crs import MapFrame
 from recon4.store.atomic import atomic_file
 
@@ -50,6 +51,8 @@ class DrawnShape:
     """Of GeoJSON: its properties."""
     holes: tuple[Array, ...] = ()
     """Of an area, in the map [m], (M, 3) each."""
+    arc: bool = False
+    """Its corners lie on a circle: an ARC, or a CIRCLE if it ends where it begins, in DXF."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,7 +114,7 @@ def _write_dxf(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes) ->
         facts = {"layer": title.layer.name, "insert": tuple(at.tolist())}
         space.add_text(title.text, height=0.25, dxfattribs=facts)
     drawing.header.custom_vars.append("recon4", notes.description)
-    drawing.header.custom_vars.append("coordinates", notes.frame.text)
+    drawing.header.custom_vars.append("coordinates", notes.frame.written_text)
     drawing.saveas(path)
 
 
@@ -125,6 +128,9 @@ def _add_shape(space: Modelspace, shape: DrawnShape, frame: MapFrame) -> None:
     rings = [_placed(ring, frame) for ring in (shape.p_map, *shape.holes)]
     z_m = float(rings[0][:, 2].mean())
     facts: dict[str, object] = {"layer": shape.layer.name}
+    if shape.arc:
+        _add_arc(space, rings[0], facts)
+        return
     if not shape.layer.hatched:
         facts["elevation"] = z_m
         space.add_lwpolyline(rings[0][:, :2], close=shape.closed, dxfattribs=facts)
@@ -133,6 +139,29 @@ def _add_shape(space: Modelspace, shape: DrawnShape, frame: MapFrame) -> None:
     hatch.set_solid_fill(color=shape.layer.color)
     for k, ring in enumerate(rings):
         hatch.paths.add_polyline_path(ring[:, :2], is_closed=True, flags=16 if k else 1)
+
+
+def _add_arc(space: Modelspace, p: Array, facts: dict[str, object]) -> None:
+    """Corners on a circle as an ARC from the first to the last one; DXF turns to the left."""
+    center, radius_m = circle_through(p[:, :2])
+    at = (*center.tolist(), float(p[:, 2].mean()))
+    if np.linalg.norm(p[0, :2] - p[-1, :2]) < CURVES.closed_m:
+        space.add_circle(at, radius_m, dxfattribs=facts)
+        return
+    way = p[:, :2] - center
+    turn = way[:-1, 0] * way[1:, 1] - way[:-1, 1] * way[1:, 0]
+    ends = way[[0, -1]] if turn.sum() > 0.0 else way[[-1, 0]]
+    start, end = np.degrees(np.arctan2(ends[:, 1], ends[:, 0])).tolist()
+    space.add_arc(at, radius_m, start, end, dxfattribs=facts)
+
+
+def circle_through(p: Array) -> tuple[Array, float]:
+    """Center (2,) and radius [m] of corners on a circle, (N, 2), N > 2 (Kåsa 1976)."""
+    middle = p.mean(axis=0)
+    q = p - middle  # coordinates of a CRS are large
+    A = np.column_stack([2.0 * q, np.ones(len(q))])
+    x, y, c = np.linalg.lstsq(A, (q**2).sum(axis=1), rcond=None)[0]
+    return middle + np.array([x, y]), float(np.sqrt(c + x * x + y * y))
 
 
 def _write_geojson(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes) -> None:
@@ -148,7 +177,7 @@ def _write_geojson(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes
     code = notes.frame.crs.removeprefix("EPSG:").split("+")[0]
     if notes.frame.to_crs and code.isdigit():
         record["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{code}"}}
-    record |= {"coordinates": notes.frame.text, "features": features}
+    record |= {"coordinates": notes.frame.written_text, "features": features}
     path.write_text(json.dumps(record), "utf-8")
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from recon4.geometry.se3 import Array
 from recon4.products.contours import Contour
-from recon4.products.drawing import DrawingLayer, DrawnShape, DrawnTitle
+from recon4.products.drawing import DrawingLayer, DrawnShape, DrawnTitle, circle_through
 from recon4.products.floor_plan import FloorPlan
 
 if TYPE_CHECKING:
@@ -20,13 +20,16 @@ if TYPE_CHECKING:
 def plan_shapes(plan: FloorPlan) -> Iterator[DrawnShape]:
     """The shapes of a storey; the names of its layers begin with that of the storey."""
     z_m = plan.storey.floor_m
-    storey = {"storey": plan.storey.name}
+    storey: dict[str, float | str] = {"storey": plan.storey.name}
     fill, outline = _layer(plan, "WALLS_FILL", 8), _layer(plan, "WALLS", 7, lineweight=35)
     for section in plan.sections:
         yield _area(fill, section, z_m, storey=plan.storey.name)
     for line in plan.walls:
         length = round(float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()), 4)
-        yield DrawnShape(outline, _lifted(line, z_m), facts=storey | {"length_m": length})
+        facts: dict[str, float | str] = storey | {"length_m": length}
+        if curved := len(line) > 2:
+            facts["radius_m"] = round(circle_through(line)[1], 4)
+        yield DrawnShape(outline, _lifted(line, z_m), facts=facts, arc=curved)
     for column in plan.columns:
         yield _area(_layer(plan, "COLUMNS", 1, lineweight=35), column, z_m, storey=plan.storey.name)
     kinds = {
@@ -35,7 +38,7 @@ def plan_shapes(plan: FloorPlan) -> Iterator[DrawnShape]:
         "hidden": _layer(plan, "WALLS_HIDDEN", 8, lineweight=18),
     }
     for hole in plan.openings:
-        facts: dict[str, float | str] = {
+        facts = {
             "width_m": round(hole.width_m, 4),
             "sill_m": round(hole.sill_m, 2),
             "head_m": round(hole.head_m, 2),

@@ -244,6 +244,8 @@ class CurveTuning(Struct, frozen=True, kw_only=True):
     least_cells: int = 15
     chord_m: float = 0.001
     """A drawn arc is off the circle by this much at most [m]."""
+    closed_m: float = 0.001
+    """An arc whose ends are nearer is a whole circle [m]."""
     step_m: float = 0.06
 
 

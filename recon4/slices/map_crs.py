@@ -33,6 +33,13 @@ class MapFrame:
         place = f"origin at E {east:.3f} N {north:.3f} H {up:.3f} in {self.crs}"
         return f"map frame ({place}), x y z, z up, meters"
 
+    @property
+    def written_text(self) -> str:
+        """What the coordinates of a file are that was put into the CRS, if there is one."""
+        if self.to_crs is None:
+            return self.text
+        return f"easting, northing, height in {self.crs}, meters"
+
     def from_crs(self, p_crs: Array) -> Array:
         """Points of the CRS in the map [m], (N, 3): Newton steps on `to_crs`, to 1 µm.
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.products.drawing import DrawingLayer, DrawingNotes, DrawnShape, write_drawing
 from recon4.products.floor_plan import draw_plan
 from recon4.products.storeys import Levels, find_storeys, level_surfaces, storey_named
 from recon4.products.write import ProductOptions, ProductSource, write_product
@@ -183,6 +184,8 @@ def test_a_dxf_has_layers_by_meaning_and_coordinates_of_the_crs(rooms, tmp_path,
     drawing = ezdxf.readfile(path)
     assert drawing.audit().errors == []
     assert drawing.units == ezdxf.units.M
+    said = dict(drawing.header.custom_vars.properties)["coordinates"]
+    assert said == f"easting, northing, height in {PLACED.crs}, meters"
     space = drawing.modelspace()
     walls = space.query('LWPOLYLINE[layer=="S0_WALLS"]')
     p = np.array([point[:2] for line in walls for point in line.get_points()])
@@ -194,6 +197,25 @@ def test_a_dxf_has_layers_by_meaning_and_coordinates_of_the_crs(rooms, tmp_path,
     assert len(space.query('LWPOLYLINE[layer=="S0_COLUMNS"]')) == 1
     assert ("Eva" in path.read_text()) == bool(stamp)
     assert [one.name for one in tmp_path.iterdir()] == ["plan.dxf"]
+
+
+@pytest.mark.parametrize(("start", "sweep"), [(0.4, 2.0), (5.5, -2.0), (0.0, 2.0 * np.pi)])
+def test_a_curved_wall_is_an_arc_in_a_dxf(start, sweep, tmp_path):
+    turn = start + np.linspace(0.0, sweep, 60)
+    line = np.column_stack([3.0 * np.cos(turn), 3.0 * np.sin(turn), np.full(60, FLOOR_M)])
+    shape = DrawnShape(DrawingLayer("S0_WALLS", 7), line, arc=True)
+    write_drawing([shape], tmp_path / "a.dxf", DrawingNotes(frame=PLACED))
+
+    (drawn,) = ezdxf.readfile(tmp_path / "a.dxf").modelspace()
+    assert drawn.dxftype() == ("CIRCLE" if abs(sweep) > 6.0 else "ARC")
+    assert drawn.dxf.radius == pytest.approx(3.0, abs=1e-3)
+    np.testing.assert_allclose(np.array(drawn.dxf.center)[:2], UTM_M[:2], atol=1e-3)
+    if drawn.dxftype() == "ARC":
+        middle = UTM_M[:2] + 3.0 * np.array([np.cos(start + sweep / 2), np.sin(start + sweep / 2)])
+        ends = np.deg2rad([drawn.dxf.start_angle, drawn.dxf.end_angle])
+        along = ends[0] + ((ends[1] - ends[0]) % (2 * np.pi)) / 2
+        at = np.array(drawn.dxf.center)[:2] + 3.0 * np.array([np.cos(along), np.sin(along)])
+        np.testing.assert_allclose(at, middle, atol=2e-3)
 
 
 def test_geojson_says_what_each_line_is(rooms, tmp_path):
