@@ -63,7 +63,7 @@ def _write_csv(parts: Iterator[CoreDifferences], path: Path, *, frame: MapFrame)
     columns = [*axes, "nx", "ny", "nz", "distance_m", "lod_m", "points_1", "points_2", "state"]
     names = np.array([state.name.lower() for state in CoreState])
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        file.write(f"# recon4 compare, {frame.text}\n{','.join(columns)}\n")
+        file.write(f"# recon4 compare, {frame.written_text}\n{','.join(columns)}\n")
         for part in parts:
             p = frame.to_crs(part.p_map) if frame.to_crs else part.p_map
             numbers = np.column_stack([p, part.normal, part.distance_m, part.lod_m])

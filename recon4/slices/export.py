@@ -94,7 +94,7 @@ def write_csv(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
     count = 0
     axes = ["easting_m", "northing_m", "height_m"] if frame.to_crs else ["x_m", "y_m", "z_m"]
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
-        file.write(f"# recon4 slice, {frame.text}\n")
+        file.write(f"# recon4 slice, {frame.written_text}\n")
         file.write(",".join(["slice", "u_m", "v_m", "off_m", *axes, *fields]) + "\n")
         for number, part, p_map in chosen.parts(fields):
             p = frame.to_crs(p_map) if frame.to_crs else p_map
