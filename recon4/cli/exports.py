@@ -29,7 +29,8 @@ def export(  # noqa: PLR0913 - options of a command
         typer.Argument(
             help="File to write; the suffix selects the format: .laz, .copc.laz (COPC), "
             ".e57 (scans with poses), .ply, .pcd, .xyz; .txt = KITTI poses; .3dtk = folder of "
-            "scans with poses for 3DTK; .csv, .geojson = the findings."
+            "scans with poses for 3DTK; .csv, .geojson = the findings; .gpkg = trajectory, points, "
+            "findings, notes, double walls."
         ),
     ],
     *,
@@ -98,6 +99,7 @@ def _box(text: str) -> Box | None:
 
 def _write_export(project: Path, file: Path, wanted: ExportOptions) -> None:
     from recon4.cli.terminal import watcher
+    from recon4.delivery.exports import write_layers_file
     from recon4.export.findings import ENDINGS
     from recon4.export.map_files import export_map
     from recon4.export.scan_files import export_3dtk
@@ -105,10 +107,16 @@ def _write_export(project: Path, file: Path, wanted: ExportOptions) -> None:
     ending = file.suffix.lower()
     if ending in (".txt", ".3dtk", *ENDINGS) and set(wanted.changed) - {"draft"}:
         raise typer.BadParameter(f"{ending} is written as it is: only --draft can be given")
+    if ending == ".gpkg" and set(wanted.changed) - {"draft", "crs"}:
+        raise typer.BadParameter(".gpkg takes only --crs and --draft")
     if ending in (".txt", *ENDINGS):
         _export_text(project, file, draft=wanted.draft)
         return
     with watcher() as progress:
+        if ending == ".gpkg":
+            write(f"{write_layers_file(project, file, wanted, progress=progress)} in {file}")
+            _write_approval(project, draft=wanted.draft)
+            return
         if ending == ".3dtk":
             points = export_3dtk(project, file, progress=progress, draft=wanted.draft)
             write(f"{points} points in {file}")

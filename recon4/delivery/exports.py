@@ -41,15 +41,9 @@ def export_file(
         StoreError: If there is no map yet, or the file cannot be written or reads back wrong.
     """
     kind = kind_named(kind_name, options)
-    artifacts = read_artifacts(project)
-    if "map" not in artifacts:
-        raise StoreError(f"{project.name} has no map of points yet: process it first")
-    keys = {name: one.name for name, one in artifacts.items()}
-    approval = None if options.draft else approval_of(project, keys)
+    wanted, keys = _wanted(project, options)
     state = WRITTEN_AS_DRAFT if options.draft else approval_state(project, keys)
     path = folder / f"{project.name}-{kind.name}"
-    evidence = approval.evidence if approval else None
-    wanted = WantedFile(artifacts, evidence, options)
     points, text = write_kind(project, kind, path, wanted=wanted, progress=progress)
     digest = FileDigest.of(path)
     return ExportedFile(
@@ -63,6 +57,27 @@ def export_file(
         recon4=recon4.__version__,
         points=points,
     )
+
+
+def write_layers_file(
+    project: Path, path: Path, options: ExportOptions, *, progress: Progress
+) -> str:
+    """Write trajectory, points, findings, notes and double walls as a GeoPackage; what is in it.
+
+    Raises:
+        Altered, GeoreferenceError, StoreError: As `export_file`.
+    """
+    return _write_layers(project, path, _wanted(project, options)[0], progress=progress)
+
+
+def _wanted(project: Path, options: ExportOptions) -> tuple[WantedFile, dict[str, str]]:
+    """What files of a project are made of, and the keys of its artifacts."""
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project.name} has no map of points yet: process it first")
+    keys = {name: one.name for name, one in artifacts.items()}
+    approval = None if options.draft else approval_of(project, keys)
+    return WantedFile(artifacts, approval.evidence if approval else None, options), keys
 
 
 @dataclass(frozen=True, slots=True)
