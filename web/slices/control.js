@@ -23,6 +23,7 @@ import {
 import { askFirst } from "../shared/download.js";
 import { t } from "../shared/texts.js";
 import { columnTable, missing } from "./columns.js";
+import { ENLARGED, knownPlaces } from "./ellipses.js";
 import { limitsForm } from "./limits.js";
 import { AXES, combined } from "./measured.js";
 import { figures, HEADS, residualCells, roleText } from "./residual_table.js";
@@ -72,7 +73,7 @@ const named = (/** @type {string[]} */ ids) =>
  * @param {SlicesPage} page
  * @returns {Panel}
  */
-export function controlPanel(host, { id, change, point: pointAt, measured }) {
+export function controlPanel(host, { id, change, point: pointAt, measured, known }) {
   const state = {
     kept: /** @type {KeptControl | null} */ (null),
     report: /** @type {ControlReport | null} */ (null),
@@ -197,6 +198,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
   async function report() {
     const points = state.kept?.points.length;
     set({ report: points ? await readControlReport(id) : null });
+    known(knownPlaces(state.kept?.picks ?? {}, state.report?.rows ?? []));
   }
 
   /** null = the usual limits. */
@@ -352,7 +354,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured }) {
           </tbody>
         </table>
       </div>
-      <p class="quiet">${t("residuals-are")}</p>
+      <p class="quiet">${t("residuals-are")} ${t("ellipses-are", { times: ENLARGED })}</p>
       ${
         points.length > MAX_ROWS
           ? html`<p class="quiet">

@@ -25,7 +25,10 @@ import { SliceView } from "./view.js";
 export const first = new SliceView();
 export const second = new SliceView();
 
-/** What the page shows. */
+/**
+ * What the page shows.
+ * @typedef {typeof page} SlicePageState
+ */
 export const page = {
   state: parse(location.search),
   facts: /** @type {SliceFacts | null} */ (null),
@@ -40,6 +43,7 @@ export const page = {
   outline: /** @type {import("./findings.js").Outline} */ ({ corners: [], drawing: false }),
   brush: noBrush(), // what is painted gets another class
   like: noLiking(), // a thing, and all that are like it
+  known: /** @type {import("./ellipses.js").KnownPlace[]} */ ([]), // measured surveyed points
   reading: "", // what is known of the picked points
   mode: /** @type {"split" | "swipe"} */ ("split"),
   swipe: 50, // where the second slice begins [%]

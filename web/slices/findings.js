@@ -11,6 +11,7 @@ import { t } from "../shared/texts.js";
 /**
  * @import {PickView, SliceFacts, SliceImageRequest} from "../shared/http_types"
  * @import {Brush} from "./brush.js"
+ * @import {KnownPlace} from "./ellipses.js"
  * @import {Liking} from "./liking.js"
  * @import {SliceState} from "./state.js"
  * @typedef {object} SlicesPage what the panels need of the page
@@ -24,6 +25,7 @@ import { t } from "../shared/texts.js";
  * @property {(action?: "draw" | "back" | "clear") => Outline} outline changes the polygon
  * @property {(next?: Partial<Brush>) => Brush} brush changes the brush
  * @property {(next?: Partial<Liking>) => Liking} like changes the thing that is picked
+ * @property {(places: KnownPlace[]) => void} known shows the error ellipses of surveyed points
  * @typedef {object} Outline the polygon whose points get another class
  * @property {Array<[number, number]>} corners u, v [m]
  * @property {boolean} drawing whether clicks are its corners

@@ -15,14 +15,15 @@ import {
 } from "../shared/api.js";
 import { attempt, byId, detailOf, only, say, showError, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
-import { brushMarks, brushOf } from "./brush.js";
-import { distanceText, imageText, lengthText, planeText, pointText } from "./captions.js";
+import { brushOf } from "./brush.js";
+import { distanceText, imageText, planeText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
 import { help } from "./help.js";
-import { boxMarks, likingOf } from "./liking.js";
+import { likingOf } from "./liking.js";
 import { nextColor, nextSurface } from "./next_choice.js";
+import { pageMarks } from "./page_marks.js";
 import { isPlan, showPlan } from "./plan.js";
-import { endsOf, stretchMarks, timesOf } from "./stretch_mark.js";
+import { endsOf, timesOf } from "./stretch_mark.js";
 import { COLORS, SURFACES, format, moved, planeOf, startOf, parse, unframed } from "./state.js";
 import { t } from "../shared/texts.js";
 import { factsIn } from "../shared/verdict.js";
@@ -184,23 +185,15 @@ function read(/** @type {string} */ text) {
 }
 
 function mark() {
-  const { measured, measuring, picked, shown, stretch } = page;
-  const [from, to] = measured;
-  const text = from && to ? lengthText(from, to) : "";
-  const points = measuring || measured.length ? measured : picked ? [picked] : [];
-  const along = shown ? stretchMarks(stretch, shown) : [];
-  const marks = [...along, { points: points.map((one) => one.uv), text }, ...outlineMarks()].concat(
-    brushMarks(page.brush),
-    boxMarks(page.state, page.like.boxes),
-  );
+  const marks = pageMarks(page);
   first.marks = marks;
   second.marks = marks;
 }
 
-/** The polygon whose points get another class, closed. */
-function outlineMarks() {
-  const { corners } = page.outline;
-  return corners.length ? [{ points: [...corners, corners[0]], dots: corners }] : [];
+/** Shows the error ellipses of points that were measured in the map. */
+function known(/** @type {import("./ellipses.js").KnownPlace[]} */ places) {
+  page.known = places;
+  mark();
 }
 
 function corner(/** @type {[number, number]} */ uv) {
@@ -347,6 +340,7 @@ const fillFindings = () =>
     outline,
     brush,
     like,
+    known,
   });
 
 async function reload() {

@@ -305,6 +305,7 @@ survey-file = Vermessungsdatei
 as-draft = , als Entwurf
 measured-earlier = Nur in einer früheren Karte oder Version gemessen, zählt nicht: { $names }. Neu messen.
 residuals-are = Karte minus Vermessung [cm]. – = nicht gemessen, zählt nirgends: ein Punkt auf einer Fläche ist nur quer zu ihr gemessen (Quer), ein im Schnitt gewählter in der Ebene des Schnitts. Für die dritte Komponente in einem zweiten Schnitt wählen.
+ellipses-are = Ellipsen im Schnitt zeigen 1 σ, { $times }-fach vergrößert: rot die der Karte, grün die der Vermessung.
 first-of-points = Die ersten { $shown } von { $count } Punkten; die Dateien haben alle.
 all-surfaces = Alle auf die nächste Fläche
 residuals-csv = Restfehler als CSV

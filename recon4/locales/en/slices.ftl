@@ -305,6 +305,7 @@ survey-file = Survey file
 as-draft = , as a draft
 measured-earlier = Measured in an earlier map or version only, not counted: { $names }. Measure them again.
 residuals-are = Map minus survey [cm]. – = not measured, counts nowhere: a point on a surface is measured across it only (Across); a point picked in a slice, in the plane of the slice. Pick it in a second slice for the third component.
+ellipses-are = Ellipses in the slice show 1 σ, { $times } times enlarged: red of the map, green of the survey.
 first-of-points = The first { $shown } of { $count } points; the files have all.
 all-surfaces = All on the nearest surface
 residuals-csv = Residuals as CSV
