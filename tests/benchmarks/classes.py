@@ -21,10 +21,12 @@ import numpy as np
 from recon4.classes.stage import write_classes
 from recon4.evaluation.table import text_table
 from recon4.geometry.raycast import Scene
+from recon4.geometry.se3 import SE3
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.mirrors import Mirror, Sight, find_mirrors
 from recon4.mapping.undistort import place_with_origins
 from recon4.model.classes import PointClass
+from recon4.model.rig import Rig, load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import read_tum
 from recon4.settings import MapSettings
@@ -44,6 +46,8 @@ class WalkScene:
     world: str
     seconds: float
     crowd: Crowd = ALONE
+    tilt_deg: float = 0.0
+    """The first LiDAR looks down ahead by this angle."""
 
 
 SCENES = {
@@ -53,6 +57,7 @@ SCENES = {
     "people": WalkScene("office", 20.0, Crowd(people=2)),
     "cars": WalkScene("street", 20.0, Crowd(people=1, vehicles=2)),
     "mirrors": WalkScene("mirrors", 16.0),
+    "showroom": WalkScene("showroom", 20.0, Crowd(people=2, vehicles=2), tilt_deg=25.0),
 }
 EVERY = 4
 """One of this many points of a map is measured."""
@@ -74,7 +79,14 @@ def figures(name: str, work: Path, *, seed: int) -> str:
     """The tables of a scene; its walk is kept in the folder for the next run."""
     scene, folder = SCENES[name], work / f"{name}-{seed}"
     models = Models(lidar=replace(LidarModel(), carrier_returns=True))
-    setup = prepare(scene.world, seconds=scene.seconds, seed=seed, models=models, crowd=scene.crowd)
+    setup = prepare(
+        scene.world,
+        seconds=scene.seconds,
+        seed=seed,
+        rig=tilted(load_rig("4recon"), scene.tilt_deg),
+        models=models,
+        crowd=scene.crowd,
+    )
     if not folder.exists():
         folder.mkdir(parents=True)
         simulate_frames(setup, folder)
@@ -96,6 +108,14 @@ def figures(name: str, work: Path, *, seed: int) -> str:
     head = ("", "points", "mean cm", "median cm", "> 10 cm %", "> 50 cm %")
     cost = f"{ms:.1f} ms of CPU a multiframe, {size:.3f} bytes a point"
     return f"{found}\n{cost}\n\n{text_table(head, maps)}"
+
+
+def tilted(rig: Rig, tilt_deg: float) -> Rig:
+    """The rig with its first LiDAR turned about the body's y axis, so that it looks down ahead."""
+    first = rig.sensors[0]
+    turn = SE3.from_rpy(0.0, float(np.deg2rad(tilt_deg)), 0.0, t=[0.0] * 3).R
+    mount = SE3(turn @ first.T_body_sensor.R, first.T_body_sensor.t)
+    return replace(rig, sensors=(replace(first, T_body_sensor=mount), *rig.sensors[1:]))
 
 
 def mirrors_of(frames: FrameStore, truth: Trajectory) -> list[Mirror]:

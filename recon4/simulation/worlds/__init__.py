@@ -9,7 +9,7 @@ from importlib import import_module
 from recon4.errors import ConfigError
 from recon4.simulation.world import World
 
-FIXED = ("office", "staircase", "street", "field", "hall")
+FIXED = ("office", "staircase", "street", "field", "hall", "showroom")
 """Worlds of one geometry."""
 PROCEDURAL = (
     "corridor", "tunnel", "garage", "plaza", "storeys", "tower", "forest", "mirrors", "elevator",

@@ -14,6 +14,7 @@ ROUND_S = {
     "office": 250, "staircase": 200, "street": 220, "field": 450, "corridor": 170, "tunnel": 110,
     "garage": 110, "plaza": 150, "storeys": 150, "tower": 200,
     "forest": 140, "hall": 45, "mirrors": 25, "elevator": 60, "rooms": 200,
+    "showroom": 45,
 }  # fmt: skip
 """About a full round [s]."""
 VARIANTS = [f"{name}:{variant}" for name in PROCEDURAL for variant in (1, 2)]
