@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.evaluation.ate import absolute_error, pair_poses
+from recon4.evaluation.ate import AbsoluteError, absolute_error, pair_poses
 from recon4.evaluation.evaluate import at_frames
 from recon4.evaluation.floor import map_onto_model
-from recon4.evaluation.reference_mesh import distance_to, read_mesh
+from recon4.evaluation.reference_mesh import TriangleMesh, distance_to, read_mesh
 from recon4.evaluation.table import text_table
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.poses import read_tum
 from recon4.store.project import read_artifacts
@@ -40,20 +40,12 @@ def main() -> None:
 
 def row_of(walk: Path, recording: Path) -> tuple[str, ...]:
     """Figures of a walk; median and 95 % of every 20th point."""
-    truth = pair_poses(
-        at_frames(read_tum(walk / "trajectory.tum")), read_tum(recording / "truth.tum")
-    )
     tiles = TileSet.open(read_artifacts(walk)["map"])
-
-    def chunks() -> Iterator[Array]:
-        return (tile.xyz_m() for tile in tiles)
-
     mesh = read_mesh(recording / "model.ply")
-    start = absolute_error(truth).T_true_map
-    T = map_onto_model(chunks(), mesh, start=start, rng=np.random.default_rng(0))
+    T, _ = onto_truth(tiles, mesh, walk, recording)
     distance = distance_to(mesh)
     total, far, some = 0.0, 0, list[Array]()
-    for p_map in chunks():
+    for p_map in _chunks(tiles):
         off_m = np.abs(distance(T @ p_map))
         total, far = total + float(off_m.sum()), far + int((off_m > FAR_M).sum())
         some.append(off_m[::EVERY])
@@ -67,6 +59,20 @@ def row_of(walk: Path, recording: Path) -> tuple[str, ...]:
         f"{most:.3f}",
         f"{100.0 * far / len(tiles):.4f}",
     )
+
+
+def onto_truth(
+    tiles: TileSet, mesh: TriangleMesh, walk: Path, recording: Path
+) -> tuple[SE3, AbsoluteError]:
+    """The map laid on the true model, and the error of its trajectory after its own fit."""
+    found, true = read_tum(walk / "trajectory.tum"), read_tum(recording / "truth.tum")
+    error = absolute_error(pair_poses(at_frames(found), true))
+    rng = np.random.default_rng(0)
+    return map_onto_model(_chunks(tiles), mesh, start=error.T_true_map, rng=rng), error
+
+
+def _chunks(tiles: TileSet) -> Iterator[Array]:
+    return (tile.xyz_m() for tile in tiles)
 
 
 if __name__ == "__main__":
