@@ -96,8 +96,7 @@ MAY_IMPORT = {
     | {f"recon4.registration.{name}" for name in ("aiding", "tuning")},
     "recon4/review": STAGE
     | {f"recon4.{room}" for room in ("registration", "pose_graph", "mapping", "profiler")}
-    | {"recon4.review", "recon4.slam2d"}
-    | {"recon4.report.approval"}
+    | {"recon4.review", "recon4.slam2d", "recon4.report.approval"}
     | {f"recon4.findings.{name}" for name in ("summary_notes", "review_problems", "wording")},
     "recon4/review/class_corrections.py": STAGE
     | {"recon4.classes.corrections", "recon4.classes.likeness"}
