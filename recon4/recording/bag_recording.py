@@ -50,6 +50,7 @@ from recon4.recording.recipes.bag_points import declared_recipes, say_columns, u
 from recon4.recording.recipes.refuse import require_known
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
+from recon4.recording.stamps import require_forward
 from recon4.recording.topic_choice import (
     FIX_KIND,
     ODOMETRY_KIND,
@@ -227,6 +228,7 @@ class BagRecording:
                     settings=self._settings,
                 )
                 head = first_stamps(bag, topic.name)
+                require_forward(topic.name, head)
                 found[sensor.topic] = CloudReader(
                     clouds,
                     sensor.time_offset_s,

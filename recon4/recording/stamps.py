@@ -7,12 +7,31 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.errors import UnknownFormat
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import known_offset_s, looks_like
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import STAMPS
 from recon4.units import SECOND_NS
+
+
+def require_forward(topic: str, head: Sequence[tuple[int, int]]) -> None:
+    """Check that a topic was not recorded backward.
+
+    Args:
+        topic: Its name.
+        head: Stamps and times of recording of its first messages [ns].
+
+    Raises:
+        UnknownFormat: If each stamp is earlier than the one before.
+    """
+    steps = np.diff([stamp for stamp, _ in head])
+    if len(steps) >= STAMPS.ahead and np.all(steps < 0):
+        raise UnknownFormat(
+            f"{topic}: the recording runs backward: each stamp is earlier than the one before. "
+            "Give the original recording, or a copy in the order of its stamps"
+        )
 
 
 class StampJumps:

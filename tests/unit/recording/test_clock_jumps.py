@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from recon4.errors import UnknownFormat
 from recon4.model.clock_jump import ClockJump
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import ImuSamples
@@ -121,6 +122,16 @@ def test_stamps_that_go_on_while_the_recorder_pauses_are_right():
 
     assert all(clock.is_sound(stamp_ns, recorded_ns) for stamp_ns, recorded_ns in times)
     assert clock.shift_ns == 0
+
+
+def test_a_bag_that_was_recorded_backward_is_refused(tmp_path):
+    with Bag(tmp_path / "bag", "mcap") as bag:
+        for k in range(12):
+            bag.recorded_ns = T0_NS + k * STEP_NS
+            bag.cloud("/points", T0_NS - k * STEP_NS, room_cloud())
+
+    with pytest.raises(UnknownFormat, match="/points: the recording runs backward"):
+        read(tmp_path / "bag", tmp_path / "o")
 
 
 def test_topics_share_a_jump_that_is_measured_a_little_differently():
