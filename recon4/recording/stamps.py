@@ -104,21 +104,23 @@ class StampClock:
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
-        if self._is_elsewhere(stamp_ns, offset_ns):
+        if self.offset_ns is not None and abs(offset_ns - self.offset_ns) > STAMPS.other_ns:
             again = self._run and abs(offset_ns - self._run_ns) <= STAMPS.other_ns
             self._run, self._run_ns = (self._run + 1 if again else 1), offset_ns
+            goes_on = self._goes_on(stamp_ns)
             if self._run < STAMPS.confirm:
-                return False
+                # One that goes on was on its way when the recorder's clock was set.
+                self._last = (stamp_ns, recorded_ns) if goes_on else self._last
+                return goes_on
             self.was_set = True
-            self._go_on_without(offset_ns, recorded_ns)
+            if not goes_on:
+                self._go_on_without(offset_ns, recorded_ns)
         self.offset_ns, self._run = offset_ns, 0
         self._last = stamp_ns, recorded_ns
         return True
 
-    def _is_elsewhere(self, stamp_ns: int, offset_ns: int) -> bool:
-        if self.offset_ns is None or abs(offset_ns - self.offset_ns) <= STAMPS.other_ns:
-            return False
-        return self._last is None or not 0 <= stamp_ns - self._last[0] <= STAMPS.other_ns
+    def _goes_on(self, stamp_ns: int) -> bool:
+        return self._last is not None and 0 <= stamp_ns - self._last[0] <= STAMPS.other_ns
 
     def _go_on_without(self, offset_ns: int, recorded_ns: int) -> None:
         """Take out a jump of the stamps; none if the recording has a gap there, too."""

@@ -68,8 +68,9 @@ def _ends_of(frames: Frames, row: int) -> ClockJump:
     """From the last point before a gap to the first one after it; frames if points have no time."""
     before, after = frames[row], frames[row + 1]
     end_ns = before.t_ns + int(before.dt_ns.max(initial=0))
-    start_ns = after.t_ns + int(after.dt_ns.min(initial=0))
-    timed = np.ptp(before.dt_ns) > 0 and np.ptp(after.dt_ns) > 0
+    start_ns = after.t_ns + int(after.dt_ns.min(initial=after.duration_ns))
+    # A part of a revolution may be a single point.
+    timed = all(np.ptp(frames[place].dt_ns) > 0 for place in (row - 1, row + 2))
     length_ns = start_ns - end_ns
     if not timed:
         length_ns = after.t_ns - before.t_ns - before.duration_ns

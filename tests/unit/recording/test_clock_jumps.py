@@ -134,6 +134,18 @@ def test_a_bag_that_was_recorded_backward_is_refused(tmp_path):
         read(tmp_path / "bag", tmp_path / "o")
 
 
+def test_a_message_on_its_way_when_all_clocks_are_set_changes_nothing():
+    clock = StampClock([(T0_NS, T0_NS)])
+    jumps = [(0, 0), (0, 0), (0, 0), (0, SET_NS), *[(SET_NS, SET_NS)] * 5]
+    times = [
+        (T0_NS + k * STEP_NS + stamps_ns, T0_NS + k * STEP_NS + recorded_ns)
+        for k, (stamps_ns, recorded_ns) in enumerate(jumps)
+    ]
+
+    assert all(clock.is_sound(stamp_ns, recorded_ns) for stamp_ns, recorded_ns in times)
+    assert clock.shift_ns == 0
+
+
 def test_topics_share_a_jump_that_is_measured_a_little_differently():
     report, jumps = ImportReport(), StampJumps()
 

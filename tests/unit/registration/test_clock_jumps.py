@@ -38,6 +38,16 @@ def test_who_walks_on_at_the_same_place_shows_that_the_clocks_were_set(seconds):
     assert jump.length_ns == pytest.approx(seconds * SECOND_NS, abs=FRAME_NS / 300)
 
 
+@pytest.mark.parametrize(("row", "kept"), [(ROW - 1, slice(0, 1)), (ROW, slice(-1, None))])
+def test_a_single_point_at_a_gap_has_a_time(row, kept):
+    made = with_gap(strolling, 37.0)
+    made.frames[row] = made.frames[row].take(kept)
+
+    (jump,) = found(made)
+
+    assert jump.length_ns == pytest.approx(37 * SECOND_NS + FRAME_NS, abs=FRAME_NS / 300)
+
+
 @pytest.mark.parametrize(
     ("pose", "seconds", "away_s"),
     [(strolling, 3.0, 3.0), (strolling, 37.0, 4.0), (standing, 37.0, 0.0), (strolling, 1.0, 0.0)],
