@@ -28,7 +28,8 @@ class SaturatedAxis:
 def saturated_axes(imu: ImuSamples) -> list[SaturatedAxis]:
     """The axes that are saturated at some time.
 
-    A sample that packets repeat until the next one is there counts once.
+    A sample that is repeated until the next one is there counts once. A sensor that counts in
+    coarse steps repeats the largest one at the peak of a motion, too, but the step below as well.
 
     Args:
         imu: As recorded, in its own axes.
@@ -69,6 +70,12 @@ def _runs_at_the_end(values: Array, least: float) -> list[NDArray[np.intp]]:
     largest = float(size.max(initial=0.0))
     if largest < least:
         return []
-    rows = np.flatnonzero(size >= (1.0 - SATURATION.same) * largest)
+    ends_at = (1.0 - SATURATION.same) * largest
+    steps = np.diff(np.unique(size))
+    step = max(float(steps.min(initial=largest)), largest - ends_at)
+    rows = np.flatnonzero(size >= ends_at)
+    below = np.count_nonzero((size >= largest - 1.5 * step) & (size < ends_at))
+    if len(rows) < SATURATION.piled_up * below:
+        return []
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > SATURATION.bridged) + 1)
     return [run for run in runs if len(run) >= SATURATION.least_run]

@@ -61,6 +61,17 @@ def test_samples_that_packets_repeat_do_not_saturate_an_imu():
     assert "250°/s about z, 5 times" in text
 
 
+def test_coarse_steps_at_the_peak_of_a_turn_do_not_saturate_a_gyroscope():
+    """A JT128 counts in 0.14°/s."""
+    step, t_s = np.deg2rad(0.14), np.arange(0.0, 20.0, 0.005)
+    gyro = np.zeros((len(t_s), 3))
+    gyro[:, 2] = step * np.rint(np.deg2rad(142.7) / step * np.exp(-((t_s - 10.0) ** 2)))
+    accel = 0.1 * np.random.default_rng(1).standard_normal((len(t_s), 3))
+    imu = ImuSamples(np.rint(1e9 * t_s).astype(np.int64), gyro, accel)
+
+    assert saturated_texts(imu) == []
+
+
 def test_neither_is_one_that_stands_or_has_no_samples():
     still = np.zeros((200, 3))
     t_ns = np.arange(200) * 5_000_000
