@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Iterator
 from contextlib import suppress
 from enum import IntEnum
@@ -11,6 +12,7 @@ from pathlib import Path
 from recon4.sandbox.tuning import CONFINEMENT
 
 _MAPPINGS = Path("/proc/self/smaps")
+_LIBRARY = re.compile(r"\.so[.\d]*$")
 
 
 class _Mallopt(IntEnum):
@@ -50,10 +52,11 @@ def return_freed_memory(above: int = CONFINEMENT.returned_block_bytes) -> None:
 
 
 def _unwritten() -> Iterator[tuple[int, int]]:
-    """First address and size of each mapping whose pages are all as in its file.
+    """First address and size of each mapping of a library whose pages are all as in its file.
 
     It may not be written, and none of its pages was when it could be, as those that the loader
-    fills with addresses are.
+    fills with addresses are. A library stays where it is; another file may be unmapped by a thread
+    meanwhile, and its addresses belong to something else.
     """
     lines: list[str] = []
     with suppress(OSError):  # not Linux, or hidden from a confined process
@@ -62,8 +65,8 @@ def _unwritten() -> Iterator[tuple[int, int]]:
     for line in lines:
         words = line.split(maxsplit=5)
         if not words[0].endswith(":"):
-            of_file = len(words) > 5 and words[5].startswith("/")
-            span, mode = (words[0], words[1]) if of_file else ("", "")
+            of_library = len(words) > 5 and _LIBRARY.search(words[5])
+            span, mode = (words[0], words[1]) if of_library else ("", "")
         elif words[0] == "Anonymous:" and span and "w" not in mode and words[1] == "0":
             begin, end = (int(address, 16) for address in span.split("-"))
             yield begin, end - begin

@@ -87,7 +87,7 @@ def files_mb():
     return int(re.search(r"RssFile:\\s+(\\d+)", Path("/proc/self/status").read_text())[1]) / 1024
 
 # What the loader does: it writes a page of a file's mapping, and forbids to write it again.
-file = tempfile.TemporaryFile()
+file = tempfile.NamedTemporaryFile(suffix=".so")
 file.write(bytes(mmap.PAGESIZE))
 file.flush()
 relocated = mmap.mmap(file.fileno(), mmap.PAGESIZE, access=mmap.ACCESS_COPY)
