@@ -1,7 +1,9 @@
 """Clouds that another program has put into the frame of a map, instead of those of a sensor.
 
 Registered clouds of a SLAM program look like a recording, and odometry finds a sensor that never
-moves. The view gives it away: it moves on, while everything that was seen stays where it is.
+moves. The view gives it away: it moves on, while everything that was seen stays where it is. A
+LiDAR that stands and never scans twice alike has such a view, too; but seen from itself, surfaces
+hide each other as much at all times. In placed clouds that changes with the way from the origin.
 """
 
 from __future__ import annotations
@@ -46,7 +48,31 @@ def view_moves_on(frames: Frames) -> float:
             moved_m.append(step_m)
         if others > PLACED.most_others:
             return 0.0
-    return float(np.median(moved_m)) if len(moved_m) >= PLACED.least_pairs else 0.0
+    if len(moved_m) < PLACED.least_pairs:
+        return 0.0
+    behind = [_hidden(frames, first) for first in np.unique(firsts).tolist()]
+    return float(np.median(moved_m)) if np.ptp(behind) >= PLACED.least_change else 0.0
+
+
+def _hidden(frames: Frames, first: int) -> float:
+    """Share of directions in which surfaces of the next multiframes lie behind each other."""
+    rows = range(first, first + PLACED.apart)
+    p_body = np.concatenate([body_points(frames[k], frames.rig) for k in rows])
+    range_m = np.linalg.norm(p_body, axis=1)
+    away = range_m > PLACED.nearest_m
+    p_body, range_m = p_body[away], range_m[away]
+    azimuth = np.arctan2(p_body[:, 1], p_body[:, 0])
+    angles = np.stack([azimuth, np.arcsin(p_body[:, 2] / range_m)], axis=1)
+    cells, of = np.unique(
+        np.floor(np.rad2deg(angles) / PLACED.cell_deg), axis=0, return_inverse=True
+    )
+    of = of.reshape(-1)
+    nearest_m, farthest_m = np.full(len(cells), np.inf), np.zeros(len(cells))
+    np.minimum.at(nearest_m, of, range_m)
+    np.maximum.at(farthest_m, of, range_m)
+    met = np.bincount(of, minlength=len(cells)) >= PLACED.least_met
+    behind = farthest_m > nearest_m * PLACED.behind + PLACED.behind_m
+    return float(behind[met].mean()) if met.any() else 0.0
 
 
 def _is_still(T: SE3) -> bool:
