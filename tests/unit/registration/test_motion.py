@@ -263,7 +263,12 @@ def test_what_is_known_of_the_unit_outlives_a_new_start():
 def test_a_saturated_gyroscope_is_not_taken_for_a_measurement():
     imu = imu_of(spinning, 3.0)
     limit = 2.5
-    clipped = replace(imu, gyro_rad_s=np.clip(imu.gyro_rad_s, -limit, limit))
+    noise = np.random.default_rng(1).normal(0.0, 1e-3, imu.accel_m_s2.shape)
+    clipped = replace(
+        imu,
+        gyro_rad_s=np.clip(imu.gyro_rad_s, -limit, limit),
+        accel_m_s2=imu.accel_m_s2 + noise,  # two samples are never alike
+    )
     fast_ns = T0_NS + S_NS  # turns of 4 rad/s for a third of a second
 
     known = ImuMotion(imu, RIG, SETTINGS).predict(
