@@ -3,7 +3,7 @@
 Registered clouds of a SLAM program look like a recording, and odometry finds a sensor that never
 moves. The view gives it away: it moves on, while everything that was seen stays where it is. A
 LiDAR that stands and never scans twice alike has such a view, too; but seen from itself, surfaces
-hide each other as much at all times. In placed clouds that changes with the way from the origin.
+hide each other as much at all times. In placed clouds that changes with the path from the origin.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def view_moves_on(frames: Frames) -> float:
 
 
 def _hidden(frames: Frames, first: int) -> float:
-    """Share of directions in which surfaces of the next multiframes lie behind each other."""
+    """Fraction of directions in which surfaces of the next multiframes lie behind each other."""
     rows = range(first, first + PLACED.apart)
     p_body = np.concatenate([body_points(frames[k], frames.rig) for k in rows])
     range_m = np.linalg.norm(p_body, axis=1)

@@ -105,8 +105,8 @@ class PlacedTuning(Struct, frozen=True, kw_only=True):
     behind_m: float = 0.5
     """In a cell surfaces lie behind each other if the farthest point is this much farther."""
     least_change: float = 0.1
-    """The share of these cells changes by this: in simulated walks by 0.00 to 0.04 for LiDARs that
-    stand (also Livox, in a forest, beside traffic), by 0.19 to 0.55 in placed clouds."""
+    """The fraction of these cells changes by this: in simulated walks by 0.00 to 0.04 for LiDARs
+    that stand (also Livox, in a forest, beside traffic), by 0.19 to 0.55 in placed clouds."""
 
 
 PLACED = PlacedTuning()
