@@ -28,9 +28,9 @@ def export(  # noqa: PLR0913 - options of a command
         Path,
         typer.Argument(
             help="File to write; the suffix selects the format: .laz, .copc.laz (COPC), "
-            ".e57 (scans with poses), .ply, .pcd, .xyz; .txt = KITTI poses; .3dtk = folder of "
-            "scans with poses for 3DTK; .csv, .geojson = the findings; .gpkg = trajectory, points, "
-            "findings, notes, double walls."
+            ".e57, .ptx (scans with poses), .ply, .pcd, .xyz; .txt = KITTI poses; .3dtk = folder "
+            "of scans with poses for 3DTK; .csv, .geojson = the findings; .gpkg = trajectory, "
+            "points, findings, notes, double walls."
         ),
     ],
     *,

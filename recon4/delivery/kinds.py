@@ -92,6 +92,8 @@ KINDS: dict[str, ExportKind] = {
         _kind("map.pcd", "PCD", "PCL, ROS", group=_CLOUDS, takes=_CLASSED, point_bytes=43.0),
         _kind("map.xyz", "XYZ, lines of text", "any program", group=_CLOUDS, takes=_CLASSED,
               point_bytes=29.5),
+        _kind("map.ptx", "PTX, scans with poses as text", "Cyclone, CloudCompare", group=_CLOUDS,
+              takes=_POINTS, point_bytes=36.0),
         _kind("plan.dxf", "Floor plans, DXF", "CAD", group=_DRAWINGS, takes=_PLAN),
         _kind("plan.geojson", "Floor plans, GeoJSON", "GIS", group=_DRAWINGS, takes=_PLAN),
         _kind("orthophoto.tif", "Orthophoto of a storey, GeoTIFF", "GIS, CAD", group=_DRAWINGS,

@@ -51,6 +51,8 @@ def cloud_writer(path: Path) -> CloudWriter:
     name = path.name.lower()
     ending = next((one for one in CLOUD_FORMATS if name.endswith(one)), None)
     if ending is None:
-        raise ConfigError(f"a map is written as {', '.join(CLOUD_FORMATS)}, .e57, got {path.name}")
+        raise ConfigError(
+            f"a map is written as {', '.join(CLOUD_FORMATS)}, .e57, .ptx, got {path.name}"
+        )
     check_name(path, ending)
     return CLOUD_FORMATS[ending]

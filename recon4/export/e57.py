@@ -1,16 +1,10 @@
-"""The map as E57 (ASTM E2807): one scan for each node of the pose graph, with its pose.
-
-A point belongs to the last node before its multiframe. Points are relative to the pose of their
-scan, in single precision: 4 µm at 50 m.
-"""
+"""The map as E57 (ASTM E2807): one scan for each node of the pose graph, with its pose."""
 
 from __future__ import annotations
 
 import tempfile
 import uuid
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,29 +13,12 @@ from numpy.typing import NDArray
 
 import recon4
 from recon4.errors import ConfigError, StoreError
+from recon4.export.node_scans import SCAN_ROW, ScanPoses, sort_by_scan
 from recon4.export.points import PointSource
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.gps_time import adjusted_gps_s, is_absolute
-from recon4.model.trajectory import Times
 from recon4.progress import Progress
-
-_ROW = np.dtype([("cartesianX", "<f8"), ("cartesianY", "<f8"), ("cartesianZ", "<f8"),
-                 ("intensity", "<f8")])  # fmt: skip
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ScanPoses:
-    """Where and when the nodes of the pose graph are."""
-
-    frame_ids: NDArray[np.int64]
-    """Multiframe of each node, ascending, (N,)."""
-    t_ns: Times
-    """Its time [ns], (N,)."""
-    T_map_body: SE3
-    """Its pose, (N,)."""
-    note: str = ""
-    """Description of each scan: the approval, for one."""
 
 
 def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: Progress) -> int:
@@ -70,13 +47,13 @@ def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
         )
     origins = source.transform(scans.T_map_body.t)
     with tempfile.TemporaryDirectory(prefix=".e57.", dir=path.parent) as folder:
-        files = _sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
+        files = sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
         try:
             image = libe57.ImageFile(str(path), "w")
             data = _head(image, source.crs)
             progress.start("scans", source.count, "points")
             for number, file in files:
-                rows = np.fromfile(file, _ROW)
+                rows = np.fromfile(file, SCAN_ROW)
                 _write_scan(image, data, _Scan(number, rows, scans, origins[number]))
                 progress.advance(len(rows))
             image.close()
@@ -87,31 +64,6 @@ def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
                 f"an E57 file cannot be written: {reason}; is the disk full?"
             ) from error
     return source.count
-
-
-def _sort_by_scan(
-    source: PointSource, scans: ScanPoses, origins: Array, *, folder: Path, progress: Progress
-) -> list[tuple[int, Path]]:
-    """Write the points of each scan, relative to its pose, into a file; the scans with points."""
-    R_map_body = scans.T_map_body.R
-    for block in source.blocks([source.intensity, "frame_id"], progress):
-        frames = block.columns["frame_id"].astype(np.int64)
-        scan = np.maximum(np.searchsorted(scans.frame_ids, frames, side="right") - 1, 0)
-        p_body = np.einsum("nji,nj->ni", R_map_body[scan], block.xyz - origins[scan])
-        rows = np.zeros(len(scan), _ROW)
-        rows["cartesianX"], rows["cartesianY"], rows["cartesianZ"] = p_body.T.astype(np.float32)
-        rows["intensity"] = block.columns[source.intensity].astype(np.float32)
-        for number, part in _by_scan(scan):
-            with (folder / str(number)).open("ab") as file:
-                file.write(np.ascontiguousarray(rows[part]).data)
-    return sorted((int(file.name), file) for file in folder.iterdir())
-
-
-def _by_scan(scan: NDArray[np.intp]) -> Iterator[tuple[int, NDArray[np.intp]]]:
-    order = np.argsort(scan, kind="stable")
-    numbers, starts = np.unique(scan[order], return_index=True)
-    for number, (first, end) in zip(numbers, pairwise([*starts, len(scan)]), strict=True):
-        yield int(number), order[first:end]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,14 +110,14 @@ def _write_scan(image: Any, data: Any, scan: _Scan) -> None:
     node.set("cartesianBounds", _bounds(image, scan.rows, ("X", "Y", "Z")))
     node.set("intensityLimits", _bounds(image, scan.rows, ("intensity",)))
     prototype = libe57.StructureNode(image)
-    for name in _ROW.names or ():
+    for name in SCAN_ROW.names or ():
         low, high = float(scan.rows[name].min()), float(scan.rows[name].max())
         prototype.set(name, libe57.FloatNode(image, low, libe57.E57_SINGLE, low, high))
     points = libe57.CompressedVectorNode(image, prototype, libe57.VectorNode(image, True))
     node.set("points", points)
     data.append(node)
     buffers = libe57.VectorSourceDestBuffer()
-    held = {name: np.empty(POINT_EXPORT.block) for name in _ROW.names or ()}
+    held = {name: np.empty(POINT_EXPORT.block) for name in SCAN_ROW.names or ()}
     for name, values in held.items():
         buffers.append(libe57.SourceDestBuffer(image, name, values, len(values), True, True))
     writer = points.writer(buffers)
@@ -238,8 +190,8 @@ def _check(path: Path, files: dict[int, Path], source: PointSource) -> None:
                 f"{path.name} reads back wrong: {file.scan_count} scans, expected {len(files)}"
             )
         for index, rows in enumerate(files.values()):
-            expected, found = np.fromfile(rows, _ROW), file.read_scan_raw(index)
-            for name in _ROW.names or ():
+            expected, found = np.fromfile(rows, SCAN_ROW), file.read_scan_raw(index)
+            for name in SCAN_ROW.names or ():
                 if not np.array_equal(found[name], expected[name]):
                     raise StoreError(f"{path.name} reads back wrong: {name} of scan {index}")
             count += len(expected)

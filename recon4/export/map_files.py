@@ -10,10 +10,12 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.export.clouds import cloud_writer
-from recon4.export.e57 import ScanPoses, export_e57
+from recon4.export.e57 import export_e57
 from recon4.export.names import check_name
+from recon4.export.node_scans import ScanPoses
 from recon4.export.options import ExportOptions
 from recon4.export.points import OutputCrs, PointSource
+from recon4.export.ptx import export_ptx
 from recon4.export.selection import PointSelection
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
@@ -31,8 +33,8 @@ from recon4.store.atomic import atomic_file
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
 
-SCANS = ".e57"
-"""Ending of a file that has a scan for each node of the pose graph."""
+SCANS = {".e57": export_e57, ".ptx": export_ptx}
+"""Ending of a file that has a scan for each node of the pose graph, and who writes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,13 +137,13 @@ def write_map(map_: MapToExport, path: Path, *, progress: Progress) -> int:
 
     Raises:
         ConfigError: If the ending is another, there are no such points, or the format cannot hold
-            them (E57 has no classes).
+            them (E57 and PTX have no classes).
         StoreError: If the file cannot be written, or reads back wrong.
     """
-    if path.suffix.lower() == SCANS:
+    if write_scans := SCANS.get(path.suffix.lower()):
         source = PointSource.of(map_.tiles, map_.output, map_.selection)
         with atomic_file(path) as temporary:
-            return export_e57(source, temporary, _nodes(map_), progress=progress)
+            return write_scans(source, temporary, _nodes(map_), progress=progress)
     write = cloud_writer(path)
     return write(map_.tiles, path, map_.output, selection=map_.selection, progress=progress)
 

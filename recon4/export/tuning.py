@@ -48,6 +48,19 @@ class LazTuning(Struct, frozen=True, kw_only=True):
 LAZ = LazTuning()
 
 
+class PtxTuning(Struct, frozen=True, kw_only=True):
+    """Numbers of a PTX file."""
+
+    steps: float = 1e5
+    """Of a meter: coordinates have five decimals."""
+    brightest: float = 255.0
+    """Intensity that is 1 in the file."""
+    intensity_steps: float = 1e6
+
+
+PTX = PtxTuning()
+
+
 class OctreeTuning(Struct, frozen=True, kw_only=True):
     """The octree of COPC."""
 

@@ -26,6 +26,7 @@ from recon4_app.assistant.tuning import ASSISTANT
 
 WRITTEN = (
     *("map.copc.laz", "map.laz", "map.e57", "map.ply", "map.pcd", "map.xyz"),
+    "map.ptx",
     *("findings.csv", "findings.geojson", "report.pdf"),
 )
 """What the server writes of a map when it is asked to."""

@@ -24,7 +24,7 @@ router = APIRouter(
     dependencies=[Depends(needs(Permission.LOOK))],
     responses=problems(404, 409, 422),
 )
-MapEnding = Literal["copc.laz", "laz", "e57", "ply", "pcd", "xyz"]
+MapEnding = Literal["copc.laz", "laz", "e57", "ply", "pcd", "xyz", "ptx"]
 
 
 class MapFileQuery(BaseModel):
@@ -37,7 +37,7 @@ class MapFileQuery(BaseModel):
     raw: bool = False
     """Points where they were measured, not on their surfaces."""
     all_points: bool = False
-    """Also those that the map leaves out, by class: the carrier, what moves, noise; not as E57."""
+    """Also those that the map leaves out, by class (not as E57 or PTX): the carrier, noise …"""
     draft: bool = False
     """Without an approval, whether or not there is one."""
 

@@ -8,7 +8,8 @@ import pytest
 
 from recon4.errors import ConfigError, StoreError
 from recon4.export import e57
-from recon4.export.e57 import ScanPoses, export_e57
+from recon4.export.e57 import export_e57
+from recon4.export.node_scans import ScanPoses
 from recon4.export.points import CRS_OF_MAP, PointSource
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
