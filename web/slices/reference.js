@@ -33,7 +33,7 @@ import { planeOf, moved } from "./state.js";
  * @property {{found: Comparison, url: string} | null} compared
  */
 
-const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
+const KINDS = ".ply,.pcd,.las,.laz,.e57,.ptx,.xyz,.txt,.csv,.obj,.stl";
 /** @type {Array<[string, string]>} */
 const WHICH = [
   ["usual", t("usual-slices")],

@@ -47,7 +47,7 @@ async def preview_reference(
 async def add_reference(
     project_id: str, add: AddReference, server: Server, *, caller: CalledBy
 ) -> ListedReference:
-    """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL)."""
+    """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, PTX, XYZ, CSV, OBJ, STL)."""
     path = await run_in_threadpool(server.projects.importable, add.path)
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     out = await run_in_threadpool(server.slices.new_reference, project_id)

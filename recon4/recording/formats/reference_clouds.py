@@ -1,4 +1,4 @@
-"""Readers of reference clouds: PLY, PCD, LAS/LAZ, E57, XYZ/CSV, piece by piece.
+"""Readers of reference clouds: PLY, PCD, LAS/LAZ, E57, PTX, XYZ/CSV, piece by piece.
 
 Files of unknown origin: call these in a child process. Sizes are checked before a decoder sees them
 (`recon4.recording.formats.las_check`), but the decoders of LAZ and E57 are not ours.
@@ -27,6 +27,7 @@ from recon4.recording.formats.las_records import (
     refuse_many,
     refuse_promise,
 )
+from recon4.recording.formats.ptx_points import ptx_points
 from recon4.recording.limits import LIMITS
 from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
@@ -69,6 +70,8 @@ def open_cloud(
         chunks, stated = _las(path), stated_crs(path)
     elif kind == "e57":
         chunks, stated = _e57(path), stated_crs(path)
+    elif kind == "ptx":
+        chunks = ptx_points(path)
     elif kind == "table":
         chunks = _table(path)
     elif kind == "text":
@@ -76,8 +79,8 @@ def open_cloud(
         chunks, columns = text.chunks(), text.columns.description
         stated = geographic_crs() if text.columns.geographic else StatedCrs()
     else:
-        names = ", ".join(one.name for one in HEADER_FORMATS)
-        raise UnknownFormat(f"{path.name}: expected a {names}, LAS, LAZ, E57, XYZ or CSV cloud")
+        names = ", ".join([*(one.name for one in HEADER_FORMATS), "LAS, LAZ, E57, PTX"])
+        raise UnknownFormat(f"{path.name}: expected a {names}, XYZ or CSV cloud")
     return CloudSource(_checked(chunks, path.name), stated, columns)
 
 
@@ -99,7 +102,7 @@ def is_text(path: Path) -> bool:
     return _kind(_head(path), path) == "text"
 
 
-def _kind(head: bytes, path: Path) -> Literal["las", "e57", "table", "text", ""]:
+def _kind(head: bytes, path: Path) -> Literal["las", "e57", "ptx", "table", "text", ""]:
     """Kind of a cloud by its first bytes, of a text by its ending."""
     if head[:4] == b"LASF":
         return "las"
@@ -107,6 +110,8 @@ def _kind(head: bytes, path: Path) -> Literal["las", "e57", "table", "text", ""]
         return "e57"
     if header_format(head) is not None:
         return "table"
+    if path.suffix.lower() == ".ptx":
+        return "ptx"
     return "text" if path.suffix.lower() in TEXT_SUFFIXES else ""
 
 

@@ -206,6 +206,7 @@ _ALL = (
         repair=clouds.e57_checksums,
         header_bytes=4096,
     ),
+    Kind(name="ptx", file_name="a.ptx", seeds=clouds.ptx, read=_las, knows_end=False),
     Kind(name="xyz", file_name="a.xyz", seeds=clouds.xyz, read=_las, knows_end=False),
     Kind(
         name="csv-imu",

@@ -181,3 +181,12 @@ def xyz() -> tuple[bytes, ...]:
     comma = "x,y,z\n" + "".join(f"{x:.3f},{y:.3f},{z:.3f}\n" for x, y, z in rows)
     german = comma.replace("x,y,z", "x;y;z").replace(",", ";").replace(".", ",")
     return blank.encode(), comma.encode(), german.encode()
+
+
+@cache
+def ptx() -> tuple[bytes, ...]:
+    """Two scans of one row."""
+    rows = np.column_stack([table()[k] for k in "xyz"]).tolist()
+    pose = "1 2 3\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 2 3 1\n"
+    scan = "".join(f"{x:.3f} {y:.3f} {z:.3f} 0.5\n" for x, y, z in rows)
+    return ((2 * f"{len(rows)}\n1\n{pose}{scan}").encode(),)

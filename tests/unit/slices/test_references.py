@@ -53,7 +53,21 @@ def write_text(path):
     path.write_text("\ufeffX;Y;Z\n" + rows, "utf-8")
 
 
+def write_ptx(path):
+    """Two scans, one turned by 90° about z; some shots of it had no return."""
+    turned = np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1]])
+    half, lines = len(P) // 2, []
+    for rows, axes in ((P[:half], np.eye(3)), (P[half:], turned)):
+        shots = np.zeros((len(rows) + 6, 3))
+        shots[3:-3] = (rows - [10.0, 0.0, 2.0]) @ axes.T
+        lines += ["2", str(len(shots) // 2), "10 0 2", *(" ".join(map(str, axis)) for axis in axes)]
+        lines += [*(" ".join(map(str, [*axis, 0])) for axis in axes), "10 0 2 1"]
+        lines += [f"{x:.3f} {y:.3f} {z:.3f} 0.5 10 20 30" for x, y, z in shots]
+    path.write_text("\n".join(lines) + "\n", "ascii")
+
+
 WRITERS = {
+    "a.ptx": write_ptx,
     "a.las": write_las,
     "a.laz": write_las,
     "a.e57": write_e57,
@@ -94,6 +108,37 @@ def test_a_cut_or_damaged_file_is_refused_or_whole_never_half(tmp_path, name):
         else:
             # text cut behind a whole line is a shorter list; nothing else may lose points
             assert count == len(P) or name == "a.csv" or not trial % 2
+
+
+@pytest.mark.parametrize(
+    ("change", "what"),
+    [
+        (lambda lines: lines[:-2], "scan 2: expected 256 points, got 254"),
+        (lambda lines: ["9" * 12, *lines[1:]], "scan 1: expected a number of columns"),
+        (lambda lines: ["999999999", *lines[1:]], "million points are promised"),
+        (lambda lines: [*lines[:8], "1 0 nan 0", *lines[9:]], "not finite"),
+        (lambda lines: [*lines[:3], "1 0", *lines[4:]], "expected 3 numbers in its head"),
+        (lambda lines: [*lines[:20], "1.0 two 3.0 0.5", *lines[21:]], "no line of numbers"),
+        (lambda lines: [*lines[:20], "1" * 600, *lines[21:]], "a line has 512 bytes"),
+    ],
+)
+def test_a_ptx_file_that_breaks_its_promise_is_refused(tmp_path, change, what):
+    path = tmp_path / "a.ptx"
+    write_ptx(path)
+    lines = path.read_text("ascii").splitlines()
+    path.write_text("\n".join(change(lines)) + "\n", "ascii")
+
+    with pytest.raises(RecordingError, match=what):
+        list(read_points(path))
+
+
+@pytest.mark.parametrize(
+    ("name", "points"), [("1.2-with-color.ptx", 1065), ("complex-transform.ptx", 4)]
+)
+def test_ptx_files_of_other_makers_are_read(data, name, points):
+    found = np.concatenate(list(read_points(data(f"clouds/ptx/{name}"))))
+
+    assert len(found) == points
 
 
 def test_a_chunk_table_that_lies_ends_the_child_not_us(tmp_path):
