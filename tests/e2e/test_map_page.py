@@ -156,6 +156,8 @@ def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(
     plot = page.get_by_role("img", name=re.compile("Profile: .* points"))
     expect(plot).to_be_visible()
     expect(page.get_by_role("link", name="DXF")).to_have_attribute("href", re.compile("flat"))
+    above, below = (page.locator(one).bounding_box() for one in ("#profile", "#status"))
+    assert above["y"] + above["height"] <= below["y"], "the reading covers the profile"
     screenshot(page, "map-profile")
 
     panel.get_by_role("button", name="crack over the door", exact=True).click()
