@@ -78,7 +78,7 @@ def test_the_map_is_drawn_and_fills_the_window(server, page, screenshot):
     box, window = page.locator("#map").bounding_box(), page.viewport_size
     assert box["width"] == window["width"] and box["height"] > 0.6 * window["height"]
     expect(page.locator("#status")).to_contain_text("map frame (local), x y z, z up, meters")
-    screenshot(page, "map")
+    screenshot(page, "room")
 
 
 @looks("desktop light")
@@ -158,7 +158,7 @@ def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(
     expect(page.get_by_role("link", name="DXF")).to_have_attribute("href", re.compile("flat"))
     above, below = (page.locator(one).bounding_box() for one in ("#profile", "#status"))
     assert above["y"] + above["height"] <= below["y"], "the reading covers the profile"
-    screenshot(page, "map-profile")
+    screenshot(page, "room-profile")
 
     panel.get_by_role("button", name="crack over the door", exact=True).click()
     expect(page).to_have_url(re.compile(r"camera=-?0(\.0\d*)?,2\."))
