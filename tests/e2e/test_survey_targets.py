@@ -23,6 +23,7 @@ def test_a_person_takes_the_targets_that_the_survey_names(server, page, screensh
     opened(page, server)
     choose_survey(page, table.encode())
     page.get_by_role("button", name="Use, in the map's frame").click()
+    expect(page.locator(".verdict")).to_contain_text("not measured")  # the survey is kept
 
     page.get_by_role("button", name="Find targets in the whole map").click()
 
