@@ -4,6 +4,7 @@ import { approvalWords } from "../shared/approval.js";
 import { html, nothing, render } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { frameText } from "../shared/frame.js";
+import { keyList } from "../shared/keys.js";
 import { t } from "../shared/texts.js";
 import { KINDS } from "./measure.js";
 import { page } from "./page.js";
@@ -88,15 +89,7 @@ function ending(/** @type {Act} */ { finish, end }) {
 export const drawHelp = (/** @type {HTMLElement} */ dialog) =>
   render(
     html`<h2 id="help-title" tabindex="-1" autofocus>${t("keys")}</h2>
-      <dl class="keys">
-        ${KEYS.map(
-          ([key, text]) =>
-            html`<div>
-              <dt>${key}</dt>
-              <dd>${text}</dd>
-            </div>`,
-        )}
-      </dl>
+      ${keyList(KEYS)}
       <form method="dialog"><button class="primary">${t("close")}</button></form>`,
     dialog,
   );

@@ -1,6 +1,7 @@
 // The keys of the page of slices.
 
 import { html, render } from "../shared/dom.js";
+import { keyList } from "../shared/keys.js";
 import { t } from "../shared/texts.js";
 
 /** @type {Array<[string, string]>} */
@@ -21,15 +22,7 @@ const KEYS = [
 export function help(/** @type {HTMLElement} */ dialog) {
   render(
     html`<h2 id="help-title" tabindex="-1" autofocus>${t("keys")}</h2>
-      <dl class="keys">
-        ${KEYS.map(
-          ([key, text]) =>
-            html`<div>
-              <dt>${key}</dt>
-              <dd>${text}</dd>
-            </div>`,
-        )}
-      </dl>
+      ${keyList(KEYS)}
       <p>${t("above-help")}</p>
       <form method="dialog"><button class="primary">${t("close")}</button></form>`,
     dialog,
