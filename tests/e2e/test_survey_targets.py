@@ -16,16 +16,27 @@ pytestmark = pytest.mark.e2e
 server = served(build_targets)
 
 
+def hold_first_put(route, held):
+    if route.request.method == "PUT" and not held:
+        held.append(route)
+    else:
+        route.continue_()
+
+
 @looks("desktop light")
 def test_a_person_takes_the_targets_that_the_survey_names(server, page, screenshot):
     rows = [[name, *(f"{x:.3f}" for x in SITE @ p), "control"] for name, p in TRUE.items()]
     table = "\n".join(",".join(row) for row in [["id", "E", "N", "H", "role"], *rows])
     opened(page, server)
     choose_survey(page, table.encode())
+    held = []
+    page.route("**/slices/control", lambda route: hold_first_put(route, held))
     page.get_by_role("button", name="Use, in the map's frame").click()
-    expect(page.locator(".verdict")).to_contain_text("not measured")  # the survey is kept
 
+    # The survey is still on its way to the server.
     page.get_by_role("button", name="Find targets in the whole map").click()
+    expect(page.get_by_role("button", name="Searching")).to_be_disabled()
+    held[0].continue_()
 
     expect(page.get_by_text(re.compile("4 of 4 surveyed points found"))).to_be_visible(
         timeout=60_000

@@ -377,7 +377,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
 
   draw();
   const crs = () => /** @type {HTMLInputElement} */ (within(host, ".site input")).value.trim();
-  targetsSection(within(host, ".targets"), { id, crs, put, go: show });
+  targetsSection(within(host, ".targets"), { id, crs, stored: () => turns.last, put, go: show });
   siteSection(within(host, ".site"), id);
   attempt(message(), async () => {
     await readKept();

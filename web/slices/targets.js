@@ -11,6 +11,7 @@ import { AXES } from "./measured.js";
  * @typedef {object} TargetsPage what the section needs of the panel
  * @property {string} id of the project
  * @property {() => string} crs of the survey
+ * @property {() => Promise<unknown>} stored when what was decided of the survey is
  * @property {(measured: Record<string, Measurement>) => Promise<unknown>} put
  * @property {(p_map: [number, number, number]) => void} go
  */
@@ -29,7 +30,7 @@ const mm = (/** @type {number | null | undefined} */ m) =>
  * @param {HTMLElement} host
  * @param {TargetsPage} page
  */
-export function targetsSection(host, { id, crs, put, go }) {
+export function targetsSection(host, { id, crs, stored, put, go }) {
   const state = {
     found: /** @type {TargetList | null} */ (null),
     chosen: /** @type {Set<string>} */ (new Set()),
@@ -45,6 +46,7 @@ export function targetsSection(host, { id, crs, put, go }) {
   async function search() {
     set({ searching: true, taken: 0 });
     try {
+      await stored(); // else its points have no names yet
       const found = await findTargets(id, crs());
       const sure = found.rows.filter((one) => one.id && !one.ambiguous);
       set({ found, chosen: new Set(sure.map((one) => one.id ?? "")) });
