@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 import uuid
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import recon4
-from recon4.errors import ConfigError, StoreError
-from recon4.export.node_scans import SCAN_ROW, ScanPoses, sort_by_scan
+from recon4.errors import StoreError
+from recon4.export.node_scans import SCAN_ROW, ScanPoses, node_scans
 from recon4.export.points import PointSource
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import SE3, Array
@@ -41,23 +40,16 @@ def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
     """
     from pye57 import libe57
 
-    if source.selection.left_out:
-        raise ConfigError(
-            f"E57 has no classes, so it cannot hold what the map leaves out: {path.name}"
-        )
-    origins = source.transform(scans.T_map_body.t)
-    with tempfile.TemporaryDirectory(prefix=".e57.", dir=path.parent) as folder:
-        files = sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
+    with node_scans(source, path, scans, progress=progress) as sorted_:
         try:
             image = libe57.ImageFile(str(path), "w")
             data = _head(image, source.crs)
-            progress.start("scans", source.count, "points")
-            for number, file in files:
+            for number, file in sorted_.files:
                 rows = np.fromfile(file, SCAN_ROW)
-                _write_scan(image, data, _Scan(number, rows, scans, origins[number]))
+                _write_scan(image, data, _Scan(number, rows, scans, sorted_.origins[number]))
                 progress.advance(len(rows))
             image.close()
-            _check(path, {number: file for number, file in files}, source)
+            _check(path, dict(sorted_.files), source)
         except libe57.E57Exception as error:
             reason = str(error).partition("\n")[0]  # it goes on for a page
             raise StoreError(

@@ -6,7 +6,9 @@ scan, in single precision: 4 µm at 50 m.
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -14,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.errors import ConfigError
 from recon4.export.points import PointSource
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times
@@ -38,23 +41,47 @@ class ScanPoses:
     """Description of each scan: the approval, for one."""
 
 
-def sort_by_scan(
-    source: PointSource, scans: ScanPoses, origins: Array, *, folder: Path, progress: Progress
-) -> list[tuple[int, Path]]:
-    """Write the points of each scan, relative to its pose, into a file of `SCAN_ROW`.
+@dataclass(frozen=True, slots=True, eq=False)
+class NodeScans:
+    """The points of a map by node, in temporary files of `SCAN_ROW`."""
+
+    origins: Array
+    """Positions of all nodes in the coordinates of the file that is made, (N, 3)."""
+    files: list[tuple[int, Path]]
+    """Node and file of each scan that has points."""
+
+
+@contextmanager
+def node_scans(
+    source: PointSource, path: Path, scans: ScanPoses, *, progress: Progress
+) -> Iterator[NodeScans]:
+    """Sort the points of a map by node, each relative to the pose of its scan.
 
     Intensity is the normalized one if the map has it.
 
     Args:
-        source: The points, in the coordinates of the file that is made of them.
+        source: The points, in the coordinates of the file that is made.
+        path: That file; temporary ones lie beside it until the end of the block.
         scans: Nodes of the pose graph.
-        origins: Their positions in these coordinates, (N, 3).
-        folder: Receives the files.
         progress: Who watches.
 
-    Returns:
-        Node and file of each scan that has points.
+    Raises:
+        ConfigError: If points are wanted that the map leaves out: such files have no classes.
     """
+    if source.selection.left_out:
+        kind = path.suffix[1:].upper()
+        raise ConfigError(f"{kind} has no classes, so it cannot hold what the map leaves out")
+    origins = source.transform(scans.T_map_body.t)
+    with tempfile.TemporaryDirectory(prefix=f"{path.name}.", dir=path.parent) as folder:
+        files = _sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
+        progress.start("scans", source.count, "points")
+        yield NodeScans(origins, files)
+
+
+def _sort_by_scan(
+    source: PointSource, scans: ScanPoses, origins: Array, *, folder: Path, progress: Progress
+) -> list[tuple[int, Path]]:
+    """Write the points of each scan into a file; node and file of those that have points."""
     R_map_body = scans.T_map_body.R
     for block in source.blocks([source.intensity, "frame_id"], progress):
         frames = block.columns["frame_id"].astype(np.int64)

@@ -6,7 +6,6 @@ its points follow, relative to its pose. Points of a walk are no grid: a scan is
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -15,8 +14,8 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import ConfigError, StoreError
-from recon4.export.node_scans import SCAN_ROW, ScanPoses, sort_by_scan
+from recon4.errors import StoreError
+from recon4.export.node_scans import SCAN_ROW, ScanPoses, node_scans
 from recon4.export.points import PointSource
 from recon4.export.tuning import POINT_EXPORT, PTX
 from recon4.geometry.se3 import Array
@@ -43,24 +42,17 @@ def export_ptx(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
         StoreError: If the file does not read back.
         OSError: If it cannot be written.
     """
-    if source.selection.left_out:
-        raise ConfigError(
-            f"PTX has no classes, so it cannot hold what the map leaves out: {path.name}"
-        )
-    origins = source.transform(scans.T_map_body.t)
-    poses = [_pose(*one) for one in zip(scans.T_map_body.R, origins, strict=True)]
-    with tempfile.TemporaryDirectory(prefix=".ptx.", dir=path.parent) as folder:
-        files = sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
-        progress.start("scans", source.count, "points")
+    with node_scans(source, path, scans, progress=progress) as sorted_:
+        poses = [_pose(*one) for one in zip(scans.T_map_body.R, sorted_.origins, strict=True)]
         with path.open("w", encoding="ascii") as text:
-            for number, file in files:
+            for number, file in sorted_.files:
                 rows = np.fromfile(file, SCAN_ROW)
                 text.write(_head(len(rows), poses[number]))
                 for first in range(0, len(rows), POINT_EXPORT.block):
                     part = _numbers(rows[first : first + POINT_EXPORT.block])
                     np.savetxt(text, part, fmt="%.5f %.5f %.5f %.6f")
                 progress.advance(len(rows))
-        _check(path, [(poses[number], file) for number, file in files])
+        _check(path, [(poses[number], file) for number, file in sorted_.files])
     return source.count
 
 

@@ -9,26 +9,10 @@ import pytest
 from recon4.errors import ConfigError, StoreError
 from recon4.export import e57
 from recon4.export.e57 import export_e57
-from recon4.export.node_scans import ScanPoses
 from recon4.export.points import CRS_OF_MAP, PointSource
-from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
 from tests.room_walks import Walk, room_walk
 from tests.unit.export.test_point_clouds import UTM, column, make
-
-NOTE = "recon4 approval {}"
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A map, and every third of its multiframes as a node."""
-    folder = tmp_path_factory.mktemp("e57") / "map"
-    walk = room_walk(frames=10)
-    make(folder, walk=walk)
-    nodes = np.arange(1, 10, 3)
-    frame_ids = np.array([frame.frame_id for frame in walk.frames])[nodes]
-    t_ns = np.array([frame.t_mid_ns for frame in walk.frames])[nodes]
-    return TileSet.open(folder), ScanPoses(frame_ids, t_ns, walk.trajectory.at(t_ns), NOTE)
 
 
 @pytest.fixture
@@ -67,7 +51,7 @@ def test_scans_have_the_poses_and_times_of_their_nodes(made, path):
             np.testing.assert_allclose(head.rotation_matrix, T.R, atol=1e-12)
             gps_s = head["acquisitionStart"]["dateTimeValue"].value()
             assert gps_s == pytest.approx(scans.t_ns[k] / 1e9 - 315_964_800 + 18, abs=1e-5)
-            assert head["description"].value() == NOTE
+            assert head["description"].value() == scans.note
 
 
 def test_the_file_names_its_crs_and_is_the_same_each_time(made, path, tmp_path):

@@ -6,26 +6,11 @@ import pytest
 from recon4.errors import ConfigError, StoreError
 from recon4.export import ptx
 from recon4.export.map_files import SCANS
-from recon4.export.node_scans import ScanPoses
 from recon4.export.points import CRS_OF_MAP, PointSource
 from recon4.export.ptx import export_ptx
 from recon4.export.selection import EVERY_CLASS, PointSelection
-from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
-from tests.room_walks import room_walk
-from tests.unit.export.test_point_clouds import UTM, column, make
-
-
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    """A map, and every third of its multiframes as a node."""
-    folder = tmp_path_factory.mktemp("ptx") / "map"
-    walk = room_walk(frames=10)
-    make(folder, walk=walk)
-    nodes = np.arange(1, 10, 3)
-    frame_ids = np.array([frame.frame_id for frame in walk.frames])[nodes]
-    t_ns = np.array([frame.t_mid_ns for frame in walk.frames])[nodes]
-    return TileSet.open(folder), ScanPoses(frame_ids, t_ns, walk.trajectory.at(t_ns))
+from tests.unit.export.test_point_clouds import UTM, column
 
 
 def scans_of(path):
@@ -74,7 +59,7 @@ def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch, en
 
     monkeypatch.setattr(ptx, "_check", changed)
     with pytest.raises(StoreError, match=f"reads back wrong: {what}"):
-        export_ptx(PointSource.of(tiles, CRS_OF_MAP), tmp_path / "a", scans, progress=Silent())
+        export_ptx(PointSource.of(tiles, CRS_OF_MAP), tmp_path / "a.ptx", scans, progress=Silent())
 
 
 @pytest.mark.parametrize("write", SCANS.values(), ids=SCANS)
@@ -83,4 +68,4 @@ def test_a_format_without_classes_holds_nothing_that_the_map_leaves_out(made, tm
     every = PointSource.of(tiles, CRS_OF_MAP, PointSelection(classes=EVERY_CLASS))
 
     with pytest.raises(ConfigError, match="has no classes"):
-        write(every, tmp_path / "a", scans, progress=Silent())
+        write(every, tmp_path / "a.ptx", scans, progress=Silent())
