@@ -26,14 +26,6 @@ ROOT = Path(__file__).parents[3]
 HERE = tuple(versions().items())
 
 
-@pytest.fixture(autouse=True)
-def _no_makers_left():
-    yield
-    for maker in on_worker._idle:
-        maker.end()
-    on_worker._idle.clear()
-
-
 @pytest.fixture(scope="module")
 def inputs():
     return full_inputs()

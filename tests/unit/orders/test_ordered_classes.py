@@ -11,7 +11,6 @@ from recon4.classes.stage import classify, write_classes
 from recon4.executors.executor import InOrder
 from recon4.mapping.mirrors import save_mirrors
 from recon4.model.events import Warned
-from recon4.orders import on_worker
 from recon4.progress import Silent
 from recon4.store.arrays import save_trajectory
 from recon4.store.frame_folders import FrameFolders
@@ -25,10 +24,6 @@ from tests.unit.classes.scanned_scenes import ROOM, box, cylinder, scanned
 def _short_parts(monkeypatch):
     """Parts of two seconds, of which this process decides."""
     monkeypatch.setattr(stage, "VIEWS", structs.replace(stage.VIEWS, part_ns=2_000_000_000))
-    yield
-    for maker in on_worker._idle:
-        maker.end()
-    on_worker._idle.clear()
 
 
 @pytest.fixture(scope="module")
