@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import count
+from itertools import chain, count
 from pathlib import Path
 
 from recon4.model.pose_graph import Edge
@@ -14,8 +14,9 @@ from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.pair_files import (
     VIEWS,
     Groups,
-    Round,
     SearchInputs,
+    part_path,
+    save_part,
     take_tried,
     tried_path,
 )
@@ -67,11 +68,12 @@ class OrderedPairs:
         number = next(self._rounds)
         if number == 0:  # all views are made
             self.inputs.save(self.folder)
-        Round.of(pairs, parts).save(self.folder, number)
+        for part, groups in enumerate(parts):
+            save_part(part_path(self.folder, number, part), groups, pairs)
 
         def read(part: Part) -> Tried:
             path = tried_path(self.folder, *part)
-            rows = [row for group in parts[part[1]] for row in group]
+            rows = chain.from_iterable(parts[part[1]])
             return take_tried(path, {row: pairs[row] for row in rows})
 
         ordered = Parts(

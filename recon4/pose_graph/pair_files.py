@@ -1,7 +1,7 @@
 """What a search and a worker that registers pairs for it exchange: files of one folder.
 
 ``search.json``: what all rounds have in common; ``views``: what each node sees;
-``round_N.msgpack``: the pairs of a round; ``tried_N_K``: what part ``K`` of them gave.
+``pairs_N_K``: the pairs of part ``K`` of round ``N``; ``tried_N_K``: what they gave.
 """
 
 from __future__ import annotations
@@ -78,6 +78,7 @@ class _Search(msgspec.Struct, frozen=True, kw_only=True):
 class _Pair(msgspec.Struct, array_like=True):
     """A pair to register."""
 
+    row: int
     i: int
     j: int
     kind: EdgeKind
@@ -86,46 +87,34 @@ class _Pair(msgspec.Struct, array_like=True):
     """Rotation and translation, float64."""
 
 
-class Round(msgspec.Struct, array_like=True):
-    """Pairs of one order, and which of them each part registers."""
+def save_part(path: Path, groups: Groups, pairs: Sequence[Pair]) -> None:
+    """Write the pairs of a part of a round.
 
-    pairs: list[_Pair]
-    parts: list[Groups]
+    Args:
+        path: By `part_path`.
+        groups: Rows of pairs, by target node.
+        pairs: Of the round.
 
-    def pair(self, row: int) -> Pair:
-        """A pair by its row."""
-        one = self.pairs[row]
-        values = np.frombuffer(one.T_i_j, np.float64).copy()
-        T_i_j = SE3(values[:9].reshape(3, 3), values[9:])
-        return Pair(one.i, one.j, one.kind, T_i_j, recognized=one.recognized)
+    Raises:
+        OSError: If it cannot be written.
+    """
+    plain = [[_plain(row, pairs[row]) for row in group] for group in groups]
+    path.write_bytes(msgspec.msgpack.encode(plain))
 
-    @staticmethod
-    def of(pairs: Sequence[Pair], parts: Sequence[Groups]) -> Round:
-        """The pairs of an order."""
-        return Round([_plain(pair) for pair in pairs], list(parts))
 
-    def save(self, folder: Path, number: int) -> None:
-        """Write it into the folder of an order.
+def load_part(path: Path) -> tuple[Groups, dict[int, Pair]]:
+    """Read what `save_part` wrote: rows by target node, and the pair of each row.
 
-        Raises:
-            StoreError: If it cannot be written.
-        """
-        with atomic_file(_round_path(folder, number)) as temporary:
-            temporary.write_bytes(msgspec.msgpack.encode(self))
-
-    @staticmethod
-    def load(folder: Path, number: int) -> Round:
-        """Read what `save` wrote.
-
-        Raises:
-            StoreError: If it is missing or damaged.
-        """
-        path = _round_path(folder, number)
-        data = read_bytes_limited(path, LIMITS.array_bytes, failure=StoreError)
-        try:
-            return msgspec.msgpack.decode(data, type=Round)
-        except (msgspec.DecodeError, RecursionError) as error:
-            raise StoreError(f"{path.name}: {error}") from error
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    data = read_bytes_limited(path, LIMITS.array_bytes, failure=StoreError)
+    try:
+        plain = msgspec.msgpack.decode(data, type=list[list[_Pair]])
+        pairs = {one.row: _pair(one) for group in plain for one in group}
+    except (msgspec.DecodeError, RecursionError, ValueError) as error:
+        raise StoreError(f"{path.name}: {error}") from error
+    return [[one.row for one in group] for group in plain], pairs
 
 
 def save_tried(path: Path, pairs: Mapping[int, Pair], edges: Mapping[int, Edge]) -> None:
@@ -167,15 +156,22 @@ def take_tried(path: Path, pairs: Mapping[int, Pair]) -> dict[int, Edge]:
     return found
 
 
+def part_path(folder: Path, number: int, part: int) -> Path:
+    """File of the pairs of a part of a round."""
+    return folder / f"pairs_{number}_{part}"
+
+
 def tried_path(folder: Path, number: int, part: int) -> Path:
     """File of what a part of a round gave."""
     return folder / f"tried_{number}_{part}"
 
 
-def _round_path(folder: Path, number: int) -> Path:
-    return folder / f"round_{number}.msgpack"
+def _plain(row: int, pair: Pair) -> _Pair:
+    T_i_j = np.concatenate([pair.T_i_j.R.ravel(), pair.T_i_j.t.ravel()]).astype(np.float64)
+    return _Pair(row, pair.i, pair.j, pair.kind, pair.recognized, T_i_j.tobytes())
 
 
-def _plain(pair: Pair) -> _Pair:
-    T_i_j = np.concatenate([pair.T_i_j.R.ravel(), pair.T_i_j.t.ravel()])
-    return _Pair(pair.i, pair.j, pair.kind, pair.recognized, T_i_j.astype(np.float64).tobytes())
+def _pair(one: _Pair) -> Pair:
+    values = np.frombuffer(one.T_i_j, np.float64).copy()
+    T_i_j = SE3(values[:9].reshape(3, 3), values[9:])
+    return Pair(one.i, one.j, one.kind, T_i_j, recognized=one.recognized)

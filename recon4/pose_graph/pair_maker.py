@@ -7,7 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.pose_graph.pair_files import VIEWS, Round, SearchInputs, save_tried, tried_path
+from recon4.pose_graph.pair_files import (
+    VIEWS,
+    SearchInputs,
+    load_part,
+    part_path,
+    save_tried,
+    tried_path,
+)
 from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.search import OdometryTrack, SearchMeans, make_registrar
 from recon4.pose_graph.tuning import graph_tuning
@@ -50,11 +57,7 @@ class PairMaker:
             StoreError: If there is no such part, views are missing, or it cannot be written.
         """
         number, part = numbers
-        round_ = Round.load(self.folder, number)
-        if not 0 <= part < len(round_.parts):
-            raise StoreError(f"round {number} has no part {part}")
-        groups = round_.parts[part]
-        pairs = {row: round_.pair(row) for group in groups for row in group}
+        groups, pairs = load_part(part_path(self.folder, number, part))
         for node in sorted({node for pair in pairs.values() for node in (pair.i, pair.j)}):
             if not self.registrar.views.has(node):
                 raise StoreError(f"{VIEWS}: node {node} is missing or damaged")

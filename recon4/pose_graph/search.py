@@ -71,8 +71,8 @@ class OdometryTrack:
 class SearchMeans:
     """What a search is made with; its result does not depend on it."""
 
-    scratch: Path
-    """Folder for unnamed temporary files of 0.2 MB per node."""
+    folder: Path
+    """Holds unnamed temporary files of 0.2 MB per node."""
     ordered: OrderedPairs | None = None
     """Workers that register pairs; None = threads of this process."""
     views: Path | None = None
@@ -80,25 +80,25 @@ class SearchMeans:
 
 
 def build_graph(
-    frames: FrameStore, odometry: Path, out: Path, *, settings: GraphReads, progress: Progress
+    frames: FrameStore,
+    odometry: Path,
+    means: SearchMeans,
+    *,
+    settings: GraphReads,
+    progress: Progress,
 ) -> GraphFigures:
-    """Run the stage ``graph`` in this process.
+    """Run the stage ``graph``: create nodes and odometry edges, search for loop closures.
 
     Args:
         frames: The multiframes.
         odometry: Folder of the stage ``odometry``.
-        out: Receives ``graph.npz`` and ``edges.json``.
+        means: Its folder receives ``graph.npz`` and ``edges.json``.
         settings: Uses nearly all groups of registration.
         progress: Counts pairs and receives an event for each edge.
     """
-    track, means = OdometryTrack.load(odometry), SearchMeans(out)
+    track = OdometryTrack.load(odometry)
     graph = search(frames, track, settings=settings, progress=progress, means=means)
-    return save_searched(graph, out)
-
-
-def save_searched(graph: PoseGraph, out: Path) -> GraphFigures:
-    """Write ``graph.npz`` and ``edges.json``, and count them."""
-    save_graph(out, graph)
+    save_graph(means.folder, graph)
     return GraphFigures(
         nodes=len(graph),
         edges=len(graph.edges),
@@ -170,9 +170,9 @@ def make_registrar(
         settings: As of `search`.
         means: Files and workers.
     """
-    submaps = Submaps(tracked, rows, scratch=means.scratch)
+    submaps = Submaps(tracked, rows, scratch=means.folder)
     g = graph_tuning(settings.graph)
-    views = NodeRangeImages(len(rows), g, scratch=means.scratch, kept=means.views)
+    views = NodeRangeImages(len(rows), g, scratch=means.folder, kept=means.views)
     return PairRegistrar(submaps, views, settings, ordered=means.ordered)
 
 

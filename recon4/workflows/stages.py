@@ -138,19 +138,19 @@ def _graph(
     from recon4.orders.confined import workers_of_this_process
     from recon4.pose_graph.ordered_pairs import OrderedPairs
     from recon4.pose_graph.pair_files import SearchInputs
-    from recon4.pose_graph.search import OdometryTrack, SearchMeans, save_searched, search
+    from recon4.pose_graph.search import SearchMeans, build_graph
     from recon4.store.frame_folders import FrameFolders
 
     folders = FrameFolders.of(frames, odometry, calibration)
     inputs = SearchInputs(folders=folders, settings=context.settings)
-    graph = search(
+    ordered = OrderedPairs.of(workers_of_this_process(), inputs)
+    return build_graph(
         folders.open(),
-        OdometryTrack.load(odometry),
+        odometry,
+        SearchMeans(context.out, ordered),
         settings=context.settings,
         progress=context.progress,
-        means=SearchMeans(context.out, OrderedPairs.of(workers_of_this_process(), inputs)),
     )
-    return save_searched(graph, context.out)
 
 
 def _verification(context: StageContext[VerificationReads], *, graph: Path) -> VerificationFigures:

@@ -23,7 +23,7 @@ from recon4.evaluation.reference_mesh import read_mesh
 from recon4.model.rig import Rig, load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
-from recon4.pose_graph.search import build_graph
+from recon4.pose_graph.search import SearchMeans, build_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -54,7 +54,7 @@ def solve(
     for folder in (searched, verified, refined):
         folder.mkdir(parents=True)
     start = time.perf_counter()
-    build_graph(frames, odometry, searched, settings=settings, progress=Silent())
+    build_graph(frames, odometry, SearchMeans(searched), settings=settings, progress=Silent())
     graph = load_graph(searched)
     if settings.graph.mode in ("verification", "beyond"):
         graph = verify(graph, settings=settings.verification, progress=Silent()).graph

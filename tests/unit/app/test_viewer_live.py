@@ -10,7 +10,7 @@ import pytest
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.files import load_graph
-from recon4.pose_graph.search import build_graph
+from recon4.pose_graph.search import SearchMeans, build_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
@@ -185,9 +185,8 @@ def test_events_of_real_stages_make_the_graph_they_leave(tmp_path):
     for name in ("odometry", "graph"):
         (tmp_path / name).mkdir()
     run_odometry(WalkInputs(frames, settings, events), tmp_path / "odometry")
-    build_graph(
-        frames, tmp_path / "odometry", tmp_path / "graph", settings=settings, progress=events
-    )
+    means = SearchMeans(tmp_path / "graph")
+    build_graph(frames, tmp_path / "odometry", means, settings=settings, progress=events)
     searched = load_graph(tmp_path / "graph")
     verify(searched, settings=VerificationSettings(limit_m=1e-4), progress=events)
     verified = verify(searched, settings=VerificationSettings(limit_m=1e-4)).graph

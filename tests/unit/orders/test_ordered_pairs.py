@@ -11,11 +11,10 @@ from recon4.executors.cluster import workers_here
 from recon4.geometry.se3 import SE3
 from recon4.model.events import Warned
 from recon4.model.pose_graph import Edge, EdgeKind, accepted_unseen
-from recon4.orders import on_worker
 from recon4.pose_graph.ordered_pairs import OrderedPairs
 from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.pair_files import VIEWS, SearchInputs, save_tried, take_tried
-from recon4.pose_graph.search import OdometryTrack, SearchMeans, save_searched, search
+from recon4.pose_graph.search import SearchMeans, build_graph
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
 from recon4.registration.walk import WalkInputs
@@ -28,14 +27,6 @@ from tests.cluster_functions import make_part_and_die_once
 from tests.ordered_maps import DirectWorkers, Instead, bytes_of
 from tests.scanned_room import strolling, walk
 from tests.tuned import with_tuning
-
-
-@pytest.fixture(autouse=True)
-def _no_makers_left():
-    yield
-    for maker in on_worker._idle:
-        maker.end()
-    on_worker._idle.clear()
 
 
 @pytest.fixture(scope="module")
@@ -61,14 +52,13 @@ def searched(project, name, workers=None, progress=None):
     out.mkdir()
     with keeping(project, "graph", name):
         ordered = OrderedPairs.of(workers, SearchInputs(folders=folders, settings=settings))
-        graph = search(
+        build_graph(
             FrameStore.open(frames),
-            OdometryTrack.load(odometry),
+            odometry,
+            SearchMeans(out, ordered),
             settings=settings,
             progress=progress or Silent(),
-            means=SearchMeans(out, ordered),
         )
-        save_searched(graph, out)
     return bytes_of(out)
 
 

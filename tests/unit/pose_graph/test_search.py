@@ -60,7 +60,7 @@ def searched(stroll, tmp_path_factory):
     facts = build_graph(
         stroll,
         folder / "odometry",
-        folder / "graph",
+        SearchMeans(folder / "graph"),
         settings=settings_of("graph.node_stride=3"),
         progress=watch,
     )
@@ -116,7 +116,7 @@ def test_two_threads_find_the_same_edges_as_one(searched, stroll):
     build_graph(
         stroll,
         folder / "odometry",
-        out,
+        SearchMeans(out),
         settings=override(Settings(), ["graph.workers=2", "graph.node_stride=3"]),
         progress=Silent(),
     )
@@ -138,7 +138,11 @@ def test_who_asks_to_stop_is_heard(searched, stroll):
 
     with pytest.raises(Cancelled):
         build_graph(
-            stroll, searched[0] / "odometry", searched[0], settings=settings_of(), progress=Stop()
+            stroll,
+            searched[0] / "odometry",
+            SearchMeans(searched[0]),
+            settings=settings_of(),
+            progress=Stop(),
         )
 
 
@@ -182,7 +186,8 @@ def test_a_search_that_was_stopped_goes_on_with_the_same_result(
         settings = settings_of("graph.node_stride=3", "graph.workers=1")
         with keeping(tmp_path, "graph", "key"):
             odometry = searched[0] / "odometry"
-            build_graph(stroll, odometry, tmp_path, settings=settings, progress=progress)
+            means = SearchMeans(tmp_path)
+            build_graph(stroll, odometry, means, settings=settings, progress=progress)
         return dict(made)
 
     with pytest.raises(Cancelled):
@@ -312,7 +317,8 @@ def tiny(frames, folder):
         (folder / name).mkdir()
     settings = settings_of()
     run_odometry(WalkInputs(frames, settings, Silent()), folder / "odometry")
-    build_graph(frames, folder / "odometry", folder / "graph", settings=settings, progress=Silent())
+    means = SearchMeans(folder / "graph")
+    build_graph(frames, folder / "odometry", means, settings=settings, progress=Silent())
     found = verify(load_graph(folder / "graph"), settings=VerificationSettings())
     save_graph(folder / "verified", found.graph)
     facts = refine(
