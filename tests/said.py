@@ -16,6 +16,7 @@ from recon4.model.finding import Finding
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.usability import MapVerdict
 from recon4.settings import Settings
+from recon4.settings.reads import AuditReads, part_of
 
 
 def texts(findings: Iterable[Finding]) -> list[str]:
@@ -41,7 +42,7 @@ def line_texts(figures: OdometryFigures) -> list[str]:
 
 def found_in(walk: WalkRecord, settings: Settings | None = None) -> tuple[Finding, ...]:
     """What all witnesses find in a walk."""
-    return check_walk(walk, settings or Settings())
+    return check_walk(replace(walk, settings=part_of(settings, AuditReads)) if settings else walk)
 
 
 def odometry_findings(figures: OdometryFigures) -> list[Finding]:

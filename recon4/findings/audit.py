@@ -4,31 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
+from importlib import import_module
+from inspect import isabstract
 from pathlib import Path
+from pkgutil import iter_modules
 
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.findings import witnesses as folder
 from recon4.findings.tuning import AUDIT_LIST
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
-from recon4.findings.witnesses.class_corrections import ClassCorrections
-from recon4.findings.witnesses.imports import Earlier, Import
-from recon4.findings.witnesses.imu import Gravity, ImuUse, Rides, Saturation, UpsideDown
-from recon4.findings.witnesses.lines import FirstTrajectory
-from recon4.findings.witnesses.loops import Correction, Decisions, Loops
-from recon4.findings.witnesses.motion import Bridges, Moving, WeakTurns
-from recon4.findings.witnesses.places import LookAlike, Pieces
-from recon4.findings.witnesses.placing import Antenna, Gnss, Heights, Leveled, Mirrors
-from recon4.findings.witnesses.rig import RigAge, RigFile
-from recon4.findings.witnesses.speed import Speed
-from recon4.findings.witnesses.tracking import Convergence, Tracking
-from recon4.findings.witnesses.turn_scale import TurnScales
-from recon4.findings.witnesses.uncertainty import Uncertainty
-from recon4.findings.witnesses.weak_directions import WeakStretches
 from recon4.model.figures import AuditFigures
 from recon4.model.finding import Finding, Level, worst_first
-from recon4.settings.reads import AuditReads
 from recon4.store.atomic import write_json
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
@@ -36,49 +25,23 @@ from recon4.untrusted.limits import LIMITS
 FINDINGS = "findings.json"
 
 
-def witnesses(settings: AuditReads) -> tuple[Witness, ...]:
-    """All witnesses of a 3-D map, in the order in which findings of one level are shown."""
-    return (
-        Tracking(),
-        Convergence(),
-        WeakStretches(),
-        RigFile(),
-        RigAge(settings.rig.max_age_days),
-        Uncertainty(),
-        Pieces(),
-        LookAlike(),
-        TurnScales(),
-        Speed(),
-        Loops(),
-        Correction(),
-        Leveled(),
-        Gnss(),
-        Heights(settings.gnss),
-        Antenna(),
-        Mirrors(),
-        ClassCorrections(),
-        Import(),
-        Rides(),
-        Saturation(),
-        Gravity(),
-        UpsideDown(),
-        ImuUse(),
-        Moving(),
-        WeakTurns(),
-        Bridges(),
-        FirstTrajectory(),
-        Decisions(),
-        Earlier(),
+def witnesses() -> tuple[Witness, ...]:
+    """One of each witness in the modules of `recon4/findings/witnesses/`, by module and name."""
+    names = [f"{folder.__name__}.{one.name}" for one in iter_modules(folder.__path__)]
+    return tuple(
+        kind()
+        for module in map(import_module, names)
+        for _, kind in sorted(vars(module).items())
+        if isinstance(kind, type)
+        and issubclass(kind, Witness)
+        and kind.__module__ == module.__name__
+        and not isabstract(kind)
     )
 
 
-def check_walk(walk: WalkRecord, settings: AuditReads) -> tuple[Finding, ...]:
+def check_walk(walk: WalkRecord) -> tuple[Finding, ...]:
     """What all witnesses find in a walk, worst first, each with its place in the map."""
-    found = [
-        placed(one, walk.final)
-        for witness in witnesses(settings)
-        for one in witness.check(walk)
-    ]  # fmt: skip
+    found = [placed(one, walk.final) for witness in witnesses() for one in witness.check(walk)]
     return worst_first(_most_of_a_kind(found))
 
 

@@ -29,6 +29,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import load_uncertainty
+from recon4.settings.reads import AuditReads
 from recon4.store.arrays import load_arrays, load_record, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 from recon4.store.frames import FrameStore, open_frames
@@ -41,6 +42,7 @@ from recon4.untrusted.limits import LIMITS
 class WalkRecord:
     """The artifacts of a run in memory, without points. None or empty = missing."""
 
+    settings: AuditReads = field(default_factory=AuditReads)
     imported: dict[str, object] = field(default_factory=dict)
     """``report.json`` of the frames."""
     odometry: Trajectory | None = None
@@ -88,7 +90,7 @@ class WalkRecord:
         return placement_in(self.georeference)
 
 
-def read_walk(artifacts: Mapping[str, Path]) -> WalkRecord:
+def read_walk(artifacts: Mapping[str, Path], settings: AuditReads) -> WalkRecord:
     """Read the existing artifacts.
 
     Raises:
@@ -96,6 +98,7 @@ def read_walk(artifacts: Mapping[str, Path]) -> WalkRecord:
     """
     store = _frame_store(artifacts)
     return WalkRecord(
+        settings=settings,
         imported=_json(artifacts, "frames", "report.json"),
         odometry=_latest_trajectory(artifacts, ("odometry",)),
         steps=current_names(_arrays(artifacts, "odometry", "steps.npz"), STEPS),

@@ -11,6 +11,7 @@ from recon4.model.finding_kinds import FindingKind
 
 Value = bool | int | float | str
 Point = tuple[float, float, float]
+_PLACES = {kind: place for place, kind in enumerate(FindingKind)}
 
 
 class Level(StrEnum):
@@ -54,5 +55,9 @@ class Finding(msgspec.Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 def worst_first(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Findings by level, the worst first; those of one level stay in order."""
-    return tuple(sorted(findings, key=lambda finding: -finding.level.rank))
+    """The findings in the order in which they are shown, whatever found them.
+
+    The worst level comes first, within it the kinds in the order of their list. Those of one kind
+    stay in order.
+    """
+    return tuple(sorted(findings, key=lambda one: (-one.level.rank, _PLACES[one.kind])))

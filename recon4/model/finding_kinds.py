@@ -1,6 +1,6 @@
-"""The closed list of the kinds of findings, of witnesses and of readers of recordings.
+"""The closed list of the kinds of findings, in the order in which those of one level are shown.
 
-The catalogs in `recon4/findings/` say what each one means.
+Witnesses and readers of recordings find them; the texts in `recon4/locales/` say what each means.
 
 A code never changes its meaning and is never used again: files, journals and people quote it.
 """
@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 10
-"""Raise it when witnesses find something else in the same walk: then finished projects are audited
-again."""
+AUDIT_VERSION = 11
+"""Raise it when witnesses find something else in the same walk, or in another order: then finished
+projects are audited again."""
 
 
 class FindingKind(StrEnum):

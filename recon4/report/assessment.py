@@ -37,7 +37,7 @@ def assess(facts: ReportFacts) -> Assessment:
     Raises:
         StoreError: If an artifact is damaged.
     """
-    results = read_walk(facts.artifacts)
+    results = read_walk(facts.artifacts, part_of(facts.settings, AuditReads))
     findings = (*_audited(facts, results), *accuracy_findings(facts.evaluation))
     ordered = worst_first(findings)
     return Assessment(
@@ -49,4 +49,4 @@ def _audited(facts: ReportFacts, results: WalkRecord) -> tuple[Finding, ...]:
     audit = facts.artifacts.get("audit")
     if audit is not None and (audit / FINDINGS).is_file():
         return load_findings(audit)
-    return check_walk(results, part_of(facts.settings, AuditReads))
+    return check_walk(results)

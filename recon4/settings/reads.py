@@ -6,7 +6,7 @@ read, and the key of its artifact does not depend on it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, field, fields, is_dataclass
 from typing import TypeVar
 
 from recon4.settings.calibration import CalibrationSettings, RigSettings
@@ -106,8 +106,8 @@ class MapReads:
 class AuditReads:
     """Stage ``audit`` of 3-D maps."""
 
-    gnss: GnssSettings
-    rig: RigSettings
+    gnss: GnssSettings = field(default_factory=GnssSettings)
+    rig: RigSettings = field(default_factory=RigSettings)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -340,7 +340,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
     from recon4.findings.audit import check_walk, save_findings
     from recon4.findings.walk import read_walk
 
-    return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
+    return save_findings(context.out, check_walk(read_walk(artifacts, context.settings)))
 
 
 FRAMES = Stage("frames", 35, ImportReads, _frames, FrameFigures)

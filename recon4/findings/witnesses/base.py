@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
-from typing import Protocol
 
 import numpy as np
 from msgspec.structs import replace
@@ -14,9 +14,13 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory
 
 
-class Witness(Protocol):
-    """Compares the artifacts of a walk with each other for one kind of fault."""
+class Witness(ABC):
+    """Compares the artifacts of a walk with each other for one kind of fault.
 
+    The audit asks every class of this folder that inherits from it, made without arguments.
+    """
+
+    @abstractmethod
     def check(self, walk: WalkRecord) -> Iterable[Finding]:
         """What contradicts or confirms the map; nothing where its data is missing."""
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import CLASS_CORRECTIONS
 from recon4.model.figures import CorrectedClass
 from recon4.model.finding import Finding, Level, Value
@@ -14,7 +14,7 @@ from recon4.model.finding_kinds import FindingKind
 
 
 @dataclass(frozen=True, slots=True)
-class ClassCorrections:
+class ClassCorrections(Witness):
     """What became of corrections when the map was made again with another trajectory."""
 
     told_m: float = CLASS_CORRECTIONS.told_m

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from msgspec.structs import replace
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED, ImportNotes, import_notes
@@ -15,7 +15,7 @@ from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.unused_data import unused_parts
 
 
-class Import:
+class Import(Witness):
     """Outcome, warnings and losses of the import."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -47,7 +47,7 @@ def _lidars_agree(figures: OdometryFigures | None) -> bool:
     return figures.imu_choice is None or figures.imu_choice.outcome != "not used"
 
 
-class Earlier:
+class Earlier(Witness):
     """Sentences of stages that were made before findings were records."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

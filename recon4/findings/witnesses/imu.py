@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import IMU_WITNESS
 from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.finding import Finding, Level, Value
@@ -27,7 +27,7 @@ _OUTCOMES = {
 }
 
 
-class ImuUse:
+class ImuUse(Witness):
     """Which samples the odometry used, and what its filter corrected."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -60,7 +60,7 @@ def _of_derived_times(found: Finding) -> Finding:
     return replace(found, level=Level.NOTE, values=found.values | {"derived": True})
 
 
-class Saturation:
+class Saturation(Witness):
     """An IMU at the end of its range."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -69,7 +69,7 @@ class Saturation:
             yield _saturated(walk, axis)
 
 
-class Gravity:
+class Gravity(Witness):
     """Gravity as the accelerometer measures it over the walk."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -93,7 +93,7 @@ class Gravity:
         yield finding(FindingKind.IMU_GRAVITY, Level.NOTE if of_a_bias else Level.CHECK, values)
 
 
-class UpsideDown:
+class UpsideDown(Witness):
     """A body that stands on its head by the accelerometer."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -113,7 +113,7 @@ class UpsideDown:
             yield replace(found, sensor="IMU")
 
 
-class Rides:
+class Rides(Witness):
     """Vertical motions that only the IMU measured."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

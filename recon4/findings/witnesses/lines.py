@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import LASER_MISSING
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import LineFigures
 
 
-class FirstTrajectory:
+class FirstTrajectory(Witness):
     """2-D laser, IMU and profiler against each other."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ import numpy as np
 from recon4.findings.drift import closed_drift
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import LOOP_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.model.finding import Finding, Level
@@ -17,7 +17,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.pose_graph import EdgeKind, Verdict
 
 
-class Loops:
+class Loops(Witness):
     """Loop closures by verdict, and the chain of the odometry."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -40,7 +40,7 @@ class Loops:
             yield finding(FindingKind.CHAIN_BROKEN, Level.DO_NOT_USE, {"edges": broken})
 
 
-class Correction:
+class Correction(Witness):
     """How far the graph moved the odometry, and what loop closures say of the result."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -60,7 +60,7 @@ class Correction:
             yield finding(FindingKind.LOOP_RESIDUAL, Level.CHECK, {"residual_m": residual_m})
 
 
-class Decisions:
+class Decisions(Witness):
     """Decisions of people that contradict the graph, or have no effect."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

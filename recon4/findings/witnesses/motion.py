@@ -8,14 +8,14 @@ import numpy as np
 from msgspec.structs import replace
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.uncertainty import is_known
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import MovingFigures, TurnDoubt
 
 
-class Moving:
+class Moving(Witness):
     """People and vehicles in view."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -25,7 +25,7 @@ class Moving:
             yield moving_finding(moving)
 
 
-class WeakTurns:
+class WeakTurns(Witness):
     """Turns that only the gyroscope holds."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -35,7 +35,7 @@ class WeakTurns:
             yield turn_finding(doubt, level)
 
 
-class Bridges:
+class Bridges(Witness):
     """Gaps that one registration joined."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import PLACE_WITNESS
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
@@ -87,7 +87,7 @@ def ambiguous_places(graph: PoseGraph | None) -> list[AmbiguousPlace]:
     ]
 
 
-class Pieces:
+class Pieces(Witness):
     """Parts of the walk that nothing joins."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -101,7 +101,7 @@ class Pieces:
             )
 
 
-class LookAlike:
+class LookAlike(Witness):
     """Places that look like others."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from recon4.findings.placement import GnssFacts
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import PLACING_WITNESS
 from recon4.georeference.antenna_audit import antenna_doubts
 from recon4.model.figures import AntennaFigures
@@ -16,10 +16,9 @@ from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.gps_time import GPS_MINUS_UTC_S
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED, import_notes
-from recon4.settings import GnssSettings
 
 
-class Leveled:
+class Leveled(Witness):
     """Whether up is known."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -30,7 +29,7 @@ class Leveled:
         yield finding(FindingKind.NOT_LEVELED, Level.NOTE if missing else Level.CHECK)
 
 
-class Gnss:
+class Gnss(Witness):
     """Fixes against the trajectory and the loop closures."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -67,15 +66,12 @@ def _why_not(gnss: GnssFacts) -> dict[str, Value]:
     return values | {name: value for name, value in known.items() if value is not None}
 
 
-class Heights:
+class Heights(Witness):
     """Whether the heights of a georeferenced map are those above the ellipsoid."""
-
-    def __init__(self, settings: GnssSettings) -> None:
-        self._settings = settings
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
         """Heights of another kind than the map states, or of a kind that nothing states."""
-        if not walk.placement.gnss.georeferenced or self._settings.heights != "as_recorded":
+        if not walk.placement.gnss.georeferenced or walk.settings.gnss.heights != "as_recorded":
             return
         counts = import_notes(walk.imported).counts
         if above_sea := counts.get(HEIGHTS_ORTHOMETRIC, 0):
@@ -84,7 +80,7 @@ class Heights:
             yield finding(FindingKind.HEIGHTS_UNSTATED, Level.CHECK, {"fixes": unstated})
 
 
-class Antenna:
+class Antenna(Witness):
     """Lever arm and clock of the GNSS receiver against the fixes."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -102,7 +98,7 @@ class Antenna:
                 yield _clock(found)
 
 
-class Mirrors:
+class Mirrors(Witness):
     """Walls that show the room before them."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ import numpy as np
 from msgspec.structs import replace
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.imu import fault_finding, has_untimed_clouds
 from recon4.findings.witnesses.tuning import RIG_WITNESS
 from recon4.model.calibration_figures import (
@@ -31,7 +31,7 @@ gyroscope and its clock, and a leveled map is stated to be tilted by as much as 
 _SHOWN = {"rad": (float(np.rad2deg(1.0)), "°"), "m": (100.0, " cm"), "s": (1e3, " ms")}
 
 
-class RigFile:
+class RigFile(Witness):
     """Mounts, clocks and beams as the windows of the walk show them."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -45,19 +45,15 @@ class RigFile:
         yield from found or [agreement(figures.outcome, figures.statuses)]
 
 
-class RigAge:
+class RigAge(Witness):
     """Date of the calibration in the rig file."""
-
-    def __init__(self, max_age_days: int) -> None:
-        self._max_age_days = max_age_days
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
         """Whether it is too old."""
         if walk.rig is None:
             return
-        origin = RigOrigin.of(
-            walk.rig, recorded_ns=walk.recorded_ns, max_age_days=self._max_age_days
-        )
+        most = walk.settings.rig.max_age_days
+        origin = RigOrigin.of(walk.rig, recorded_ns=walk.recorded_ns, max_age_days=most)
         if origin.is_old and origin.calibration is not None:
             yield finding(
                 FindingKind.RIG_OLD,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import SPEED_WITNESS
 from recon4.geometry.se3 import Array
 from recon4.model.finding import Finding, Level
@@ -44,7 +44,7 @@ def too_fast(trajectory: Trajectory) -> TooFast | None:
     return TooFast(int(fast.sum()), float(speed_m_s[worst]), float(knots[worst]))
 
 
-class Speed:
+class Speed(Witness):
     """Jumps of the trajectory."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import TRACKING_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known
 from recon4.findings.witnesses.weak_directions import held_by_surfaces
@@ -21,7 +21,7 @@ from recon4.model.trajectory import Times
 Flags = NDArray[np.bool_]
 
 
-class Tracking:
+class Tracking(Witness):
     """Multiframes whose registration was rejected."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
@@ -38,7 +38,7 @@ class Tracking:
             yield finding(FindingKind.TRACKING_KEPT, Level.GOOD, {"multiframes": len(lost)})
 
 
-class Convergence:
+class Convergence(Witness):
     """Registrations whose iterations were stopped."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import TURN_SCALE
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.finding import Finding, Level, Value
@@ -62,7 +62,7 @@ def turn_scale(graph: PoseGraph, odometry: Trajectory) -> TurnScale | None:
     return TurnScale(middle, spread / float(np.sqrt(len(ratio))))
 
 
-class TurnScales:
+class TurnScales(Witness):
     """Turns of the odometry against those of registered pairs."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from recon4.findings.walk import WalkRecord, path_length_m
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory
@@ -43,7 +43,7 @@ class KnownLimits:
 LIMITS = KnownLimits()
 
 
-class Uncertainty:
+class Uncertainty(Witness):
     """Covariances of the final poses against what a map is good for."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from recon4.findings.walk import WalkRecord
-from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import WEAK_DIRECTION
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.geometry.se3 import Array
@@ -119,7 +119,7 @@ def _mean_direction(directions: Array) -> Array:
     return axis
 
 
-class WeakStretches:
+class WeakStretches(Witness):
     """Stretches in which the LiDARs hardly observe a direction."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:

@@ -13,13 +13,12 @@ from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import ImuChoice, OdometryFigures
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict, known_history
-from recon4.settings import preset
 from tests.unit.findings.test_known_shape import FLAT, stated
 from tests.unit.pose_graph.test_uncertainty import chain, edge
 
 
 def only(walked, kind):
-    (found,) = (one for one in check_walk(walked, preset("indoor")) if one.kind is kind)
+    (found,) = (one for one in check_walk(walked) if one.kind is kind)
     return found
 
 
@@ -68,7 +67,7 @@ def test_one_multiframe_that_did_not_converge_counts_if_it_is_far_from_where_it_
     steps = flags | {"converged": done, "prediction_offset_m": offsets}
     steps |= {"t_mid_ns": np.arange(40) * 10**8, "t_m": np.zeros((40, 3))}
 
-    found = check_walk(WalkRecord(steps=steps), preset("indoor"))
+    found = check_walk(WalkRecord(steps=steps))
 
     levels = [one.level for one in found if one.kind is FindingKind.NOT_CONVERGED]
     assert levels == ([] if level is None else [level])
@@ -83,7 +82,7 @@ def test_a_weak_direction_of_unknown_size_is_stored():
     steps = {"lost": np.zeros(40, bool), "degeneracy": np.zeros(40)}
     steps |= {"t_mid_ns": np.arange(40) * 10**8, "t_m": np.zeros((40, 3))}
 
-    found = check_walk(WalkRecord(steps=steps), preset("indoor"))
+    found = check_walk(WalkRecord(steps=steps))
 
     weak = [one for one in found if one.kind is FindingKind.WEAK_DIRECTION]
     assert len(weak) == 1 and "degeneracy 0.0000" in text_of(weak[0])

@@ -12,11 +12,10 @@ from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.odometry_figures import ImuFault, OdometryFigures
 from recon4.model.usability import Usability
-from recon4.settings import preset
 
 
 def found_in(walked):
-    return check_walk(walked, preset("indoor"))
+    return check_walk(walked)
 
 
 def clock_of_imu(ahead_s, *, corrected_s=None):

@@ -11,7 +11,6 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
-from recon4.settings import preset
 
 
 def stated(shape_sd_m, sd_m, *, on_earth):
@@ -43,7 +42,7 @@ ONE_PLACE = np.array([0.01] * 9 + [0.1])
 def test_a_local_map_needs_a_known_shape_and_a_georeferenced_one_a_known_place_too(
     shape_sd_m, sd_m, on_earth, usability
 ):
-    (found,) = check_walk(stated(shape_sd_m, sd_m, on_earth=on_earth), preset("indoor"))
+    (found,) = check_walk(stated(shape_sd_m, sd_m, on_earth=on_earth))
 
     assert found.kind is FindingKind.UNCERTAINTY
     assert verdict_of([found]).usability is usability

@@ -8,6 +8,8 @@ from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.rig import RigAge
 from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin
+from recon4.settings.calibration import RigSettings
+from recon4.settings.reads import AuditReads
 from tests.said import texts
 
 NOON_2026_11_22_NS = 1_795_348_800_000_000_000
@@ -35,7 +37,9 @@ def test_serial_numbers_and_age_are_reported():
 def test_a_rig_older_than_the_set_age_is_mentioned(most, old):
     rig = replace(load_rig("4recon"), calibration=NOTE)
 
-    said = texts(RigAge(most).check(WalkRecord(rig=rig, recorded_ns=NOON_2026_11_22_NS)))
+    reads = AuditReads(rig=RigSettings(max_age_days=most))
+    walk = WalkRecord(settings=reads, rig=rig, recorded_ns=NOON_2026_11_22_NS)
+    said = texts(RigAge().check(walk))
 
     assert origin(most=most).is_old is old
     assert any("calibrated on 2026-11-12, 10 days before the walk" in text for text in said) is old
