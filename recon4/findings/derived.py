@@ -26,7 +26,7 @@ def derived_sentences(language: str = ENGLISH) -> Mapping[DerivedKind, tuple[Sen
 def derived_text(one: Derived, language: str = ENGLISH) -> str:
     """What was derived, as sentences; its code if it lacks all values that they quote."""
     sentences = derived_sentences(language)[one.kind]
-    values = known_values(one.values)
+    values = known_values(one.values, language)
     return said_of(_texts(language), one.kind, sentences, values=values) or one.kind
 
 

@@ -81,7 +81,7 @@ def text_of(finding: Finding, language: str = ENGLISH) -> str:
     """A finding as sentences, without its remedy."""
     known = catalog(language)
     entry = known.kinds[finding.kind]
-    text = said_of(known.texts, finding.kind, entry.text, values=_values(finding))
+    text = said_of(known.texts, finding.kind, entry.text, values=_values(finding, language))
     return text or f"{entry.title}."
 
 
@@ -89,7 +89,7 @@ def remedy_of(finding: Finding, language: str = ENGLISH) -> str:
     """What to do about a finding; empty = nothing."""
     known = catalog(language)
     entry = known.kinds[finding.kind]
-    values = _values(finding)
+    values = _values(finding, language)
     if not entry.remedy or not entry.remedy_quotes <= values.keys():
         return ""
     return known.texts.part(finding.kind, "remedy", values)
@@ -139,8 +139,8 @@ def _kind_text(texts: Texts, kind: FindingKind) -> KindText:
     )
 
 
-def _values(finding: Finding) -> dict[str, Value]:
-    values = known_values(finding.values)
+def _values(finding: Finding, language: str) -> dict[str, Value]:
+    values = known_values(finding.values, language)
     if finding.span_s is not None:
         values["start_s"], values["end_s"] = finding.span_s
     if finding.direction:

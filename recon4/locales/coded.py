@@ -25,6 +25,8 @@ FILES = ("problems", "endings", "references", "recordings")
 references, and of recordings."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
+CODE = "_code"
+"""End of the name of a value that is the code of the error in another value of a finding."""
 UNCODED = "message"
 """Code of a text that has none; its value ``detail`` is the text."""
 

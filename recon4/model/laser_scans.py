@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times
 
 Ranges = NDArray[np.float32]
@@ -131,12 +132,14 @@ class LaserScans:
         angles = self.angles_rad(k)[seen]
         return ranges[seen, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
-    def describe_layout(self) -> str:
-        """Beams and field of view, for people: ``452 to 458 beams over 360°``."""
-        low, high = int(self.beams.min()), int(self.beams.max())
-        count = f"{low}" if low == high else f"{low} to {high}"
-        field_deg = float(np.median(np.abs(np.rad2deg(self.angle_step_rad)) * (self.beams - 1)))
-        return f"{count} beams over {field_deg:.0f}°"
+    @property
+    def layout(self) -> CodedText:
+        """Beams and field of view, for people: ``scans of 452 to 458 beams over 360°``."""
+        fewest, most = int(self.beams.min()), int(self.beams.max())
+        field_rad = float(np.median(np.abs(self.angle_step_rad) * (self.beams - 1)))
+        if fewest == most:
+            return CodedText("content-layout", most=most, field_rad=field_rad)
+        return CodedText("content-layout-varies", fewest=fewest, most=most, field_rad=field_rad)
 
 
 def joined_scans(parts: Sequence[LaserScans]) -> LaserScans:

@@ -65,9 +65,7 @@ class CloudReader:
                 shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
             except CorruptFile as error:
                 self._report.count("messages_corrupt")
-                self._report.warn(
-                    FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=str(error)
-                )
+                self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=error)
                 continue
             if len(shots := moved(shots, self._offset_ns)):
                 self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from recon4.locales.coded import CodedText
+from recon4.locales.texts import Shown
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import capture_files
 from recon4.recording.packets.family import Companion
@@ -44,13 +45,18 @@ def describe_capture(
         estimated=not all(s.whole for s in streams),
         sensors=tuple(lidars),
         samples=tuple(_samples(s) for s in streams if s.kind in _SAMPLES),
-        unread=tuple(s.text for s in _others(streams, scanners)),
+        unread=tuple(_unread(s) for s in _others(streams, scanners)),
     )
 
 
 def _samples(stream: PacketStream) -> CodedText:
     sender, what = f"{stream.source}:{stream.port}", _SAMPLES[stream.kind]
     return CodedText("samples-sender", sender=sender, count=_total(stream), what=what)
+
+
+def _unread(stream: PacketStream) -> CodedText:
+    of: dict[str, Shown] = {"packets": stream.packets, "source": stream.source}
+    return CodedText("unread-packets", **of, port=stream.port, why=stream.refused)
 
 
 def _others(streams: Sequence[PacketStream], scanners: ScanStreams) -> list[PacketStream]:
@@ -69,11 +75,11 @@ def _total(stream: PacketStream) -> int:
 
 def _packet_sensor(stream: PacketStream) -> SensorInfo:
     span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
-    mode = f" ({stream.found.mode} return)" if stream.found and stream.found.mode else ""
+    mode = {"mode": stream.found.mode} if stream.found and stream.found.mode else {}
     return SensorInfo(
         label=f"{stream.source}:{stream.port}",
         model=stream.model or "unknown model",
-        content=f"packets{mode}",
+        content=CodedText("content-packets-mode" if mode else "content-packets", **mode),
         count=_total(stream),
         rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
         rotation_hz=stream.found.rotation_hz if stream.found else float("nan"),
@@ -89,7 +95,7 @@ def _scanner(stream: PacketStream, found: ScanStreams) -> SensorInfo:
     return SensorInfo(
         label=f"{stream.source}:{stream.port}",
         model="profiler" if found.heads[key] else "2-D laser",
-        content="line scans" if found.heads[key] else "scans",
+        content=CodedText("content-line-scans" if found.heads[key] else "content-scans"),
         count=round(ratio * _total(stream)),
         rate_hz=ratio * (stream.packets - 1) / span_s if span_s > 0 else float("nan"),
     )

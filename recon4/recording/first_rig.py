@@ -54,7 +54,7 @@ def first_rig_text(
             "# A centimeter and a degree are enough; recon4 calibrate finds the rest.",
         ]
     uncertain = [*uncertain, *_turned_imu(rig)]
-    lines += [f"# Uncertain: {' '.join(text.split())}" for text in uncertain]
+    lines += [f"# {' '.join(text.split())}" for text in uncertain]
     text = format_rig(rig)
     if not mounted:
         text = text.replace("quat_xyzw = [0.0, 0.0, 0.0, 1.0]", "rpy_deg = [0.0, 0.0, 0.0]")
@@ -65,7 +65,7 @@ def _turned_imu(rig: Rig) -> list[str]:
     """What is not certain of an IMU whose axes are not those of the points of its LiDAR."""
     models = [lidar_model(one.model) for one in rig.sensors if one.name == rig.imu_sensor]
     return [
-        f"the IMU of an {model.name} is taken as turned by rpy_deg = "
+        f"Uncertain: the IMU of an {model.name} is taken as turned by rpy_deg = "
         f"{list(model.rpy_sensor_imu_deg)} against its points, as public reports say; another "
         "mount: rpy_deg of [imu], in the body"
         for model in models

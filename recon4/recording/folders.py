@@ -11,6 +11,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.multiframe import Multiframe
@@ -144,7 +145,7 @@ def read_frames(
             failed = error
             report.count("files_corrupt")
             report.outcome = "lossy"
-            report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
+            report.warn(FindingKind.FILE_LEFT_OUT, error=error)
             continue
         start_ns = int(stamp) + offset_ns
         if len(shots) and (decoder.absolute or shots.t_ns[0] < start_ns):
@@ -167,10 +168,12 @@ def read_frames(
         raise failed
 
 
-def frames_label(frames: FrameFiles) -> str:
+def frames_label(frames: FrameFiles) -> CodedText:
     """Description of the files, for example ``PCD files, times from times.txt``."""
     kind = frames.files[0].suffix[1:].upper()
-    return f"{kind} files, times from {frames.times_from}" if frames.times_from else f"{kind} files"
+    if not frames.times_from:
+        return CodedText("content-files", kind=kind)
+    return CodedText("content-files-timed", kind=kind, times=frames.times_from)
 
 
 def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[TimeGap]:

@@ -86,7 +86,7 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     try:
         times = read_times(beside)
     except CorruptFile as error:
-        found.append(warning(FindingKind.TIMES_UNREADABLE, error=str(error)))
+        found.append(warning(FindingKind.TIMES_UNREADABLE, error=error))
         return None
     name, count = beside.name, len(times)
     if count != len(files):

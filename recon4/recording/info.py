@@ -156,7 +156,7 @@ def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         )
 
 
-def _line_sensor(bag: Bag, topic: BagTopic, model: str, *, content: str) -> SensorInfo:
+def _line_sensor(bag: Bag, topic: BagTopic, model: str, *, content: CodedText) -> SensorInfo:
     rate_hz = (topic.messages - 1) / bag.seconds if bag.seconds > 0 else float("nan")
     return SensorInfo(
         label=topic.name, model=model, content=content, count=topic.messages, rate_hz=rate_hz
@@ -167,7 +167,7 @@ def _bag_sensor(bag: Bag, topic: BagTopic, model: str) -> SensorInfo:
     return SensorInfo(
         label=topic.name,
         model=model,
-        content="clouds" if topic.is_points else "scans of packets",
+        content=CodedText("content-clouds" if topic.is_points else "content-packet-scans"),
         count=topic.messages,
         rate_hz=(topic.messages - 1) / bag.seconds if bag.seconds > 0 else float("nan"),
         fields=_message_fields(bag, topic) if topic.is_points else (),
@@ -227,10 +227,10 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
     sensor = SensorInfo(
         label=path.name,
         model="2-D laser",
-        content=f"scans of {scans.describe_layout()}",
+        content=scans.layout,
         count=len(scans),
         rate_hz=(len(scans) - 1) * 1e9 / (last - first) if last > first else float("nan"),
-        remarks=(f"ranges up to {scans.range_max_m:.2f} m, {returns:.0%} of the beams return",),
+        remarks=(CodedText("remark-ranges", farthest_m=scans.range_max_m, returns=returns),),
     )
     return replace(
         info,

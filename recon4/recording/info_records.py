@@ -24,8 +24,8 @@ class SensorInfo:
     label: str
     """Address and port, topic, or folder."""
     model: str
-    content: str
-    """``packets``, ``clouds`` or ``files``."""
+    content: CodedText
+    """What it sends, such as ``packets``."""
     count: int
     """Number of them; an estimate for a large capture file."""
     rate_hz: float
@@ -33,9 +33,16 @@ class SensorInfo:
     rotation_hz: float = float("nan")
     """Measured at the head; NaN = unknown."""
     fields: tuple[str, ...] = ()
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[CodedText, ...] = ()
     findings: tuple[Finding, ...] = ()
     """What its reader warns of."""
+
+    def to_json(self, language: str) -> dict[str, object]:
+        """It as a record, with what it sends in a language."""
+        return asdict(self) | {
+            "content": self.content.said(language),
+            "remarks": [one.said(language) for one in self.remarks],
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +62,7 @@ class RecordingInfo:
     sensors: tuple[SensorInfo, ...] = ()
     samples: tuple[CodedText, ...] = ()
     """IMU, GNSS and poses with their rates."""
-    unread: tuple[str, ...] = ()
+    unread: tuple[CodedText, ...] = ()
     """Senders of packets that are not read, and why."""
     gaps: tuple[TimeGap, ...] = ()
     derived: tuple[Derived, ...] = ()
@@ -79,7 +86,9 @@ class RecordingInfo:
         """The contents as a record; what is derived also as text in a language."""
         return asdict(self) | {
             "kind": self.kind.said(language),
+            "sensors": [one.to_json(language) for one in self.sensors],
             "samples": [one.said(language) for one in self.samples],
+            "unread": [one.said(language) for one in self.unread],
             "derived": [said_derived(one, language) for one in self.derived],
             "missing": [one.said(language) for one in self.missing],
             "walk": self.walk_text(language),
@@ -102,7 +111,7 @@ class RecordingInfo:
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about, language)
         lines += [f"samples   {one.said(language)}" for one in self.samples]
-        lines += [f"not read  {text}" for text in self.unread]
+        lines += [f"not read  {one.said(language)}" for one in self.unread]
         for gap in self.gaps[:10]:
             since_s = (gap.t_ns - self.t_first_ns) / 1e9
             what = "" if gap.seconds > 0 else "the clock goes back by "
@@ -124,9 +133,10 @@ def _sensor_lines(sensor: SensorInfo, about: str, language: str) -> list[str]:
     turns = f", {sensor.rotation_hz:.2f} revolutions a second" * bool(
         np.isfinite(sensor.rotation_hz)
     )
-    text = f"{sensor.label} {sensor.model}: {about}{sensor.count} {sensor.content}{rate}{turns}"
+    text = f"{sensor.label} {sensor.model}: {about}{sensor.count} "
+    text += f"{sensor.content.said(language)}{rate}{turns}"
     lines = [f"lidar     {text}"]
     if sensor.fields:
         lines.append(f"fields    {', '.join(sensor.fields)}")
-    lines += [f"remark    {sensor.label}: {remark}" for remark in sensor.remarks]
+    lines += [f"remark    {sensor.label}: {one.said(language)}" for one in sensor.remarks]
     return lines + [f"remark    {whole_text(one, language)}" for one in sensor.findings]

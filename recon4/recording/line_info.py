@@ -80,7 +80,7 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
         try:
             sensors += (_laser2d(tables.laser2d, report),)
         except RecordingError as error:
-            report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
+            report.warn(FindingKind.FILE_LEFT_OUT, error=error)
     if tables.imu is not None:
         imu_ns = read_imu_csv(tables.imu, report).t_ns
         beside: dict[str, Shown] = {"file": tables.imu.name, "count": len(imu_ns), "what": "imu"}
@@ -123,15 +123,13 @@ def _absent(tables: LineTables, has_head: bool) -> tuple[CodedText, ...]:
 def _profiler(name: str, seen: _Seen, part: float) -> SensorInfo:
     seconds = 1e-9 * (seen.t_line_ns - seen.t_first_ns)
     low, high = seen.head_deg
-    head = f"head from {low:.0f}° to {high:.0f}°, " if low <= high else ""
-    remark = (
-        f"{head}{seen.rows / seen.lines:.0f} shots a line, "
-        f"{seen.returns / seen.rows:.0%} of them return"
-    )
+    head = {"low": float(np.deg2rad(low)), "high": float(np.deg2rad(high))} if low <= high else {}
+    shots = {"shots": seen.rows / seen.lines, "returns": seen.returns / seen.rows}
+    remark = CodedText("remark-head" if head else "remark-lines", **shots, **head)
     return SensorInfo(
         label=name,
         model="profiler",
-        content="line scans",
+        content=CodedText("content-line-scans"),
         count=round(seen.lines / part),
         rate_hz=(seen.lines - 1) / seconds if seconds > 0 else float("nan"),
         remarks=(remark,),
@@ -144,7 +142,7 @@ def _laser2d(path: Path, report: ImportReport) -> SensorInfo:
     return SensorInfo(
         label=path.name,
         model="2-D laser",
-        content=f"scans of {scans.describe_layout()}",
+        content=scans.layout,
         count=len(scans),
         rate_hz=(len(scans) - 1) / seconds if seconds > 0 else float("nan"),
     )

@@ -348,7 +348,7 @@ class LineAssembly:
             )
         except CorruptFile as error:
             self._report.count("messages_corrupt")
-            self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=str(error))
+            self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=error)
             return None
 
     def _turn(self, now_ns: int, *, final: bool = False) -> None:

@@ -11,17 +11,17 @@ from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
 
 _MOVES = {
-    **dict.fromkeys(TRANSFORMS, ("joint", "transforms")),
-    TEXT: ("joint", "description of the robot"),
+    **dict.fromkeys(TRANSFORMS, ("joint", "content-transforms")),
+    TEXT: ("joint", "content-description"),
 }
-"""Type of a head's topic -> what it moves, and what its messages are."""
+"""Type of a head's topic -> what it moves, and the code of what its messages are."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineTopics:
     """Topics of a rig with a profiler, the shipped one or that of a laser on a joint."""
 
-    sensors: tuple[tuple[BagTopic, str, str], ...]
+    sensors: tuple[tuple[BagTopic, str, CodedText], ...]
     """Topic, kind of sensor, and what its messages are."""
     missing: tuple[CodedText, ...]
     """What the rig has and the bag lacks."""
@@ -33,19 +33,21 @@ def line_topics(bag: Bag) -> LineTopics | None:
     if rig is None:
         return None
     filled = {topic.name: topic for topic in bag.topics if topic.messages}
-    contents = {"profiler": "line scans", "laser2d": "scans"}
+    contents = {"profiler": "content-line-scans", "laser2d": "content-scans"}
     names = {"profiler": "profiler", "laser2d": "2-D laser"}
     found, missing = [], []
     for sensor in rig.sensors:
         if sensor.topic in filled:
-            found.append((filled[sensor.topic], names[sensor.kind], contents[sensor.kind]))
+            content = CodedText(contents[sensor.kind])
+            found.append((filled[sensor.topic], names[sensor.kind], content))
         else:
             missing.append(CodedText("missing-topic", kind=sensor.kind, topic=sensor.topic))
         if not sensor.head_topic:
             continue
         if sensor.head_topic in filled:
             head = filled[sensor.head_topic]
-            found.append((head, *_MOVES.get(head.type, ("head", "angles"))))
+            moves, code = _MOVES.get(head.type, ("head", "content-angles"))
+            found.append((head, moves, CodedText(code)))
         else:
             expected = {"topic": sensor.head_topic, "type": JOINT_STATES}
             missing.append(CodedText("missing-head-topic", **expected))

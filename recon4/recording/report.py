@@ -8,7 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from recon4.findings.derived import derived_text
 from recon4.findings.wording import whole_text
+from recon4.locales.coded import CODE, KINDS, coded
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level, Value
@@ -17,12 +19,13 @@ from recon4.model.import_counts import Loss, count_text, losses, repairs, replac
 from recon4.recording.limits import LIMITS
 
 
-def warning(kind: FindingKind, **values: Value) -> Finding:
+def warning(kind: FindingKind, **values: Value | Exception) -> Finding:
     """A warning of a reader, as a finding; the catalog of the findings has its words.
 
     Args:
         kind: What it is.
         values: Figures and names that its text quotes; NaN is left out, a text of a file cut.
+            An error is kept as its message and, in ``…_code``, its kind.
             ``sensor`` is the name of the sensor that it is about; ``start_s`` and ``end_s`` are its
             stretch, after the first multiframe [s].
     """
@@ -68,12 +71,12 @@ class ImportReport:
         if len(lags) < LIMITS.lags:
             lags.append(lag_ns)
 
-    def derive(self, kind: DerivedKind, **values: Value) -> None:
+    def derive(self, kind: DerivedKind, **values: Value | Exception) -> None:
         """State once what the recording lacks and was derived or chosen.
 
         Args:
             kind: What it is; the catalog has its words.
-            values: Figures and names that its text quotes; NaN is left out, a text of a file cut.
+            values: As for `warning`.
         """
         found = Derived(kind=kind, values=_known(values))
         if found in self.derived:
@@ -83,7 +86,7 @@ class ImportReport:
         else:
             self.count("remarks_more")
 
-    def warn(self, kind: FindingKind, **values: Value) -> None:
+    def warn(self, kind: FindingKind, **values: Value | Exception) -> None:
         """Warn of something once; arguments as for `warning`."""
         self.add(warning(kind, **values))
 
@@ -126,16 +129,26 @@ class ImportReport:
         """What was warned of in words, for messages of errors."""
         return [whole_text(one) for one in self.findings]
 
+    def said_derived(self) -> list[str]:
+        """What was derived in words, for messages of errors."""
+        return [derived_text(one) for one in self.derived]
+
     def repaired(self) -> list[str]:
         """All counts of repaired data, in words."""
         return repairs(self.counts)
 
 
-def _known(values: Mapping[str, Value]) -> dict[str, Value]:
-    return {name: _bounded(one) for name, one in values.items() if one == one}
+def _known(values: Mapping[str, Value | Exception]) -> dict[str, Value]:
+    coded_errors = {
+        name + CODE: coded(one).code for name, one in values.items() if isinstance(one, Exception)
+    }
+    known = {name: _bounded(one) for name, one in values.items() if one == one}
+    return known | {name: code for name, code in coded_errors.items() if code in KINDS.values()}
 
 
-def _bounded(value: Value) -> Value:
+def _bounded(value: Value | Exception) -> Value:
+    if isinstance(value, Exception):
+        return str(value)[: LIMITS.text_characters]
     if isinstance(value, np.generic):  # a float64 is a float, but no value of JSON
         return _bounded(value.item())
     return value[: LIMITS.text_characters] if isinstance(value, str) else value

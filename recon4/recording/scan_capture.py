@@ -295,7 +295,7 @@ class _ProfilerReader:
             shots = line_of_scan(message, self._row, t_ns, report=self._report)
         except CorruptFile as error:
             self._report.count("messages_corrupt")
-            self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=self._name, error=str(error))
+            self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=self._name, error=error)
             return
         yield from self._lines.push_shots(shots)
 

@@ -125,9 +125,7 @@ class ScanCollector:
         except CorruptFile as error:
             self._report.count("scans_damaged")
             if self._report.counts["scans_damaged"] == 1:
-                self._report.warn(
-                    FindingKind.SCAN_LEFT_OUT, where=where, alone=True, error=str(error)
-                )
+                self._report.warn(FindingKind.SCAN_LEFT_OUT, where=where, alone=True, error=error)
             return
         if t_ns <= self._last_ns:
             self._report.count(self._reason(t_ns, ranges))

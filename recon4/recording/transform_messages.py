@@ -174,7 +174,7 @@ class _Statements:
             joints = urdf_joints(texts[-1])
         except CorruptFile as error:
             self._report.count("robot_descriptions_refused")
-            self._report.derive(DerivedKind.DESCRIPTION_UNREAD, topic=name, error=str(error))
+            self._report.derive(DerivedKind.DESCRIPTION_UNREAD, topic=name, error=error)
             return
         for joint in joints:
             self._add_joint(name, joint)

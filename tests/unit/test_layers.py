@@ -25,6 +25,7 @@ BASE = {
 }
 MODEL = BASE | {"recon4.geometry", "recon4.model"}
 STAGE = MODEL | {"recon4.kernels", "recon4.store"}
+WORDED = STAGE | {"recon4.recording", "recon4.findings.derived", "recon4.findings.wording"}
 ORDERING = STAGE | {"recon4.orders.order", "recon4.orders.parts"}
 
 MAY_IMPORT = {
@@ -59,9 +60,8 @@ MAY_IMPORT = {
     "recon4/sandbox": {"recon4.sandbox", "recon4.kernels.processor"},
     "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
-    "recon4/recording/info_records.py": STAGE
-    | {"recon4.recording", "recon4.findings.derived", "recon4.findings.wording"},
-    "recon4/recording/report.py": STAGE | {"recon4.recording", "recon4.findings.wording"},
+    "recon4/recording/info_records.py": WORDED,
+    "recon4/recording/report.py": WORDED,
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}
     | {"recon4.system.processes", "recon4.system.stopping"}

@@ -118,8 +118,7 @@ function summary(/** @type {RecordingSummary} */ found) {
 function rowsOf({ sensors, samples, rig, imu, gnss, derived, missing }, about) {
   const sensor = (/** @type {SensorSummary} */ one) => {
     const rate = one.rate_hz === null ? "" : `, ${decimal(one.rate_hz, 1)}/s`;
-    const what = wordOf("content", one.content);
-    return `${one.model} (${one.label}): ${about}${count(one.count)} ${what}${rate}`;
+    return `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`;
   };
   const beside = (/** @type {string} */ path) =>
     t("recording-beside", { file: path.split("/").at(-1) ?? "" });

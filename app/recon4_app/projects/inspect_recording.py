@@ -102,7 +102,7 @@ def inspect_recording(
         bytes=info.bytes,
         seconds=max(0.0, info.seconds),
         estimated=info.estimated,
-        sensors=tuple(map(_summary_of, info.sensors)),
+        sensors=tuple(_summary_of(one, language) for one in info.sensors),
         samples=tuple(text.said(language) for text in info.samples),
         derived=tuple(
             derived_text(one, language)
@@ -127,13 +127,13 @@ def inspect_recording(
     )
 
 
-def _summary_of(sensor: SensorInfo) -> SensorSummary:
+def _summary_of(sensor: SensorInfo, language: str) -> SensorSummary:
     from recon4.model.plain import finite_or_none
 
     return SensorSummary(
         label=sensor.label,
         model=sensor.model,
-        content=sensor.content,
+        content=sensor.content.said(language),
         count=sensor.count,
         rate_hz=finite_or_none(sensor.rate_hz),
     )

@@ -108,12 +108,18 @@ COLUMNS-UNKNOWN =
     .text1 = Nicht gelesen: { $topic }: { $recipe }.
     .text2 = Nicht gelesen: { $topic } hat Listen von { $columns }.
     .text3-if-columns = Sie werden als Punkte eines LiDARs gelesen, wenn sie x, y, z und eine Zeit, ein Ring oder eine Intensität heißen. Sonst sagt eine Rig-Datei, welche Spalten es sind: fields = {"{"} x = "SPALTE", y = "SPALTE", z = "SPALTE", time = "SPALTE" {"}"} (oder range, azimuth, elevation) in ihrem [[sensor]].
-    .text4 = Unsicher: { $doubts }.
 
 COLUMNS-OVERLOOKED =
     .text1 = { $where }: Spalten sehen nach mehr aus, als gelesen wird: { $columns }.
     .text2 = Sie werden mit { $recipe } in einer Rig-Datei gelesen.
-    .text3 = Unsicher: { $doubts }.
+
+COLUMN-UNCERTAIN =
+    .text1-if-doubtful = Unsicher: { $where }: { $role }: { $column } kann etwas anderes sein.
+    .text2 = Unsicher: { $where }: { $role }: { $column }, oder { $others }.
+    .text3 = Unsicher: { $where }: { $role }: die Einheit von { $column } ist nach ihren Werten { $unit }.
+    .text4-if-no_unit = Unsicher: { $where }: { $role }: die Einheit von { $column } ist nicht bekannt.
+    .text5-if-untimed = Unsicher: { $where }: time: keine Spalte sieht wie die Zeit eines Punkts aus.
+    .text6 = Unsicher: { $where }: { $detail }.
 
 ## Einbaulagen
 

@@ -285,12 +285,6 @@ recording-beside = { $file }, daneben
 recording-samples = Messwerte
 recording-derived = Abgeleitet
 recording-missing = Fehlt
-content-clouds = Punktwolken
-content-scans-of-packets = Scans aus Paketen
-content-line-scans = Linienscans
-content-scans = Scans
-content-packets = Pakete
-content-frames = Einzelscans
 
 ## Uploads
 

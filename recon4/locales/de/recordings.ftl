@@ -17,6 +17,30 @@ recording-mandeye = Begehung mit einem MANDEYE-Gerät (LAZ und CSV)
 recording-lidar_file = Beschreibung eines LiDARs (JSON, CSV, YAML, XML oder DAT)
 recording-scans = Mitschnitt von Scans (pcap)
 
+## What sensors send
+
+content-clouds = Punktwolken
+content-packet-scans = Scans aus Paketen
+content-packets = Pakete
+content-packets-mode = Pakete (Echo: { $mode })
+content-line-scans = Linienscans
+content-scans = Scans
+content-layout = Scans mit { $most } Strahlen über { DEGREES($field_rad, digits: 0) }
+content-layout-varies = Scans mit { $fewest } bis { $most } Strahlen über { DEGREES($field_rad, digits: 0) }
+content-files = { $kind }-Dateien
+content-files-timed = { $kind }-Dateien, Zeiten aus { $times }
+content-points = Punkte in { $files } Dateien{ $lidars ->
+    [one] {""}
+   *[other] {" "}aller LiDARs
+ }
+content-transforms = Transformationen
+content-description = Beschreibung des Roboters
+content-angles = Winkel
+remark-ranges = Entfernungen bis { DECIMAL($farthest_m, digits: 2) } m, { PERCENT($returns, digits: 0) } der Strahlen kommen zurück
+remark-lines = { DECIMAL($shots, digits: 0) } Schüsse je Linie, { PERCENT($returns, digits: 0) } davon kommen zurück
+remark-head = Kopf von { DEGREES($low, digits: 0) } bis { DEGREES($high, digits: 0) }, { DECIMAL($shots, digits: 0) } Schüsse je Linie, { PERCENT($returns, digits: 0) } davon kommen zurück
+unread-packets = { $packets } Pakete von { $source } an Port { $port } ({ $why })
+
 ## Messwerte
 
 samples-imu = { $count } IMU-Messwerte{ RATE($rate_hz) }

@@ -107,12 +107,18 @@ COLUMNS-UNKNOWN =
     .text1 = Not read: { $topic }: { $recipe }.
     .text2 = Not read: { $topic } has lists of { $columns }.
     .text3-if-columns = It is read as points of a LiDAR if they are named x, y, z, and a time, ring or intensity. Else a rig file says which columns they are: fields = {"{"} x = "COLUMN", y = "COLUMN", z = "COLUMN", time = "COLUMN" {"}"} (or range, azimuth, elevation) in its [[sensor]].
-    .text4 = Uncertain: { $doubts }.
 
 COLUMNS-OVERLOOKED =
     .text1 = { $where }: columns look like more than is read: { $columns }.
     .text2 = They are read with { $recipe } in a rig file.
-    .text3 = Uncertain: { $doubts }.
+
+COLUMN-UNCERTAIN =
+    .text1-if-doubtful = Uncertain: { $where }: { $role }: { $column } may be something else.
+    .text2 = Uncertain: { $where }: { $role }: { $column }, or { $others }.
+    .text3 = Uncertain: { $where }: { $role }: the unit of { $column } is { $unit } by its values.
+    .text4-if-no_unit = Uncertain: { $where }: { $role }: the unit of { $column } is not known.
+    .text5-if-untimed = Uncertain: { $where }: time: no column looks like the time of a point.
+    .text6 = Uncertain: { $where }: { $detail }.
 
 ## Mounts
 

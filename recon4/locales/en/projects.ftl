@@ -285,12 +285,6 @@ recording-beside = { $file }, next to it
 recording-samples = Samples
 recording-derived = Derived
 recording-missing = Missing
-content-clouds = clouds
-content-scans-of-packets = scans of packets
-content-line-scans = line scans
-content-scans = scans
-content-packets = packets
-content-frames = frames
 
 ## Uploads
 

@@ -17,6 +17,30 @@ recording-mandeye = walk of a MANDEYE device (LAZ and CSV)
 recording-lidar_file = description of a LiDAR (JSON, CSV, YAML, XML or DAT)
 recording-scans = capture of scans (pcap)
 
+## What sensors send
+
+content-clouds = clouds
+content-packet-scans = scans of packets
+content-packets = packets
+content-packets-mode = packets ({ $mode } return)
+content-line-scans = line scans
+content-scans = scans
+content-layout = scans of { $most } beams over { DEGREES($field_rad, digits: 0) }
+content-layout-varies = scans of { $fewest } to { $most } beams over { DEGREES($field_rad, digits: 0) }
+content-files = { $kind } files
+content-files-timed = { $kind } files, times from { $times }
+content-points = points in { $files } files{ $lidars ->
+    [one] {""}
+   *[other] {" "}of all LiDARs
+ }
+content-transforms = transforms
+content-description = description of the robot
+content-angles = angles
+remark-ranges = ranges up to { DECIMAL($farthest_m, digits: 2) } m, { PERCENT($returns, digits: 0) } of the beams return
+remark-lines = { DECIMAL($shots, digits: 0) } shots a line, { PERCENT($returns, digits: 0) } of them return
+remark-head = head from { DEGREES($low, digits: 0) } to { DEGREES($high, digits: 0) }, { DECIMAL($shots, digits: 0) } shots a line, { PERCENT($returns, digits: 0) } of them return
+unread-packets = { $packets } packets from { $source } to port { $port } ({ $why })
+
 ## Samples
 
 samples-imu = { $count } IMU samples{ RATE($rate_hz) }

@@ -59,7 +59,7 @@ def say_undescribed(folder: Path, error: CorruptFile, report: ImportReport) -> N
     whole. A description that is damaged is a warning.
     """
     if (folder / METADATA).exists():
-        report.warn(FindingKind.FOLDER_DESCRIPTION, name=folder.name, error=str(error))
+        report.warn(FindingKind.FOLDER_DESCRIPTION, name=folder.name, error=error)
     else:
         report.derive(DerivedKind.FILES_AS_ONE, folder=folder.name, name=METADATA)
 

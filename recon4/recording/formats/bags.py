@@ -199,7 +199,7 @@ class Bag:
             table = as_points(recipe, cloud_lists(content))
             return PointMessage(content.header, table, content.data)
         except CorruptFile as error:
-            self._left_out(message.topic, error=str(error))
+            self._left_out(message.topic, error=error)
         except Exception:  # damaged bytes raise errors of many kinds in generated code
             self._left_out(message.topic, undecoded=True)
         return None
@@ -216,7 +216,7 @@ class Bag:
         check_message(message.type, message.data, ros1=self.ros1)
         return self._types.decode(message.type, message.data, ros1=self.ros1)
 
-    def _left_out(self, topic: str, **why: Value) -> None:
+    def _left_out(self, topic: str, **why: Value | Exception) -> None:
         self.report.count("messages_corrupt")
         self.report.outcome = "lossy"
         self.report.warn(FindingKind.MESSAGE_LEFT_OUT, where=topic, **why)
@@ -258,7 +258,7 @@ class Bag:
                     raise
                 self.report.outcome = "lossy"
                 self.report.count("files_damaged")
-                self.report.warn(FindingKind.FILE_LEFT_OUT, name=path.name, error=str(error))
+                self.report.warn(FindingKind.FILE_LEFT_OUT, name=path.name, error=error)
         if described:
             self._origins[before:] = [path] * (len(self._sources) - before)
         self._compare(path, metadata.messages)
@@ -297,7 +297,7 @@ class Bag:
         try:
             return Bag1(file, self.report)
         except CorruptFile as error:
-            self.report.warn(FindingKind.FILE_SALVAGED, name=file.name, error=str(error))
+            self.report.warn(FindingKind.FILE_SALVAGED, name=file.name, error=error)
         source = Bag1.scan(file, self.report)
         self._salvaged(source, file.name)
         return source

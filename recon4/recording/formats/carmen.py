@@ -191,9 +191,7 @@ def _scan_lines(path: Path, report: ImportReport) -> Iterator[_Line]:
             report.count("scans_damaged")
             report.outcome = "lossy"
             if report.counts["scans_damaged"] == 1:
-                report.warn(
-                    FindingKind.SCAN_LEFT_OUT, where=path.name, line=number, error=str(error)
-                )
+                report.warn(FindingKind.SCAN_LEFT_OUT, where=path.name, line=number, error=error)
 
 
 def _flaser(name: bytes, text: bytes) -> _Line:

@@ -275,7 +275,7 @@ class ChunkStream:
         self._first_damage = self._first_damage or error
         self._report.outcome = "lossy"
         self._report.count("chunks_damaged")
-        self._report.warn(FindingKind.CHUNK_LEFT_OUT, error=str(error))
+        self._report.warn(FindingKind.CHUNK_LEFT_OUT, error=error)
 
 
 def _by_time(chunk: ChunkRef) -> tuple[int, int]:

@@ -183,7 +183,7 @@ def _until_damaged(packets: Iterator[Packet], name: str, report: ImportReport) -
     try:
         yield from packets
     except CorruptFile as error:
-        _salvaged(report, name, error=str(error))
+        _salvaged(report, name, error=error)
 
 
 def _joined(packets: list[Packet]) -> _Records:
@@ -202,7 +202,7 @@ def _require_link_type(link_type: int, name: str) -> None:
         )
 
 
-def _salvaged(report: ImportReport, name: str, **where: Value) -> None:
+def _salvaged(report: ImportReport, name: str, **where: Value | Exception) -> None:
     report.outcome = "lossy"
     report.count("files_cut")
     report.warn(FindingKind.CAPTURE_SALVAGED, name=name, **where)

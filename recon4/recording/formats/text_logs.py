@@ -156,7 +156,7 @@ def _one_stream(
         except (OSError, ValueError, EOFError, zlib.error) as error:
             report.outcome = "lossy"
             report.count("files_damaged")
-            report.warn(FindingKind.FILE_SALVAGED, name=name, error=str(error))
+            report.warn(FindingKind.FILE_SALVAGED, name=name, error=error)
             return
         data = b""
         if piece:

@@ -133,7 +133,7 @@ def _accuracies(path: Path, at_s: Array, report: ImportReport) -> Array:
     try:
         rms = _rows(beside, _Rms.COLUMNS)
     except RecordingError as error:
-        report.derive(DerivedKind.POSITIONS_ACCURACY, name=path.name, error=str(error))
+        report.derive(DerivedKind.POSITIONS_ACCURACY, name=path.name, error=error)
         return nothing
     sound = np.isfinite(rms[:, :4]).all(axis=1) & (
         rms[:, [_Rms.NORTH, _Rms.EAST, _Rms.DOWN]] > 0.0

@@ -120,7 +120,7 @@ def _part(path: Path, report: ImportReport) -> WalkPart | None:
     except (RecordingError, AttributeError) as error:
         report.count("files_corrupt")
         report.outcome = "lossy"
-        report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
+        report.warn(FindingKind.FILE_LEFT_OUT, error=error)
         return None
     number = POINTS_NAME.fullmatch(path.name)
     assert number is not None
@@ -169,7 +169,7 @@ def _serials(parts: Iterable[WalkPart], report: ImportReport) -> dict[int, str]:
         try:
             lines = list(lines_limited(path, max_bytes=MANDEYE.most_bytes))
         except RecordingError as error:
-            report.warn(FindingKind.SERIALS_UNREADABLE, error=str(error))
+            report.warn(FindingKind.SERIALS_UNREADABLE, error=error)
             continue
         for match in filter(None, map(_SERIAL_LINE.fullmatch, lines)):
             known = found.setdefault(int(match[1]), match[2])

@@ -28,7 +28,7 @@ def describe_walk(info: RecordingInfo, folder: Path) -> RecordingInfo:
         SensorInfo(
             label=f"{stream.label} {stream.serial}".strip(),
             model=stream.model,
-            content=f"points in {len(walk.parts)} files" + " of all LiDARs" * (len(streams) > 1),
+            content=CodedText("content-points", files=len(walk.parts), lidars=len(streams)),
             count=points,
             rate_hz=points / seconds if seconds > 0.0 else float("nan"),
         )

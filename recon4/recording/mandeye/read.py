@@ -140,7 +140,7 @@ class MandeyeRecording:
     def _left_out(self, error: CorruptFile) -> None:
         self._report.count("files_corrupt")
         self._report.outcome = "lossy"
-        self._report.warn(FindingKind.FILE_LEFT_OUT, error=str(error))
+        self._report.warn(FindingKind.FILE_LEFT_OUT, error=error)
 
     def _imu(self, part: WalkPart) -> Iterator[ImuSamples]:
         assert part.imu is not None

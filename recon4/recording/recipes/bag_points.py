@@ -20,6 +20,7 @@ from recon4.recording.recipes.propose import (
     Proposal,
     proposal_values,
     propose,
+    say_doubts,
     say_overlooked,
 )
 from recon4.recording.recipes.refuse import with_doubts
@@ -163,6 +164,7 @@ def say_columns(
     for one in unknown:
         values = proposal_values(one.proposal)
         report.derive(DerivedKind.COLUMNS_UNKNOWN, topic=one.topic.name, **values)
+        say_doubts(one.topic.name, one.proposal, report)
     lacking = [one.topic for one in clouds if one.detail < one.FULL_DETAIL and one.has_places]
     for name, sample in bag_samples(bag, [t for t in lacking if t.name not in bag.recipes]).items():
         proposal = with_doubts(propose(name, sample.largest, sample.period_s), sample)

@@ -65,6 +65,10 @@ _JOINED = re.compile(
 _SUFFIXES = {*LENGTHS, *ANGLES, *TIMES}
 
 
+Doubt = dict[str, Value]
+"""Values of `DerivedKind.COLUMN_UNCERTAIN`: role and column, and what is uncertain about them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Proposal:
     """A recipe for points, as far as names and values show it."""
@@ -73,8 +77,8 @@ class Proposal:
     """None = no columns say where the points are."""
     columns: tuple[str, ...]
     """Names of all columns of the list that looks most like points."""
-    uncertain: tuple[str, ...] = ()
-    """What a person should look at: a sentence a column."""
+    uncertain: tuple[Doubt, ...] = ()
+    """What a person should look at."""
 
     @property
     def is_of_lidar(self) -> bool:
@@ -83,8 +87,9 @@ class Proposal:
         return not roles.isdisjoint({"time", "ring", "intensity"})
 
     def with_doubts(self, texts: Sequence[str]) -> Proposal:
-        """The proposal with more that is uncertain."""
-        return replace(self, uncertain=(*self.uncertain, *texts))
+        """The proposal with texts of a check that it does not pass."""
+        more: list[Doubt] = [{"detail": one} for one in texts]
+        return replace(self, uncertain=(*self.uncertain, *more))
 
 
 @dataclass(slots=True)
@@ -92,7 +97,7 @@ class _Draft:
     """Roles found so far."""
 
     texts: dict[str, str] = field(default_factory=dict)
-    uncertain: list[str] = field(default_factory=list)
+    uncertain: list[Doubt] = field(default_factory=list)
 
 
 def propose(name: str, lists: Mapping[str, Columns], period_s: float) -> Proposal:
@@ -120,11 +125,19 @@ def proposal_values(proposal: Proposal) -> dict[str, Value]:
     if proposal.recipe is None:
         names = ", ".join(column[:40] for column in proposal.columns[: LISTED.names])
         return {"columns": names}
-    return {"recipe": proposal.recipe.toml()} | _doubts(proposal)
+    return {"recipe": proposal.recipe.toml()}
 
 
-def _doubts(proposal: Proposal) -> dict[str, Value]:
-    return {"doubts": "; ".join(proposal.uncertain)} if proposal.uncertain else {}
+def say_doubts(name: str, proposal: Proposal, report: ImportReport) -> None:
+    """State what a person should look at before a recipe is used.
+
+    Args:
+        name: Topic or file.
+        proposal: The recipe.
+        report: Receives it.
+    """
+    for doubt in proposal.uncertain:
+        report.derive(DerivedKind.COLUMN_UNCERTAIN, where=name, **doubt)
 
 
 def say_overlooked(
@@ -150,8 +163,8 @@ def say_overlooked(
         where=name,
         columns=", ".join(f"{role} = {texts[role]}" for role in more),
         recipe=recipe.toml(),
-        **_doubts(proposal),
     )
+    say_doubts(name, proposal, report)
 
 
 def _count(columns: Columns) -> int:
@@ -170,7 +183,7 @@ def _of_list(name: str, columns: Columns, period_s: float) -> Proposal:
             values = np.linalg.norm([columns[one].astype(np.float64) for one in together], axis=0)
             _add(draft, role, by_role[role], values=values, period_s=period_s)
     if "time" not in draft.texts:
-        draft.uncertain.append("time: no column looks like the time of a point")
+        draft.uncertain.append({"untimed": True})
     try:
         recipe = recipe_of(draft.texts, name) if places else None
     except ConfigError:  # names that a recipe cannot have
@@ -220,20 +233,19 @@ def _add(draft: _Draft, role: str, found: list[str], *, values: Array, period_s:
     column = found[0]
     core, unit = _split(column)
     if core in _DOUBTFUL:
-        draft.uncertain.append(f"{role}: {column} may be something else")
+        draft.uncertain.append({"role": role, "column": column, "doubtful": True})
     if role == "time" and (parts := _seconds_and_rest(found)):
         draft.texts[role] = "+".join(parts)
         return
     if len(found) > 1:
         others = ", ".join(found[1:4])
-        draft.uncertain.append(f"{role}: {column}, or {others}")
+        draft.uncertain.append({"role": role, "column": column, "others": others})
     known = unit
     if UNITS_OF[role] and not unit:
         unit = _unit_by_values(role, values, period_s)
     if UNITS_OF[role] and not known and unit not in ("m", "rad"):
-        draft.uncertain.append(
-            f"{role}: the unit of {column} is " + (f"{unit} by its values" if unit else "not known")
-        )
+        by_values: Doubt = {"unit": unit} if unit else {"no_unit": True}
+        draft.uncertain.append({"role": role, "column": column, **by_values})
     draft.texts[role] = column + (f":{unit}" if unit and unit != "m" else "")
 
 

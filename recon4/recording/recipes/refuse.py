@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.recording.driver_topics import needed_text
 from recon4.recording.recipes.check import RecipeSample, require_fitting
-from recon4.recording.recipes.propose import Proposal
+from recon4.recording.recipes.propose import Proposal, say_doubts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
 
@@ -20,8 +20,13 @@ def proposal_text(name: str, proposal: Proposal) -> str:
     """What points have, and the recipe for them as a line of a rig file."""
     if proposal.recipe is None:
         return needed_text(name, proposal.columns)
-    doubts = f" (uncertain: {'; '.join(proposal.uncertain)})" * bool(proposal.uncertain)
-    return f"{name}: {proposal.recipe.toml()}{doubts}"
+    return " ".join([f"{name}: {proposal.recipe.toml()}", *_doubts(name, proposal)])
+
+
+def _doubts(name: str, proposal: Proposal) -> list[str]:
+    report = ImportReport()
+    say_doubts(name, proposal, report)
+    return report.said_derived()
 
 
 def with_doubts(proposal: Proposal, sample: RecipeSample) -> Proposal:
@@ -62,5 +67,5 @@ def require_known(unknown: Sequence[tuple[Stream, Proposal]], name: str) -> None
         f"recon4 info RECORDING --rig-out rig.toml, then --rig rig.toml; or --fields "
         f"{recipe.text()})"
     )
-    doubts = [f"{stream.label}: {text}" for stream, one in ready for text in one.uncertain]
+    doubts = [text for stream, one in ready for text in _doubts(stream.label, one)]
     raise UnknownFields("\n".join(lines), rig_to_complete([s for s, _ in ready]), doubts)

@@ -54,8 +54,8 @@ def test_parts_joined_again_are_the_whole(scans: LaserScans) -> None:
 
 
 def test_a_layout_that_changes_is_described_by_its_limits(scans: LaserScans) -> None:
-    assert scans.describe_layout() == "1 to 3 beams over 90°"
-    assert scans[:1].describe_layout() == "3 beams over 180°"
+    assert scans.layout == "scans of 1 to 3 beams over 90°"
+    assert scans[:1].layout == "scans of 3 beams over 180°"
 
 
 def test_times_must_increase(scans: LaserScans) -> None:

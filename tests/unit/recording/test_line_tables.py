@@ -99,7 +99,7 @@ def test_info_says_what_there_is_and_what_is_missing(tmp_path):
     text = "\n".join(describe(tmp_path / "walk").lines())
 
     assert "lines.npz profiler: 300 line scans, 100.0 a second" in text
-    assert "head from 0° to 150°, 21 shots a line, 100% of them return" in text
+    assert "head from 0° to 150°, 21 shots a line, 100 % of them return" in text
     assert "2-D laser: 290 scans of 21 beams over 57°" in text
     assert "missing   IMU (imu.csv)" in text
     assert "missing   rig" in text

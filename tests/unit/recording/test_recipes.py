@@ -5,11 +5,12 @@ import pytest
 
 from recon4.cli.main import main
 from recon4.errors import ConfigError, CorruptFile
+from recon4.findings.derived import derived_text
 from recon4.model.point_recipes import parse_fields_text
 from recon4.model.rig import format_rig, load_rig, parse_rig
 from recon4.recording.info import describe
 from recon4.recording.recipes.apply import as_points
-from recon4.recording.recipes.propose import propose
+from recon4.recording.recipes.propose import propose, say_doubts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import RigToComplete, Stream, single_rig
 from tests.builders import T0_NS, Bag, bag_path, write_pcd
@@ -165,10 +166,16 @@ def test_what_is_uncertain_is_said_with_its_column(tmp_path):
     proposal = propose("/points", {"points": table}, 0.1)
 
     assert proposal.recipe.text() == "x=px:mm,y=py:mm,z=pz:mm,time=stamp:us,intensity=i"
-    doubts = "\n".join(proposal.uncertain)
-    assert "x: px, or forward" in doubts
-    assert "time: the unit of stamp is us by its values" in doubts
-    assert "x: the unit of px is mm by its values" in doubts
+    report = ImportReport()
+    say_doubts("/points", proposal, report)
+    english, german = (
+        "\n".join(derived_text(one, language) for one in report.derived)
+        for language in ("en", "de")
+    )
+    assert "Uncertain: /points: x: px, or forward." in english
+    assert "time: the unit of stamp is us by its values" in english
+    assert "x: the unit of px is mm by its values" in english
+    assert "Unsicher: /points: time: die Einheit von stamp ist nach ihren Werten us." in german
 
 
 def pointcloud2(tmp_path, table, kind="mcap"):

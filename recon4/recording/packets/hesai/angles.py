@@ -102,7 +102,7 @@ def angles_of(sensor: PacketSensor, channels: int, typical: Angles | None) -> An
         try:
             table = read_angles(companion)
         except NotAngles as error:
-            report.warn(FindingKind.ANGLES_UNREADABLE, name=companion.name, error=str(error))
+            report.warn(FindingKind.ANGLES_UNREADABLE, name=companion.name, error=error)
             continue
         if table is not None and len(table.elevation_rad) == channels:
             tables[companion.name] = table

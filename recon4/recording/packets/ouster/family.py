@@ -127,7 +127,7 @@ def _recognized_part(head: Datagrams, companions: Sequence[Companion]) -> Recogn
     try:
         fit = choose(head, found)
     except ConfigError as error:
-        return _unknown(head, warning(FindingKind.METADATA_NEEDED, error=str(error)))
+        return _unknown(head, warning(FindingKind.METADATA_NEEDED, error=error))
     if fit is not None and _most_are_known(head, fit.metadata.layout.size):
         return _recognized(head, fit)
     damaged = "; ".join(found.damaged)
