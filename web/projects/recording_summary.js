@@ -3,7 +3,7 @@
 import { createRig, lookAt, rigUrl } from "../shared/api.js";
 import { asError, html, nothing, render, showError, within } from "../shared/dom.js";
 import { bytes, count, seconds } from "../shared/format.js";
-import { decimal, t, wordOf } from "../shared/texts.js";
+import { decimal, t } from "../shared/texts.js";
 
 /** @import {RecordingSummary, SensorSummary} from "../shared/http_types" */
 
