@@ -22,6 +22,7 @@ from recon4.recording.formats.pcapng import MAGIC as PCAPNG
 from recon4.recording.formats.pcapng import MAX_PACKET_BYTES, Packet, read_packets
 from recon4.recording.formats.unread_records import UnreadRecords
 from recon4.recording.report import ImportReport
+from recon4.units import SECOND_NS
 
 _CLASSIC = {
     b"\xd4\xc3\xb2\xa1": ("<", 1000),
@@ -171,12 +172,23 @@ def _batch(
 
 def _next_generation(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
     packets = _until_damaged(read_packets(file, report.count), name, report)
+    others = set[int]()
     supported = False
     while batch := list(islice(packets, 2048)):
+        others |= {packet.link_type for packet in batch if packet.link_type not in _IP_AT}
         supported = supported or any(packet.link_type in _IP_AT for packet in batch)
-        if not supported:
-            _require_link_type(batch[0].link_type, name)
-        yield _joined(batch)
+        yield _joined(_in_time(batch))
+    if others and not supported:  # one interface may be silent before the others
+        _require_link_type(min(others), name)
+
+
+def _in_time(packets: list[Packet]) -> list[Packet]:
+    """Packets in order of time: several interfaces are written in bursts, each in its order."""
+    times = np.array([packet.t_ns for packet in packets], dtype=np.int64)
+    behind = int(np.max(np.maximum.accumulate(times) - times))
+    if not 0 < behind < 2 * SECOND_NS:  # beyond it, a clock was set back
+        return packets
+    return [packets[row] for row in np.argsort(times, kind="stable")]
 
 
 def _until_damaged(packets: Iterator[Packet], name: str, report: ImportReport) -> Iterator[Packet]:

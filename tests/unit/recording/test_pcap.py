@@ -191,6 +191,45 @@ def test_a_pcapng_file_is_read_and_salvaged(tmp_path):
     assert (len(cut), cut_report.outcome) == (4, "lossy")
 
 
+def block(kind, body):
+    size = struct.pack("<I", len(body) + 12)
+    return struct.pack("<I", kind) + size + body + size
+
+
+def interfaces(*link_types):
+    """The begin of a pcapng file with some interfaces."""
+    section = block(0x0A0D0D0A, struct.pack("<IHHq", 0x1A2B3C4D, 1, 0, -1))
+    return section + b"".join(block(1, struct.pack("<HHI", link, 0, 0)) for link in link_types)
+
+
+def seen(interface, t_us, packet):
+    """A packet that was captured by an interface."""
+    size = len(packet)
+    head = struct.pack("<IIIII", interface, t_us >> 32, t_us & 0xFFFF_FFFF, size, size)
+    return block(6, head + packet + bytes(-size % 4))
+
+
+def test_interfaces_that_are_written_in_bursts_are_read_in_order_of_time(tmp_path):
+    bursts = [(k % 2, 10**9 + 2000 * step + 1000 * (k % 2)) for k in range(2) for step in range(5)]
+    content = interfaces(1, 1) + b"".join(seen(*one, ethernet(udp())) for one in bursts)
+
+    (batch,), _ = read(written(tmp_path, content))
+
+    assert np.diff(batch.t_ns).tolist() == [1_000_000] * 9
+
+
+def test_an_interface_of_another_network_hides_no_other_one(tmp_path):
+    others = b"".join(seen(0, 10**9 + k, bytes(64)) for k in range(3000))
+    content = interfaces(220, 1) + others + seen(1, 2 * 10**9, ethernet(udp()))
+
+    batches, report = read(written(tmp_path, content))
+
+    assert sum(map(len, batches)) == 1
+    assert report.counts["records_not_udp"] == 3000
+    with pytest.raises(UnknownFormat, match="got link type 220"):
+        read(written(tmp_path, interfaces(220, 1) + others))
+
+
 def test_a_pcapng_file_of_packets_without_times_says_so(tmp_path):
     content = next_generation([])
     packet = ethernet(udp())
