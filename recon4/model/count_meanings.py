@@ -126,6 +126,7 @@ _POINTS = {
     "packets_missing_": _usual(),
     "gaps": _STATED,
     "files": _READ,
+    "files_absent": _lost("files", apart=True),
     "files_corrupt": _lost("files", stated=True),
     "files_damaged": _STATED,
     "files_out_of_order": _repaired("files"),

@@ -8,10 +8,14 @@ from pathlib import Path
 
 from recon4.locales.coded import CodedText
 from recon4.locales.texts import Shown
+from recon4.recording.copied_files import without_copies
+from recon4.recording.formats.pcap import open_plain
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import capture_files
+from recon4.recording.packets.capture import sensors_of
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.streams import PacketStream, require_one_capture, scan_pcap
+from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import ScanStreams, scan_streams
 from recon4.recording.tuning import LISTED
 from recon4.recording.tuning_heads import PROBE
@@ -29,13 +33,13 @@ def describe_capture(
     Raises:
         RecordingError: If they cannot be read.
     """
-    files = capture_files(path)
+    files = without_copies(capture_files(path), ImportReport())
     require_one_capture(files)
     most = PROBE.whole_packets if info.bytes <= PROBE.whole_bytes else PROBE.head_packets
     scans = [scan_pcap(file, max_packets=most, companions=companions) for file in files]
     streams = [stream for scan in scans for stream in scan]
     scanners = scan_streams(files)
-    lidars = [_packet_sensor(s) for s in streams if s.kind == "data"]
+    lidars = [_packet_sensor(group) for group in sensors_of(streams, open_plain)]
     lidars += [_scanner(s, scanners) for s in streams if (s.source, s.port) in scanners.scans]
     return replace(
         info,
@@ -73,14 +77,16 @@ def _total(stream: PacketStream) -> int:
     return stream.packets if stream.whole or head_s <= 0 else round(stream.packets * all_s / head_s)
 
 
-def _packet_sensor(stream: PacketStream) -> SensorInfo:
+def _packet_sensor(streams: Sequence[PacketStream]) -> SensorInfo:
+    """A LiDAR, whose packets are in one file or in several."""
+    stream = streams[0]
     span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
     mode = {"mode": stream.found.mode} if stream.found and stream.found.mode else {}
     return SensorInfo(
         label=f"{stream.source}:{stream.port}",
         model=stream.model or "unknown model",
         content=CodedText("content-packets-mode" if mode else "content-packets", **mode),
-        count=_total(stream),
+        count=sum(map(_total, streams)),
         rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
         rotation_hz=stream.found.rotation_hz if stream.found else float("nan"),
         findings=stream.findings,

@@ -11,7 +11,7 @@ from pathlib import Path
 from recon4.errors import EmptyRecording, RecordingError, UnknownFormat
 from recon4.locales.coded import CodedText
 from recon4.recording.folders import natural
-from recon4.recording.formats.bags import STORAGE_SUFFIXES
+from recon4.recording.formats.bag_folder import STORAGE_SUFFIXES
 from recon4.recording.formats.carmen import is_carmen
 from recon4.recording.formats.cloud_files import (
     CLOUD_FORMATS,

@@ -83,6 +83,7 @@ count-files = Dateien
 count-files_corrupt = nicht lesbar, ausgelassen
 count-files_damaged = beschädigt, ausgelassen
     .noun = Dateien
+count-files_absent = Nummern, die in den Namen der Dateien fehlen, ihre Zeit bleibt leer
 count-files_out_of_order = Nummern in anderer Reihenfolge als ihre Zeiten, sortiert
 count-status_files_damaged = kein JSON-Objekt: Modelle der LiDARs nach ihrem Blickfeld
     .noun = Dateien status*.json

@@ -9,8 +9,14 @@ DEVICE =
 DEVICE-CLOCKS =
     .text1 = Das Gerät gibt an, dass seine LiDARs keine gemeinsame Zeitquelle hatten.
 
+FILE-COPY =
+    .text1 = { $name } hat dieselben Bytes wie { $original }: ausgelassen.
+
 FILE-PASSED-OVER =
     .text1 = { $name } ist ein Dreiecksnetz, keine Aufzeichnung: übergangen.
+
+FILE-UNNUMBERED =
+    .text1 = { $name } hat keine Nummer wie die anderen { $files } Dateien: es gilt als Karte, nicht als Scan, und wird ausgelassen.
 
 FILES-AS-ONE =
     .text1 = { $folder }: keine { $name }: alle Dateien darin sind eine Aufzeichnung.
@@ -218,6 +224,9 @@ CHECKSUM-FOREIGN =
     .text1 = { $sensor }: die CRC seiner Pakete ist nicht die des Protokolls: nicht geprüft.
 
 ## Zeiten und Uhren
+
+FRAMES-ABSENT =
+    .text1 = In den Namen der Dateien fehlen { $absent } Nummern von { $first } bis { $last }: ihre Zeit bleibt leer.
 
 FRAMES-RATE =
     .text1-if-assumed = Keine Umdrehung gefunden, in Frames mit { SIGNIFICANT($rate_hz, digits: 6) } Hz geteilt.

@@ -84,6 +84,7 @@ count-files = files
 count-files_corrupt = cannot be read, left out
 count-files_damaged = damaged, left out
     .noun = files
+count-files_absent = numbers missing in the names of the files, their time left empty
 count-files_out_of_order = numbers in another order than their times, sorted
 count-status_files_damaged = no JSON object: models of LiDARs by their view
     .noun = files status*.json

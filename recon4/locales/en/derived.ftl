@@ -9,8 +9,14 @@ DEVICE =
 DEVICE-CLOCKS =
     .text1 = The device states that its LiDARs had no common source of time.
 
+FILE-COPY =
+    .text1 = { $name } has the same bytes as { $original }: left out.
+
 FILE-PASSED-OVER =
     .text1 = { $name } is a mesh, not a recording: passed over.
+
+FILE-UNNUMBERED =
+    .text1 = { $name } has no number as the other { $files } files have: it is taken for a map, not for a scan, and left out.
 
 FILES-AS-ONE =
     .text1 = { $folder }: no { $name }: all files in it are one recording.
@@ -215,6 +221,9 @@ CHECKSUM-FOREIGN =
     .text1 = { $sensor }: the CRC of its packets is not that of the protocol: not checked.
 
 ## Times and clocks
+
+FRAMES-ABSENT =
+    .text1 = The names of the files lack { $absent } numbers of { $first } to { $last }: their time stays empty.
 
 FRAMES-RATE =
     .text1-if-assumed = No rotation found, cut into frames at { SIGNIFICANT($rate_hz, digits: 6) } Hz.

@@ -10,6 +10,7 @@ from typing import Any
 from recon4.errors import CorruptFile
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
+from recon4.recording.folders import natural
 from recon4.recording.report import ImportReport
 
 METADATA = "metadata.yaml"
@@ -19,6 +20,7 @@ _MAX_DEPTH = 20
 _MAX_EVENTS = 100_000
 _MAX_FILES = 100_000
 _NEWEST_VERSION = 9
+STORAGE_SUFFIXES = (".db3", ".mcap")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +52,22 @@ def read_metadata(folder: Path) -> BagMetadata:
             f"{METADATA}: expected at most {MAX_METADATA_BYTES} bytes, got {path.stat().st_size}"
         )
     return _metadata(folder, _load(text))
+
+
+def storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:
+    """The storage files of a folder whose description is none, in the order of their numbers.
+
+    Args:
+        folder: Where they lie.
+        error: Why the description cannot be used.
+
+    Raises:
+        CorruptFile: If there are none.
+    """
+    files = sorted((f for f in folder.iterdir() if f.suffix in STORAGE_SUFFIXES), key=natural)
+    if not files:
+        raise CorruptFile(f"{folder.name}: no readable rosbag2: {error}") from error
+    return tuple(files)
 
 
 def say_undescribed(folder: Path, error: CorruptFile, report: ImportReport) -> None:

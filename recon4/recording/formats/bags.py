@@ -18,10 +18,15 @@ from recon4.errors import CorruptFile, EmptyRecording
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
-from recon4.recording.folders import natural
+from recon4.recording.copied_files import original_of, say_copy
 from recon4.recording.formats import db3
 from recon4.recording.formats.bag1 import Bag1, is_bag1
-from recon4.recording.formats.bag_folder import BagMetadata, read_metadata, say_undescribed
+from recon4.recording.formats.bag_folder import (
+    BagMetadata,
+    read_metadata,
+    say_undescribed,
+    storage_files,
+)
 from recon4.recording.formats.chunks import BagIndex, RawMessage
 from recon4.recording.formats.cloud_tables import cloud_lists
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
@@ -57,8 +62,6 @@ JOINT_STATES = "sensor_msgs/msg/JointState"
 _MEASURED = frozenset({*DATA_MESSAGES, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
 """Types whose messages come when something is measured. With simulated time, messages that are sent
 once, such as static transforms, may be recorded at time 0."""
-
-STORAGE_SUFFIXES = (".db3", ".mcap")
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +123,10 @@ class Bag:
         self._sources: list[StorageFile] = []
         self._origins: list[Path] = []
         """Of each source: its file, or the folder whose description names it."""
+        self._files: list[Path] = []
+        """Storage files that were opened, or tried."""
+        self._copies = 0
+        """Storage files that are copies of others, not opened."""
         self._points: dict[str, PointReader] = {}
         self._types = MessageTypes()
         """Of the types of points other than ``PointCloud2``."""
@@ -228,12 +235,12 @@ class Bag:
 
     def _open_folder(self, path: Path) -> None:
         """The files that the description lists; without one, all storage files."""
-        before, described = len(self._sources), True
+        before, described, copies = len(self._sources), True, self._copies
         try:
             metadata = read_metadata(path)
         except CorruptFile as error:
             say_undescribed(path, error, self.report)
-            metadata, described = BagMetadata(_storage_files(path, error), "", 0), False
+            metadata, described = BagMetadata(storage_files(path, error), "", 0), False
         missing = [file.name for file in metadata.files if not file.is_file()]
         if missing:
             self.report.outcome = "lossy"
@@ -246,7 +253,7 @@ class Bag:
             )
             absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
             there = tuple(file for file in metadata.files if file.is_file())
-            metadata = replace(metadata, files=there or _storage_files(path, absent))
+            metadata = replace(metadata, files=there or storage_files(path, absent))
         files = metadata.files
         if metadata.compression == "file":
             files = self._decompressed(files)
@@ -261,10 +268,11 @@ class Bag:
                 self.report.warn(FindingKind.FILE_LEFT_OUT, name=path.name, error=error)
         if described:
             self._origins[before:] = [path] * (len(self._sources) - before)
-        self._compare(path, metadata.messages)
+        if self._copies == copies:
+            self._compare(path, self._sources[before:], metadata.messages)
 
-    def _compare(self, path: Path, expected: int) -> None:
-        found = sum(source.index.message_count for source in self._sources)
+    def _compare(self, path: Path, sources: Sequence[StorageFile], expected: int) -> None:
+        found = sum(source.index.message_count for source in sources)
         if found < expected:
             self.report.outcome = "lossy"
             self.report.count("messages_missing", expected - found)
@@ -280,11 +288,16 @@ class Bag:
         return tuple(decompress_file(file, folder, budget) for file in files)
 
     def _open_file(self, path: Path) -> None:
+        if original := original_of(path, self._files):
+            say_copy(path, original, self.report)
+            self._copies += 1
+            return
+        self._files.append(path)
         if is_bag1(path):
             self.ros1 = True
             file = self._stack.enter_context(RecordFile(path))
             self._sources.append(self._bag1(file))
-        elif _is_sqlite(path):
+        elif db3.is_db3(path):
             database = db3.Db3(path, self.report)
             self._stack.callback(database.close)
             self._sources.append(database)
@@ -384,15 +397,3 @@ class Bag:
             plain = decompress_partly("zstd", data, most=most, where=topic)
             budget.charge(len(plain), f"{self.paths[0].name}: {topic}")
             yield BagMessage(topic, kind, t_ns, plain)
-
-
-def _is_sqlite(path: Path) -> bool:
-    with path.open("rb") as file:
-        return file.read(16) == db3.MAGIC
-
-
-def _storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:
-    files = sorted((f for f in folder.iterdir() if f.suffix in STORAGE_SUFFIXES), key=natural)
-    if not files:
-        raise CorruptFile(f"{folder.name}: no readable rosbag2: {error}") from error
-    return tuple(files)

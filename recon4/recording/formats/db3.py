@@ -359,3 +359,9 @@ def _register_cut_file() -> None:
     """SQLite knows a file system by its name as long as the object lives."""
     if not _file_systems:
         _file_systems.append(_CutFileSystem())
+
+
+def is_db3(path: Path) -> bool:
+    """Whether a file begins as a database of SQLite."""
+    with path.open("rb") as file:
+        return file.read(16) == MAGIC

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.rig import Rig, load_rig
+from recon4.recording.copied_files import without_copies
 from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.datagrams import address_text
 from recon4.recording.kinds import capture_files
@@ -86,7 +87,7 @@ def _files(request: OpenRequest) -> list[Path]:
     captures = [p for p in request.paths if p.suffix.lower() not in COMPANION_SUFFIXES]
     files = [file for path in captures for file in capture_files(path)]
     require_one_capture(files)
-    return files
+    return without_copies(files, request.report)
 
 
 def _scan_rig(files: Sequence[Path], request: OpenRequest) -> Rig | None:

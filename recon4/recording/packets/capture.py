@@ -24,6 +24,7 @@ from recon4.recording.packets.companions import companions_of, described_in
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import PacketSamples, PacketSensor
+from recon4.recording.packets.file_overlaps import goes_on_in
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.slots import in_slots
 from recon4.recording.packets.streams import (
@@ -104,7 +105,7 @@ class PacketCapture:
             for path in self._paths
         )
         self.streams = [stream for scan in scans for stream in scan]
-        groups = _sensors_of(self.streams)
+        groups = sensors_of(self.streams, open_file)
         if given is None and not groups:
             found = _found_instead(self.streams, heads)
             raise EmptyRecording(
@@ -292,19 +293,30 @@ def _found_instead(streams: Sequence[PacketStream], heads: ImportReport) -> str:
     return "; ".join(filter(None, [*texts, unread_text(heads)]))
 
 
-def _sensors_of(streams: list[PacketStream]) -> list[tuple[PacketStream, ...]]:
-    """Data streams of one sensor together: same sender and port, files that do not overlap."""
+def sensors_of(streams: list[PacketStream], open_file: OpenFile) -> list[tuple[PacketStream, ...]]:
+    """Data streams of one sensor together: same sender and port, in files that follow each other
+    or share packets.
+
+    Args:
+        streams: Of all files.
+        open_file: Opens the files.
+    """
     groups: list[list[PacketStream]] = []
     for stream in sorted((s for s in streams if s.kind == "data"), key=lambda s: s.t_first_ns):
         for group in groups:
-            same = _place(group[-1]) == _place(stream)
-            if same and stream.t_first_ns >= group[-1].t_end_ns:
+            if _place(group[-1]) == _place(stream) and _goes_on(group, stream, open_file):
                 group.append(stream)
                 break
         else:
             groups.append([stream])
     order = {id(stream): place for place, stream in enumerate(streams)}
     return sorted((tuple(group) for group in groups), key=lambda group: order[id(group[0])])
+
+
+def _goes_on(group: Sequence[PacketStream], stream: PacketStream, open_file: OpenFile) -> bool:
+    """Whether a stream is of the sensor of streams that begin before it."""
+    beside = [one for one in group if one.t_end_ns > stream.t_first_ns]
+    return all(goes_on_in(one, stream, open_file) for one in beside)
 
 
 def _place(stream: PacketStream) -> tuple[str, int, str]:

@@ -1,5 +1,7 @@
 """Recordings of several days in one folder, or given together."""
 
+import shutil
+
 import pytest
 
 from recon4.errors import UnknownFormat
@@ -9,6 +11,8 @@ from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, storage_file, write_room_bag, write_room_pcap
+from tests.unit.recording.ingested import run
+from tests.warned import derivations
 
 DAY_NS = 86_400_000_000_000
 
@@ -58,4 +62,30 @@ def test_files_of_one_walk_with_a_break_between_them_are_read_together(tmp_path)
         file = tmp_path / f"{part}.pcap"
         write_room_pcap(file, seconds=0.2, t0_ns=T0_NS + part * DAY_NS // 10)
 
-    assert describe(tmp_path).seconds == pytest.approx(8640.0, abs=1.0)
+    info = describe(tmp_path)
+
+    assert info.seconds == pytest.approx(8640.0, abs=1.0)
+    assert [sensor.count for sensor in info.sensors] == [300]  # of both files
+
+
+@pytest.mark.parametrize("kind", ["pcap", "bag1", "mcap", "db3"])
+def test_a_part_that_is_there_twice_is_read_once(tmp_path, kind):
+    folder = tmp_path / "walk"
+    folder.mkdir()
+    for part, name in enumerate("cab"):  # the names are in another order than the times
+        (tmp_path / name).mkdir()
+        options = {"seconds": 0.4, "t0_ns": T0_NS + part * 400_000_000}
+        if kind == "pcap":
+            file = write_room_pcap(tmp_path / name / "a.pcap", **options)
+        else:
+            file = storage_file(write_room_bag(tmp_path / name, kind, **options))
+        shutil.copy(file, folder / f"{name}{file.suffix}")
+    once = run(folder, out=tmp_path / "once")
+    shutil.copy(folder / f"a{file.suffix}", folder / f"x{file.suffix}")
+
+    twice = run(folder, out=tmp_path / "twice")
+
+    said = f"x{file.suffix} has the same bytes as a{file.suffix}: left out."
+    assert said in derivations(twice.report)
+    assert twice.report["counts"] == once.report["counts"]
+    assert twice.index["t_ns"].tolist() == once.index["t_ns"].tolist()

@@ -158,7 +158,7 @@ def test_without_a_rig_each_data_stream_is_a_sensor(tmp_path):
 
 def test_two_files_of_the_same_time_are_two_sensors(tmp_path):
     one = capture(tmp_path / "one.pcap", (FIRST, 2368, spin(300)))
-    other = capture(tmp_path / "other.pcap", (FIRST, 2368, spin(310)))
+    other = capture(tmp_path / "other.pcap", (FIRST, 2368, spin(310, hz=9.9)))
 
     _, points, _, report = read([one, other], rig(sensor("a"), sensor("b", port=2369)))
 
@@ -176,6 +176,34 @@ def test_files_that_follow_each_other_are_one_sensor(tmp_path):
     assert len(recording.rig.sensors) == 1
     assert points == {0: 600 * 384}
     assert report.counts["packets_missing"] == report.counts["packets_late"] == 0
+
+
+def test_files_that_overlap_are_one_sensor_whose_packets_are_read_once(tmp_path):
+    t_ns, payloads = spin(600)
+    begin, end = slice(0, 400), slice(300, 600)
+    one = capture(tmp_path / "part0.pcap", (FIRST, 2368, (t_ns[begin], payloads[begin])))
+    other = capture(tmp_path / "part1.pcap", (FIRST, 2368, (t_ns[end], payloads[end])))
+
+    recording, points, _, report = read([other, one])
+
+    assert len(recording.rig.sensors) == 1
+    assert points == {0: 600 * 384}
+    assert report.counts["packets_duplicate"] == 100
+
+
+def test_a_file_that_ends_before_its_estimated_end_is_followed_by_the_next(tmp_path):
+    t_ns, payloads = spin(3000)
+    burst = t_ns[-400] + (t_ns - t_ns[0]) // 10
+    one = capture(
+        tmp_path / "a.pcap", (FIRST, 2368, (t_ns, payloads)), (SECOND, 9, (burst, payloads))
+    )
+    later = spin(300, t0_ns=int(t_ns[-1]) + 1_000_000)
+    other = capture(tmp_path / "b.pcap", (FIRST, 2368, later))
+
+    _, points, _, _ = read([one, other])
+
+    assert scan_pcap(one)[0].t_end_ns > later[0][0]
+    assert points[0] == 3300 * 384
 
 
 def test_a_missing_second_sensor_is_warned_of_and_the_first_is_read(tmp_path):
