@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,7 +12,9 @@ import numpy as np
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import SE3
 from recon4.locales.coded import CodedText
-from recon4.model.finding import Finding
+from recon4.model.derived import Derived
+from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.multiframe import Multiframe
 from recon4.model.point_recipes import PointRecipe
@@ -31,6 +33,7 @@ from recon4.recording.formats.cloud_files import (
 )
 from recon4.recording.formats.point_messages import POINTS
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
+from recon4.recording.frame_numbers import without_strangers
 from recon4.recording.frame_times import frame_times
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport, warning
@@ -54,6 +57,10 @@ class FrameFiles:
     """Why times that are there were not used, or which are damaged."""
     out_of_order: int = 0
     """How many files had an earlier time than one before them by number; they are sorted."""
+    absent: int = 0
+    """How many numbers the names lack; their time is left empty."""
+    derived: tuple[Derived, ...] = ()
+    """Which files are left out, and which numbers are missing."""
 
     @property
     def rate_hz(self) -> float:
@@ -87,7 +94,11 @@ def list_frames(path: Path) -> FrameFiles:
     kinds = sorted({file.suffix.lower() for file in found})
     if len(kinds) > 1:
         raise UnknownFormat(f"{path.name}: frames of one kind expected, got {', '.join(kinds)}")
+    numbered = without_strangers(found)
+    found = list(numbered.files)
     times = frame_times(path, found)
+    absent = times.absent
+    derived = numbered.left_out + ((_absent(found, absent),) if absent else ())
     steps = np.diff(times.t_ns)
     period = int(np.median(steps)) if len(steps) else FRAME_TIMES.assumed_ns
     if not FRAME_TIMES.shortest_ns <= period <= FRAME_TIMES.longest_ns:
@@ -95,8 +106,20 @@ def list_frames(path: Path) -> FrameFiles:
     if times.order is not None:
         found = [found[row] for row in times.order]
     return FrameFiles(
-        tuple(found), times.t_ns, period, times.source, times.findings, times.out_of_order
+        tuple(found),
+        times.t_ns,
+        period,
+        times.source,
+        times.findings,
+        times.out_of_order,
+        absent,
+        derived,
     )
+
+
+def _absent(files: Sequence[Path], absent: int) -> Derived:
+    values: dict[str, Value] = {"absent": absent, "first": files[0].name, "last": files[-1].name}
+    return Derived(kind=DerivedKind.FRAMES_ABSENT, values=values)
 
 
 def time_warnings(frames: FrameFiles) -> tuple[Finding, ...]:
@@ -134,6 +157,7 @@ def read_frames(
         report.add(found)
     report.count("files", len(frames.files))
     report.count("files_out_of_order", frames.out_of_order)
+    report.count("files_absent", frames.absent)
     frame_id, last_ns, failed = 0, None, None
     offset_ns = round(sensor.time_offset_s * 1e9)
     for file, stamp in zip(frames.files, frames.t_ns, strict=True):

@@ -26,6 +26,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.cloud_files import CLOUD_SUFFIXES
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
+from recon4.recording.frame_numbers import numbers_of, places_by_number
 from recon4.recording.frame_order import moved_back, order_of_times, times_by_text
 from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport, warning
@@ -58,10 +59,12 @@ class FrameTimes:
     """Rows of the files in the order of these times, (N,); None = their own."""
     out_of_order: int = 0
     """How many files had an earlier time than one before them."""
+    absent: int = 0
+    """How many numbers of files are missing, where the times are those of the numbers."""
 
 
 def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
-    """Times of frame files; without any, 10 Hz from 0.
+    """Times of frame files; without any, 10 Hz from 0 by the numbers in their names.
 
     Args:
         folder: Where they lie; a text file with times lies in it or beside it.
@@ -77,8 +80,10 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
             listed = _listed_times(beside, files, found)
             if listed is not None:
                 return replace(listed, findings=tuple(found))
-    assumed = np.arange(len(files), dtype=np.int64) * FRAME_TIMES.assumed_ns
-    return FrameTimes(assumed, "", tuple(found))
+    places = places_by_number(files)
+    places = np.arange(len(files), dtype=np.int64) if places is None else places
+    absent = int(places[-1]) + 1 - len(files) if len(files) else 0
+    return FrameTimes(places * FRAME_TIMES.assumed_ns, "", tuple(found), absent=absent)
 
 
 def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> FrameTimes | None:
@@ -88,7 +93,9 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     except CorruptFile as error:
         found.append(warning(FindingKind.TIMES_UNREADABLE, error=error))
         return None
-    name, count = beside.name, len(times)
+    name = beside.name
+    times = _of_numbers(times, files)
+    count = len(times)
     if count != len(files):
         found.append(warning(FindingKind.TIMES_NUMBER, name=name, times=count, files=len(files)))
         return None
@@ -107,6 +114,18 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     if (sorted_times := _in_any_order(times, name)) is None:
         found.append(warning(FindingKind.TIMES_UNSORTED, **values))
     return sorted_times
+
+
+def _of_numbers(times: Times, files: Sequence[Path]) -> Times:
+    """The times of the files that are there, if there are more times: that of number 7 is the
+    eighth, or the seventh if as many times are there as the last number says.
+    """
+    many = len(times) > len(files) >= FRAME_TIMES.fewest_numbers
+    numbers = numbers_of(files) if many else None
+    if numbers is None or numbers.min() < 0 or numbers.max() > len(times):
+        return times
+    first = 1 if numbers.max() == len(times) else 0
+    return times[numbers - first] if numbers.min() >= first else times
 
 
 def _in_any_order(t_ns: Times, source: str) -> FrameTimes | None:

@@ -137,6 +137,13 @@ class FrameTimeTuning(Struct, frozen=True, kw_only=True):
     """… and a larger ratio of such steps is none of a walk whose files are in another order."""
     run_ratio: float = 0.25
     """Times that go back in fewer of their steps go on in runs."""
+    alike_ratio: float = 0.9
+    """Files whose names are not of the kind of this ratio of them are looked at one by one."""
+    fewest_numbers: int = 5
+    """Fewer numbers are no row."""
+    row_ratio: float = 0.5
+    """Numbers are a row if this ratio of their steps is the same one, and the others are multiples
+    of it."""
     earliest_ns: int = 300_000_000 * 1_000_000_000
     """Times before 1979 do not count from 1970."""
 

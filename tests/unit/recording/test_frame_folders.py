@@ -9,7 +9,7 @@ from recon4.recording.frame_times import name_time_ns, read_times
 from recon4.recording.info import describe
 from tests.builders import T0_NS, room_cloud, write_bin, write_pcd, write_ply
 from tests.unit.recording.ingested import frame_folder, run
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 
 @pytest.mark.parametrize("write", [write_pcd, write_ply, write_bin], ids=["pcd", "ply", "bin"])
@@ -159,6 +159,51 @@ def test_times_that_do_not_fit_are_named_before_10_hz_are_assumed(tmp_path, line
     assert warned(report, kind, **values)
     assert warned(report, K.FRAMES_UNTIMED, rate_hz=10.0)
     assert warned(describe(folder), kind, **values)
+
+
+def test_numbers_that_are_missing_leave_their_time_empty(tmp_path):
+    folder = frame_folder(tmp_path / "f", [f"{k}.pcd" for k in (0, 3, 6, 9, 24, 27, 30)])
+
+    store = run(folder, out=tmp_path / "o")
+
+    assert (store.index["t_ns"] // 100_000_000).tolist() == [0, 1, 2, 3, 8, 9, 10]
+    assert store.report["counts"]["files_absent"] == 4
+    assert warned(store.report, K.TIME_GAP, seconds=0.5)
+    (said,) = [text for text in derivations(store.report) if "lack" in text]
+    assert (
+        said == "The names of the files lack 4 numbers of 0.pcd to 30.pcd: their time stays empty."
+    )
+
+
+def test_numbers_of_chosen_frames_are_no_row(tmp_path):
+    folder = frame_folder(tmp_path / "f", [f"{k}.pcd" for k in (0, 3, 7, 12, 13, 19)])
+
+    assert (list_frames(folder).t_ns // 100_000_000).tolist() == [0, 1, 2, 3, 4, 5]
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_times_of_all_frames_belong_to_the_numbers_of_those_that_are_left(tmp_path, first):
+    numbers = [first + k for k in (0, 1, 2, 5, 6, 9)]
+    folder = frame_folder(tmp_path / "f", [f"{k:04d}.pcd" for k in numbers])
+    (folder / "times.txt").write_text("".join(f"{k * k}\n" for k in range(1, 11)))
+
+    frames = list_frames(folder)
+
+    assert (frames.t_ns // 10**9).tolist() == [1, 4, 9, 36, 49, 100]
+    assert not frames.findings
+
+
+def test_a_copy_and_a_map_among_numbered_frames_are_left_out(tmp_path):
+    names = [f"scan_{k}.pcd" for k in range(20)]
+    folder = frame_folder(tmp_path / "f", [*names, "scan_3 (1).pcd"])
+    write_pcd(folder / "GlobalMap.pcd", {n: c[:99] for n, c in room_cloud().items()})
+
+    store = run(folder, out=tmp_path / "o")
+
+    assert len(store) == 20
+    said = " ".join(derivations(store.report))
+    assert "scan_3 (1).pcd has the same bytes as scan_0.pcd: left out." in said
+    assert "GlobalMap.pcd has no number as the other 20 files have" in said
 
 
 _TIMES_OF_FILES = {
