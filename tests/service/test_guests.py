@@ -25,7 +25,10 @@ SHARED = {
     ("GET", "/api/projects/{project_id}/thumbnail"),
     ("GET", "/projects/{project_id}/map/"),
     ("GET", "/projects/{project_id}/slices/"),
-    *(("GET", MAP + rest) for rest in ("", "/walk", "/{key}/sample", "/{key}/points")),
+    *(
+        ("GET", MAP + rest)
+        for rest in ("", "/walk", "/{key}/sample", "/{key}/cubes", "/{key}/points")
+    ),
     *(("POST", MAP + rest) for rest in ("/pick", "/volume")),
     *(("GET", SLICES + rest) for rest in ("", "/overview", "/overview/window", "/walk")),
     *(("POST", SLICES + rest) for rest in ("/image", "/pick")),

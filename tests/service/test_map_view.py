@@ -23,6 +23,7 @@ from tests.project_builder import ROOM_M, build_project
 from tests.served import served
 
 BASE = "/api/projects/office/map"
+STORED = ("xyz", "time")
 EYE = (9.0, 5.0, 1.5)
 
 
@@ -55,6 +56,22 @@ def places(data, tile):
     part = np.frombuffer(data, "<u2", 3 * n).reshape(n, 3) / 65535.0
     low, high = np.array(tile["low_m"]), np.array(tile["high_m"])
     return low + part * (high - low)
+
+
+def cubes(server, *parts, stored="xyz"):
+    index = index_of(server)
+    wanted = ",".join(":".join(map(str, part)) for part in parts)
+    query = {"stored": stored, "version": index["version"], "parts": wanted}
+    return server.get(f"{BASE}/{index['key']}/cubes", params=query)
+
+
+def in_cube(data, tiles):
+    """Positions of a part of a cube that has all tiles, and the tiles."""
+    n = len(data) // 11
+    part = np.frombuffer(data, "<u2", 3 * n).reshape(n, 3) / 65535.0
+    low = np.min([tile["low_m"] for tile in tiles], axis=0)
+    high = np.max([tile["high_m"] for tile in tiles], axis=0)
+    return low + part * (high - low), np.frombuffer(data, np.uint8, n, 10 * n)
 
 
 def pick(server, **changes):
@@ -105,22 +122,53 @@ def test_values_lie_beside_their_points(server, tiles):
 
 def test_the_sample_is_the_first_points_of_every_tile(server):
     index = index_of(server)
+    asked = {"stored": "xyz", "version": index["version"]}
     address = f"{BASE}/{index['key']}/sample"
 
-    data = server.get(address, params={"stored": "xyz", "version": index["version"]}).content
-    part = server.get(
-        address,
-        params={"stored": "xyz", "version": MAP_CHUNKS.version},
-        headers={"Range": "bytes=0-99"},
-    )
+    answer = server.get(address, params=asked)
+    again = server.get(
+        address, params=asked, headers={"If-None-Match": answer.headers["ETag"]}
+    ).status_code
 
-    at = 0
+    found = in_cube(answer.content, index["tiles"])
     for row, tile in enumerate(index["tiles"]):
-        own = data[at : at + 10 * tile["sample"]]
-        assert own == points(server, (row, 0, tile["sample"])).content
-        at += len(own)
-    assert at == len(data)
-    assert (part.status_code, part.content) == (206, data[:100])
+        truth = places(points(server, (row, 0, tile["sample"])).content, tile)
+        own = found[0][found[1] == row]
+        assert np.abs(np.sort(own, axis=0) - np.sort(truth, axis=0)).max() < 4e-4
+    assert again == 304
+
+
+def test_a_cube_has_the_coarse_points_of_its_tiles_evenly(server):
+    index = index_of(server)
+    tiles = index["tiles"]
+    many = sum(tile["coarse"] for tile in tiles)
+    few = many // 10
+
+    data = {stored: cubes(server, (0, 0, few), (0, few, many), stored=stored) for stored in STORED}
+
+    first = in_cube(data["xyz"].content[: 11 * few], tiles)
+    counts = np.bincount(first[1], minlength=len(tiles))
+    shares = np.array([tile["coarse"] for tile in tiles]) / many
+    assert counts == pytest.approx(few * shares, abs=2)
+    assert len(data["xyz"].content) == 11 * many and len(data["time"].content) == 2 * many
+    late = cubes(server, (0, few, many + 1))
+    assert late.status_code == 422 and "points" in late.json()["detail"]
+
+
+def test_values_of_a_cube_lie_beside_its_points(server, tiles):
+    index = index_of(server)
+    few = 50
+    column = next(one for one in index["columns"] if one["name"] == "time")
+
+    p_map, slots = in_cube(cubes(server, (0, 0, few)).content, index["tiles"])
+    steps = np.frombuffer(cubes(server, (0, 0, few), stored="time").content, "<u2")
+
+    for p, slot, step in zip(p_map, slots, steps, strict=True):
+        tile = tiles.tiles[slot]
+        known = tile.read(["t_ns"])["t_ns"]
+        near = np.linalg.norm(tile.xyz_m() - p, axis=1) < 4e-4
+        seconds = (known[near] - tiles.first_ns) / 1e9
+        assert np.abs(seconds - column["offset"] - column["scale"] * step).min() < column["scale"]
 
 
 def test_parts_of_several_tiles_come_one_after_the_other(server):
@@ -261,8 +309,9 @@ def test_a_volume_is_that_of_what_is_shown(server):
 def test_a_page_of_another_layout_receives_no_points(server):
     key = index_of(server)["key"]
 
-    for address in (f"{BASE}/{key}/sample?stored=xyz", f"{BASE}/{key}/points?stored=xyz"):
-        more = "&parts=0:0:2" if "points" in address else ""
+    for what in ("sample", "points", "cubes"):
+        address = f"{BASE}/{key}/{what}?stored=xyz"
+        more = "" if what == "sample" else "&parts=0:0:2"
         answer = server.get(f"{address}{more}&version=0")
         assert answer.status_code == 409 and "reload the page" in answer.json()["detail"]
         assert server.get(address + more).status_code == 422
@@ -346,6 +395,6 @@ def test_a_changed_layout_of_the_index_has_another_version():
     text = re.sub(r'"(description|title)": "[^"]*",? ?', "", layout)
 
     assert (MAP_CHUNKS.version, hashlib.sha256(text.encode()).hexdigest()[:12]) == (
-        3,
-        "6d09a7396e21",
+        4,
+        "e75bfff9aff7",
     )

@@ -8,15 +8,26 @@ import { MapTiles } from "../../web/map/tiles.js";
 
 // -- what is read of tiles
 
-const TILE = { low_m: [0, 0, 0], high_m: [4, 4, 4], points: 50_000, sample: 500, spacing_m: 0.02 };
+const TILE = {
+  low_m: [0, 0, 0],
+  high_m: [4, 4, 4],
+  points: 50_000,
+  sample: 500,
+  coarse: 500,
+  cube: 0,
+  spacing_m: 0.02,
+};
 const CAMERA = { target: [2, 2, 2], yaw: 0, pitch: -1, distance: 10, parallel: false };
-const bytes = (stored, count) => new ArrayBuffer((stored === "xyz" ? 10 : 2) * count);
+const ALL = [500, 49_500]; // of the cube, and the rest of its tile
+const bytes = (stored, count, ofCube) =>
+  new ArrayBuffer((stored !== "xyz" ? 2 : ofCube ? 11 : 10) * count);
 const READER = {
-  sample: async (stored) => bytes(stored, 500),
+  sample: async (stored) => bytes(stored, 500, true),
   parts: async (stored, parts) =>
     bytes(
       stored,
       parts.reduce((sum, { start, stop }) => sum + stop - start, 0),
+      parts[0].ofCube,
     ),
 };
 
@@ -35,11 +46,11 @@ test("what is wanted before the sample has come does not overlap it", async () =
   const tiles = tilesOf(READER);
 
   const sample = tiles.readSample("intensity");
-  tiles.want([50_000], CAMERA);
+  tiles.want(ALL, CAMERA);
   await sample;
   await settled();
 
-  const shown = tiles.show([50_000]);
+  const shown = tiles.show(ALL);
   assert.equal(tiles.total, 50_000);
   assert.equal(
     shown.reduce((sum, { points }) => sum + points, 0),
@@ -54,12 +65,12 @@ test("what is wanted before the sample has come does not overlap it", async () =
 test("without a sample parts are read all the same", async () => {
   const tiles = tilesOf({ ...READER, sample: () => Promise.reject(new Error("no")) });
 
-  tiles.want([50_000], CAMERA);
+  tiles.want(ALL, CAMERA);
   await assert.rejects(tiles.readSample(""));
-  tiles.want([50_000], CAMERA);
+  tiles.want(ALL, CAMERA);
   await settled();
 
-  assert.deepEqual(tiles.have, [50_000]);
+  assert.deepEqual(tiles.have, ALL);
 });
 
 test("few points of many tiles are read together, and not many more than are wanted", async () => {
@@ -68,9 +79,9 @@ test("few points of many tiles are read together, and not many more than are wan
     asked++;
     return READER.parts(stored, wanted);
   };
-  const sample = async (stored) => bytes(stored, 500 * 600);
+  const sample = async (stored) => bytes(stored, 500 * 600, true);
   const tiles = tilesOf({ ...READER, sample, parts }, 600);
-  const counts = Array.from({ length: 600 }, (_, k) => 510 + (k % 7));
+  const counts = [300_000, ...Array.from({ length: 600 }, (_, k) => 10 + (k % 7))];
 
   await tiles.readSample("");
   tiles.want(counts, CAMERA);
@@ -84,11 +95,11 @@ test("few points of many tiles are read together, and not many more than are wan
 test("values of another color are read together, each of its own points", async () => {
   const tiles = tilesOf(
     {
-      sample: async (stored) => bytes(stored, 500 * 3),
+      sample: async (stored) => bytes(stored, 500 * 3, true),
       parts: async (stored, wanted) => {
         if (stored === "xyz") return READER.parts(stored, wanted);
-        const values = wanted.flatMap(({ tile, start, stop }) =>
-          Array.from({ length: stop - start }, (_, k) => 1000 * tile + start + k),
+        const values = wanted.flatMap(({ row, start, stop }) =>
+          Array.from({ length: stop - start }, (_, k) => 1000 * row + start + k),
         );
         return Uint16Array.from(values).buffer;
       },
@@ -96,13 +107,14 @@ test("values of another color are read together, each of its own points", async 
     3,
   );
   await tiles.readSample("");
-  tiles.want([600, 700, 800], CAMERA);
+  const counts = [1500, 100, 200, 300];
+  tiles.want(counts, CAMERA);
   await settled();
 
   await tiles.color("time");
   await settled();
 
-  const known = tiles.show([600, 700, 800]).filter(({ object }) => object.geometry.drawRange);
+  const known = tiles.show(counts).filter(({ object }) => object.geometry.drawRange);
   const firsts = known
     .map(({ object }) => object.geometry.attributes.value?.array[0])
     .filter((value) => value > 0);
@@ -113,13 +125,13 @@ test("a server that refuses is asked again only when the camera moves", async ()
   let [asked, camera] = [0, CAMERA];
   const parts = () => Promise.reject(new Error(`no ${++asked}`));
   const tiles = tilesOf({ ...READER, parts });
-  tiles.onNews = () => tiles.want([50_000], camera); // as the canvas does: it draws again
+  tiles.onNews = () => tiles.want(ALL, camera); // as the canvas does: it draws again
   await tiles.readSample("");
   await settled();
 
   assert.equal(asked, 1);
   camera = { ...CAMERA };
-  tiles.want([50_000], camera);
+  tiles.want(ALL, camera);
   await settled();
   assert.equal(asked, 2);
 });

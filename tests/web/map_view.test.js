@@ -17,11 +17,8 @@ import {
   zoomed,
 } from "../../web/map/camera.js";
 import { boxOver, cornersOfBox, planesOf, yawOfSection } from "../../web/map/clip.js";
-import { apartOf } from "../../web/map/density.js";
 import { nearestTo, positionAt, standingAt, walking } from "../../web/map/flight.js";
-import { choose, isOutside, nextPart, readingOrder, sidesOf } from "../../web/map/lod.js";
 import { angleOf, areaOf, distanceParts, resultOf, toCsv } from "../../web/map/measure.js";
-import { Pace } from "../../web/map/pace.js";
 import { format, parse } from "../../web/map/state.js";
 import { mapQuery } from "../../web/slices/to_map.js";
 
@@ -102,96 +99,6 @@ test("a fitted camera shows all of the box, and nearly fills the image", () => {
 test("a turn takes the shorter way", () => {
   const half = between({ ...CAMERA, yaw: 3 }, { ...CAMERA, yaw: -3 }, 0.5);
   near(Math.abs(half.yaw), Math.PI);
-});
-
-// -- level of detail
-
-const tile = (low, points = 100_000) => ({
-  low_m: low,
-  high_m: low.map((x) => x + 4),
-  points,
-  sample: 500,
-  spacing_m: 0.02,
-});
-const TILES = [tile([2, 3, -1]), tile([30, 40, -1]), tile([-60, -60, -1])];
-const view = (more) => ({ camera: CAMERA, screen: SCREEN, planes: [], budget: 1e9, ...more });
-
-test("near tiles get more points than far ones, hidden ones none", () => {
-  const { counts } = choose(TILES, view({}));
-  assert.ok(counts[0] > counts[1] && counts[1] >= 500);
-  assert.equal(counts[2], 0);
-});
-
-test("the budget holds, and is used", () => {
-  const { counts } = choose(TILES, view({ budget: 40_000 }));
-  const sum = counts.reduce((all, one) => all + one, 0);
-  assert.ok(sum <= 40_000 && sum > 36_000, String(sum));
-});
-
-test("tiles that a plane clips wholly get none", () => {
-  const { counts } = choose(TILES, view({ planes: [[0, 0, 1, -50]] }));
-  assert.deepEqual(counts, [0, 0, 0]);
-});
-
-test("the sides of the image hold what is in it", () => {
-  for (const camera of [CAMERA, PARALLEL]) {
-    const point = (p) => ({ low_m: p, high_m: p });
-    for (const at of [
-      [5, 5],
-      [795, 595],
-      [400, 300],
-    ]) {
-      const { origin, direction } = rayAt(camera, SCREEN, at);
-      const along = camera.parallel ? 1000 : 9;
-      const p = origin.map((x, k) => x + along * direction[k]);
-      assert.equal(isOutside(point(p), sidesOf(camera, SCREEN)), false);
-    }
-    const outside = rayAt(camera, SCREEN, [-20, 300]);
-    const p = outside.origin.map((x, k) => x + 9 * outside.direction[k]);
-    assert.equal(isOutside(point(p), sidesOf(camera, SCREEN)), true);
-  }
-});
-
-test("parts of a tile follow each other to its end", () => {
-  let have = 500;
-  const parts = [];
-  for (let part; (part = nextPart(have, 100_000, 100_000)); have = part.stop) parts.push(part);
-  assert.equal(parts[0].start, 500);
-  assert.equal(parts.at(-1).stop, 100_000);
-  assert.ok(parts.every((part, k) => k === 0 || part.start === parts[k - 1].stop));
-  assert.equal(nextPart(500, 400, 1000), null);
-});
-
-test("the coarsest tile on screen is read first", () => {
-  const order = readingOrder(TILES, { counts: [9000, 900, 0], have: [500, 500, 0] }, CAMERA);
-  assert.deepEqual(order, [0, 1]);
-});
-
-test("sparse places have larger points than dense ones", () => {
-  const places = new Uint16Array(3 * 2000);
-  for (let k = 0; k < 2000; k++) {
-    const dense = k < 1900;
-    places[3 * k] = dense ? (k * 7919) % 20_000 : 40_000 + ((k * 7919) % 20_000);
-    places[3 * k + 1] = (k * 104_729) % 20_000;
-  }
-  const apart = apartOf(places, {
-    low_m: [0, 0, 0],
-    high_m: [4, 4, 4],
-    points: 2000,
-    spacing_m: 0.02,
-  });
-  const mean = (part) => part.reduce((sum, x) => sum + x, 0) / part.length;
-  assert.ok(mean(apart.subarray(1900)) > mean(apart.subarray(0, 1900)) + 15);
-});
-
-test("a slow computer loses pixels first, then points; a quick one gets more", () => {
-  const pace = new Pace();
-  for (let k = 0; k < 3; k++) pace.note(pace.moving, 900);
-  assert.ok(pace.sharpness < 0.5 && pace.moving === 300_000);
-  for (let k = 0; k < 5; k++) pace.note(pace.moving, 900);
-  assert.ok(pace.moving < 150_000);
-  for (let k = 0; k < 40; k++) pace.note(pace.moving, 12);
-  assert.ok(pace.sharpness === 1 && pace.moving > 2_000_000 && pace.resting >= pace.moving);
 });
 
 // -- clip

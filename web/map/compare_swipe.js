@@ -1,6 +1,7 @@
 // Another map on the other side of a divider: its points in a scene of their own.
 
-import { pointMaterial } from "./materials.js";
+import { giveLook, pointMaterial } from "./materials.js";
+import { nodesOf } from "./nodes.js";
 import { MapTiles } from "./tiles.js";
 import { Matrix4, Scene, Vector2 } from "../shared/vendor/three/three.module.min.js";
 
@@ -37,7 +38,7 @@ export class MapBeside {
   #index;
   #material = pointMaterial();
   scene = new Scene();
-  boxes;
+  nodes;
   tiles;
   /** Where the divider is, as a part of the width: the other map is to its right. */
   part = 0.5;
@@ -50,7 +51,7 @@ export class MapBeside {
   constructor(index, reader, T) {
     this.#index = index;
     this.#rotation = T.slice(0, 3).map((row) => row.slice(0, 3));
-    this.boxes = movedBoxes(index.tiles, T);
+    this.nodes = nodesOf(movedBoxes(index.tiles, T));
     this.scene.matrixWorldAutoUpdate = false;
     const move = new Matrix4().set(...T.flat());
     this.tiles = new MapTiles(index, {
@@ -58,12 +59,7 @@ export class MapBeside {
       material: this.#material,
       reader,
       move,
-      onLook: ({ thinned, known }) => {
-        const { uniforms } = this.#material;
-        uniforms.thinned.value = thinned;
-        uniforms.known.value = known;
-        this.#material.uniformsNeedUpdate = true;
-      },
+      onLook: (look) => giveLook(this.#material, look),
     });
   }
 

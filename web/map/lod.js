@@ -1,22 +1,18 @@
-// How many points of each tile are drawn. Any first points of a tile are an even sample of it, so
+// How many points of each node are drawn. Any first points of a node are an even sample of it, so
 // the answer is a count. No DOM, no network.
 
 import { add, axesOf, cornersOf, dot, eyeOf, focalPx, minus } from "./camera.js";
 
 /**
  * @import {Camera, Screen} from "./camera.js"
- * @typedef {object} Box a tile as the choice sees it
- * @property {number[]} low_m
- * @property {number[]} high_m
- * @property {number} points
- * @property {number} sample points that are always drawn
- * @property {number} spacing_m of neighbors if all are drawn
+ * @import {MapNode} from "./nodes.js"
  */
 
 const NEAREST_M = 1; // nearer points of a tile are drawn as those at this distance
 const FINEST_PX = 0.9; // neighbors nearer to each other than this do not show
 const COARSEST_PX = 1000;
-const ENOUGH = 12_000; // points of a response, to which parts of further tiles are added before
+const ENOUGH = 30_000; // points of a response, to which parts of further tiles are added before
+const ENOUGH_OF_CUBES = 48_000; // those are only copied from a file
 const MOST_PARTS = 64; // of a response
 
 /**
@@ -64,66 +60,101 @@ export function sidesOf(camera, screen) {
 }
 
 /**
- * Distance at which a tile is seen [m].
- * @param {Box} box
+ * Distance at which a box is seen [m].
+ * @param {{low_m: number[], high_m: number[]}} box
  * @param {Camera} camera
  */
 export function seenFrom({ low_m, high_m }, camera) {
-  if (camera.parallel) return camera.distance;
-  const eye = eyeOf(camera);
-  const away = [0, 1, 2].map((k) => Math.max(low_m[k] - eye[k], eye[k] - high_m[k], 0));
-  return Math.max(Math.hypot(...away), NEAREST_M);
+  return camera.parallel ? camera.distance : awayFrom({ low_m, high_m }, eyeOf(camera));
 }
 
 /**
- * How many points of each tile are drawn within a budget: as few as the finest distance of
+ * @param {{low_m: number[], high_m: number[]}} box
+ * @param {number[]} eye
+ */
+function awayFrom({ low_m, high_m }, eye) {
+  const [x, y, z] = [0, 1, 2].map((k) => Math.max(low_m[k] - eye[k], eye[k] - high_m[k], 0));
+  return Math.max(Math.hypot(x, y, z), NEAREST_M);
+}
+
+/**
+ * How many points of each node are drawn within a budget: as few as the finest distance of
  * neighbors on screen asks for, the same for all tiles, and none of those out of sight.
- * @param {Box[]} tiles
+ * @param {MapNode[]} nodes
  * @param {{camera: Camera, screen: Screen, planes: number[][], budget: number}} view
  */
-export function choose(tiles, { camera, screen, planes, budget }) {
-  const hidden = [...sidesOf(camera, screen), ...planes];
-  const seen = tiles.map((tile) => !isOutside(tile, hidden));
-  const apartPx = tiles.map((tile) => (tile.spacing_m * focalPx(screen)) / seenFrom(tile, camera));
-  const counts = (/** @type {number} */ px) =>
-    tiles.map((tile, k) => {
-      if (!seen[k]) return 0;
-      const wanted = Math.ceil(tile.points * (apartPx[k] / px) ** 2);
-      return Math.min(tile.points, Math.max(tile.sample, wanted));
-    });
-  const sum = (/** @type {number[]} */ all) => all.reduce((total, one) => total + one, 0);
+export function choose(nodes, view) {
+  const shares = sharesOf(nodes, view);
+  const { budget } = view;
+  const sum = (/** @type {number} */ px) => {
+    let points = 0;
+    for (let k = 0; k < nodes.length; k++) points += wantedOf(nodes[k], shares[k], px);
+    return points;
+  };
   let [fine, coarse] = [FINEST_PX, COARSEST_PX];
-  if (sum(counts(fine)) <= budget) return { counts: counts(fine), px: fine };
-  for (let round = 0; round < 24; round++) {
+  if (sum(fine) <= budget) coarse = fine;
+  for (let round = 0; round < 24 && coarse > fine; round++) {
     const middle = Math.sqrt(fine * coarse);
-    if (sum(counts(middle)) <= budget) coarse = middle;
+    if (sum(middle) <= budget) coarse = middle;
     else fine = middle;
   }
-  return { counts: counts(coarse), px: coarse };
+  return { counts: nodes.map((node, k) => wantedOf(node, shares[k], coarse)), px: coarse };
 }
 
 /**
- * The next part of a tile to read: as many points again as there are, or twice what is wanted of
- * a tile of which few are, but never more than `most`.
+ * Part of the points of each node, and of what is below it, with which neighbors are a pixel
+ * apart; 0 = nothing of it is seen. What a tile asks for is asked of its cube, too.
+ * @param {MapNode[]} nodes
+ * @param {{camera: Camera, screen: Screen, planes: number[][]}} view
+ */
+function sharesOf(nodes, { camera, screen, planes }) {
+  const hidden = [...sidesOf(camera, screen), ...planes];
+  const [focal, eye] = [focalPx(screen), eyeOf(camera)];
+  const shares = new Float64Array(nodes.length);
+  nodes.forEach((node, k) => {
+    if (node.cube < 0 || isOutside(node, hidden)) return;
+    const away = camera.parallel ? camera.distance : awayFrom(node, eye);
+    shares[k] = ((node.spacing_m * focal) / away) ** 2;
+    shares[node.cube] = Math.max(shares[node.cube], shares[k]);
+  });
+  return shares;
+}
+
+/**
+ * @param {MapNode} node
+ * @param {number} share
+ * @param {number} px
+ */
+function wantedOf({ whole, before, sample, points }, share, px) {
+  if (!share) return 0;
+  const wanted = Math.ceil((whole * share) / (px * px)) - before;
+  return Math.min(points, Math.max(sample, wanted));
+}
+
+/**
+ * The next part of a node to read: what is wanted of it, but twice as much of a node of which
+ * there is little, and never more than `most` at once.
  * @param {number} have
  * @param {number} wanted
- * @param {number} points all of the tile
+ * @param {number} points all of the node
  */
-export function nextPart(have, wanted, points, most = 120_000, least = 12_000) {
+export function nextPart(have, wanted, points, most = 60_000, least = 12_000) {
   if (have >= Math.min(wanted, points)) return null;
   const few = Math.min(least, 2 * wanted - have);
-  const stop = Math.min(points, have + Math.min(most, Math.max(have, few)));
+  const stop = Math.min(points, have + Math.min(most, Math.max(wanted - have, few)));
   return { start: have, stop: points - stop < few ? points : stop };
 }
 
 /**
- * Takes the parts of the next response from the front of a queue.
- * @template {{start: number, stop: number}} Part
+ * Takes the parts of the next response from the front of a queue: only of cubes, or only of tiles.
+ * @template {{start: number, stop: number, ofCube: boolean}} Part
  * @param {Part[]} queue
  */
 export function takeParts(queue) {
+  const enough = queue[0]?.ofCube ? ENOUGH_OF_CUBES : ENOUGH;
   let [count, points] = [0, 0];
-  while (count < Math.min(queue.length, MOST_PARTS) && points < ENOUGH) {
+  while (count < Math.min(queue.length, MOST_PARTS) && points < enough) {
+    if (queue[count].ofCube !== queue[0].ofCube) break;
     points += queue[count].stop - queue[count].start;
     count++;
   }
@@ -131,19 +162,20 @@ export function takeParts(queue) {
 }
 
 /**
- * The tiles whose next part is read first: those whose neighbors are farthest apart on screen.
- * @param {Box[]} tiles
+ * The nodes whose next part is read first: those whose neighbors are farthest apart on screen.
+ * @param {MapNode[]} nodes
  * @param {{counts: number[], have: number[]}} shown
  * @param {Camera} camera
  */
-export function readingOrder(tiles, { counts, have }, camera) {
-  const apart = (/** @type {number} */ k) =>
-    (tiles[k].spacing_m * Math.sqrt(tiles[k].points / Math.max(have[k], 1))) /
-    seenFrom(tiles[k], camera);
-  return tiles
-    .map((_, k) => k)
-    .filter((k) => counts[k] > have[k])
-    .sort((a, b) => apart(b) - apart(a));
+export function readingOrder(nodes, { counts, have }, camera) {
+  const apart = new Map();
+  nodes.forEach((node, k) => {
+    if (counts[k] <= have[k]) return;
+    const { spacing_m, whole, before } = node;
+    const thinned = Math.sqrt(whole / Math.max(before + have[k], 1));
+    apart.set(k, (spacing_m * thinned) / seenFrom(node, camera));
+  });
+  return [...apart.keys()].sort((a, b) => apart.get(b) - apart.get(a));
 }
 
 /**

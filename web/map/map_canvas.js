@@ -10,20 +10,17 @@ import {
   PLAIN,
   boundsOf,
   drawingTarget,
+  giveLook,
   pointMaterial,
   screenMaterial,
   sheetOf,
 } from "./materials.js";
 import { placeCamera } from "./projection.js";
+import { nodesOf } from "./nodes.js";
+import { layersOf } from "./walk_layers.js";
 import { MapTiles } from "./tiles.js";
 import {
-  BufferGeometry,
-  BufferAttribute,
-  Line,
-  LineBasicMaterial,
   PerspectiveCamera,
-  Points,
-  PointsMaterial,
   Scene,
   WebGLRenderer,
 } from "../shared/vendor/three/three.module.min.js";
@@ -62,6 +59,7 @@ export class MapCanvas {
   #canvas;
   #renderer;
   #index;
+  #nodes;
   #scene = new Scene();
   #lines = new Scene();
   #screenScene = new Scene();
@@ -73,13 +71,15 @@ export class MapCanvas {
   /** @type {Drawing | null} */
   #drawing = null;
   #moved = -Infinity;
-  /** @type {{queue: Array<{object: Points, points: number}>, next: number} | null} */
+  /** @type {{queue: ReturnType<MapTiles["show"]>, next: number, late: boolean} | null} */
   #refining = null;
   #finished = false;
+  /** @type {boolean | null} */
+  #hadPoints = null;
   /** @type {{sync: WebGLSync, began: number, points: number, moving: boolean} | null} */
   #pending = null;
   #asked = false;
-  /** @type {{walk?: Line, nodes?: Points}} */
+  /** @type {Partial<ReturnType<typeof layersOf>>} */
   #layers = {};
   /** @type {CorePoints | null} */
   #differences = null;
@@ -105,18 +105,14 @@ export class MapCanvas {
     for (const scene of [this.#scene, this.#lines, this.#screenScene])
       scene.matrixWorldAutoUpdate = false;
     this.#screenScene.add(sheetOf(this.#screen));
-    const { uniforms } = this.#material;
+    this.#nodes = nodesOf(index.tiles);
     this.tiles = new MapTiles(index, {
       scene: this.#scene,
       material: this.#material,
       reader,
-      onLook: ({ thinned, known }) => {
-        uniforms.thinned.value = thinned * (this.#drawing?.size ?? 1);
-        uniforms.known.value = known;
-        this.#material.uniformsNeedUpdate = true;
-      },
+      onLook: (look) => giveLook(this.#material, look, this.#drawing?.size),
     });
-    this.tiles.onNews = () => this.#news();
+    this.tiles.onNews = () => this.#arrived();
     new ResizeObserver(() => this.#news()).observe(canvas);
     canvas.addEventListener("webglcontextrestored", () => this.#news());
   }
@@ -141,18 +137,8 @@ export class MapCanvas {
 
   /** The walk and the nodes of the graph, as lines and dots over the map. */
   layers(/** @type {number[][]} */ walk, /** @type {number[][]} */ nodes) {
-    const flat = (/** @type {number[][]} */ points) => {
-      const geometry = new BufferGeometry();
-      geometry.setAttribute("position", new BufferAttribute(new Float32Array(points.flat()), 3));
-      return geometry;
-    };
-    const over = { depthTest: false, depthWrite: false, transparent: true };
-    this.#layers.walk = new Line(flat(walk), new LineBasicMaterial({ color: "#ff8a1f", ...over }));
-    this.#layers.nodes = new Points(
-      flat(nodes),
-      new PointsMaterial({ color: "#2f9bff", size: 6, sizeAttenuation: false, ...over }),
-    );
-    for (const object of [this.#layers.walk, this.#layers.nodes]) {
+    this.#layers = layersOf(walk, nodes);
+    for (const object of Object.values(this.#layers)) {
       Object.assign(object, { frustumCulled: false, visible: false });
       this.#lines.add(object);
     }
@@ -170,7 +156,7 @@ export class MapCanvas {
 
   /** Shows another map to the right of its divider; null = this map only. */
   beside(/** @type {MapBeside | null} */ other) {
-    if (other) other.tiles.onNews = () => this.#news();
+    if (other) other.tiles.onNews = () => this.#arrived();
     this.#beside = other;
     this.#news();
   }
@@ -181,6 +167,13 @@ export class MapCanvas {
     this.drawn.rested = false;
     this.#refining = null;
     this.#ask();
+  }
+
+  /** Points have arrived: a drawing that has begun is shown before, so that one sees progress. */
+  #arrived() {
+    if (!this.#refining) return this.#news();
+    this.#refining.late = true;
+    this.drawn.rested = false;
   }
 
   #ask() {
@@ -196,7 +189,8 @@ export class MapCanvas {
     const drawing = this.#drawing;
     if (!drawing || !this.#isReady()) return this.#ask();
     const moving = performance.now() - this.#moved < REST_MS;
-    if (moving || !this.drawn.frames) this.#drawCoarse(drawing);
+    const first = this.#hadPoints !== this.tiles.total > 0; // few at once, before many
+    if (moving || first) this.#drawCoarse(drawing);
     else if (!this.#finished) this.#refine(drawing);
     if (moving || !this.#finished) this.#ask();
     this.onDrawn();
@@ -227,6 +221,7 @@ export class MapCanvas {
   #drawCoarse(/** @type {Drawing} */ drawing) {
     const began = performance.now();
     this.#refining = null;
+    this.#hadPoints = this.tiles.total > 0;
     const parts = this.#parts(drawing, this.pace.moving);
     this.#begin(drawing, this.#coarse);
     this.#paint(this.#coarse);
@@ -240,7 +235,8 @@ export class MapCanvas {
   #refine(/** @type {Drawing} */ drawing) {
     const began = performance.now();
     if (!this.#refining) {
-      this.#refining = { queue: this.#parts(drawing, this.pace.resting, true), next: 0 };
+      const queue = this.#parts(drawing, this.pace.resting, true);
+      this.#refining = { queue, next: 0, late: false };
       this.#begin(drawing, this.#fine);
     }
     const { queue } = this.#refining;
@@ -254,11 +250,11 @@ export class MapCanvas {
     this.#paint(this.#fine);
     if (this.#refining.next >= queue.length) {
       this.#finish(drawing, this.#fine);
-      this.#finished = true;
+      this.#finished = !this.#refining.late;
       const all = queue.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
       Object.assign(this.drawn, {
         points: all,
-        rested: this.#sides().every(({ tiles }) => tiles.complete),
+        rested: this.#finished && this.#sides().every(({ tiles }) => tiles.complete),
       });
       this.#refining = null;
     }
@@ -267,7 +263,7 @@ export class MapCanvas {
 
   /** This map, and the other one. */
   #sides() {
-    const own = { tiles: this.tiles, boxes: this.#index.tiles };
+    const own = { tiles: this.tiles, nodes: this.#nodes };
     return this.#beside ? [own, this.#beside] : [own];
   }
 
@@ -280,8 +276,8 @@ export class MapCanvas {
   #parts({ camera, planes }, budget, reads = false) {
     const sides = this.#sides();
     const view = { camera, screen: this.screen, planes, budget: budget / sides.length };
-    return sides.flatMap(({ tiles, boxes }) => {
-      const counts = this.#differences ? boxes.map(() => 0) : choose(boxes, view).counts;
+    return sides.flatMap(({ tiles, nodes }) => {
+      const counts = this.#differences ? nodes.map(() => 0) : choose(nodes, view).counts;
       if (reads) tiles.want(counts, camera);
       return tiles.show(counts);
     });
@@ -317,8 +313,8 @@ export class MapCanvas {
       Math.min(devicePixelRatio, SHARPEST) * (into === this.#coarse ? this.pace.sharpness : 1);
     const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
     if (into.width !== wide || into.height !== tall) into.setSize(wide, tall);
-    const tiles = this.#sides().flatMap(({ boxes }) => boxes);
-    const view = { screen: this.screen, bounds: boundsOf({ tiles }) };
+    const nodes = this.#sides().flatMap((side) => side.nodes);
+    const view = { screen: this.screen, bounds: boundsOf(nodes.filter(({ cube }) => cube < 0)) };
     const { near, far, turn } = placeCamera(this.#camera, drawing.camera, view);
     this.#material.uniforms.turn.value = turn;
     this.#look(drawing, ratio);

@@ -19,7 +19,7 @@ import {
 } from "../shared/vendor/three/three.module.min.js";
 
 /**
- * @import {Box} from "./lod.js"
+ * @import {MapNode} from "./nodes.js"
  * @import {Material} from "../shared/vendor/three/three.module.min.js"
  */
 
@@ -27,16 +27,17 @@ export const MOST_PLANES = 12;
 export const BACKGROUNDS = { dark: [0.063, 0.078, 0.094], light: [0.914, 0.93, 0.941] };
 export const PLAIN = { dark: [0.82, 0.84, 0.86], light: [0.74, 0.76, 0.79] };
 const CLASS_CODES = 68;
+const CUBE_TILES = 64; // most tiles of a cube
 
 /** The box of all points: what is drawn lies in it. */
-export function boundsOf(/** @type {{tiles: Array<Pick<Box, "low_m" | "high_m">>}} */ { tiles }) {
+export function boundsOf(/** @type {Array<Pick<MapNode, "low_m" | "high_m">>} */ boxes) {
   /**
    * @param {"low_m" | "high_m"} end
    * @param {(...of: number[]) => number} best
    */
   const all = (end, best) =>
     [0, 1, 2].map((axis) =>
-      tiles.reduce((found, tile) => best(found, tile[end][axis]), tiles[0]?.[end][axis] ?? 0),
+      boxes.reduce((found, box) => best(found, box[end][axis]), boxes[0]?.[end][axis] ?? 0),
     );
   return { low: all("low_m", Math.min), high: all("high_m", Math.max) };
 }
@@ -72,7 +73,7 @@ export function pointMaterial() {
     fragmentShader: POINT_FRAGMENT,
     blending: NoBlending,
     uniforms: {
-      thinned: { value: 1 },
+      thinned: { value: new Float32Array(CUBE_TILES).fill(1) },
       focal: { value: 1 },
       parallel: { value: false },
       turn: { value: [1, 0, 0, 0, 1, 0, 0, 0, 1] },
@@ -108,3 +109,16 @@ export const screenMaterial = () =>
       ground: { value: new Vector3() },
     },
   });
+
+/**
+ * Sets what the shader is given for the points of a chunk.
+ * @param {RawShaderMaterial} material
+ * @param {import("./tiles.js").Look} look
+ * @param {number} size
+ */
+export function giveLook(material, { thinned, known }, size = 1) {
+  const { uniforms } = material;
+  thinned.forEach((times, k) => (uniforms.thinned.value[k] = times * size));
+  uniforms.known.value = known;
+  material.uniformsNeedUpdate = true;
+}

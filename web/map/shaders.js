@@ -4,7 +4,7 @@ export const POINT_VERTEX = `
 precision highp float;
 uniform mat4 modelMatrix, modelViewMatrix, projectionMatrix;
 uniform mat3 turn;       // from the map to the eye
-uniform float thinned;   // how much farther apart neighbors are than if all points were drawn
+uniform vec4 thinned[16]; // how much farther apart neighbors are than if all points were drawn
 uniform float focal;     // pixels of a meter at a meter's distance; parallel: at any distance
 uniform bool parallel;
 uniform vec2 sizes;      // smallest and largest point [px]
@@ -20,6 +20,7 @@ uniform int planeCount;
 in vec3 place;
 in vec4 about;
 in float value;
+in float slot;           // of a point of a cube: which of its tiles has it, else 0
 in float apart;          // distance of neighbors if all points were drawn, in octaves above 1 mm
 flat out vec3 color;
 
@@ -40,7 +41,10 @@ void main() {
       return;
     }
   float away = parallel ? 1.0 : max(-seen.z, 0.01);
-  gl_PointSize = clamp(thinned * 0.0013 * exp2(12.0 * apart) * focal / away, sizes.x, sizes.y);
+  int own = int(slot + 0.5);
+  float farther = thinned[own >> 2][own & 3];
+  float apart_m = farther * 0.0013 * exp2(12.0 * apart);
+  gl_PointSize = clamp(apart_m * focal / away, sizes.x, sizes.y);
   if (mode == 0) color = colorAt((p.z - ends.x) / (ends.y - ends.x));
   else if (mode == 1 && (!known || value > 0.99999)) color = unknown;
   else if (mode == 1) color = colorAt((value - ends.x) / (ends.y - ends.x));

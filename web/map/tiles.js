@@ -1,8 +1,9 @@
-// The points of the map: what has been read of each tile, and its objects in the scene.
+// The points of the map: what has been read of each node, and its objects in the scene.
 
 import { dot, minus } from "./camera.js";
 import { apartOf } from "./density.js";
 import { isOutside, nextPart, readingOrder, takeParts } from "./lod.js";
+import { firstTile, nodesOf, thinnedOf } from "./nodes.js";
 import {
   BufferAttribute,
   BufferGeometry,
@@ -15,10 +16,12 @@ import {
  * @import {Material, Matrix4, Scene} from "../shared/vendor/three/three.module.min.js"
  * @typedef {"xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"} Stored
  * @typedef {{start: number, stop: number}} Part
+ * @typedef {Part & {node: number, row: number, ofCube: boolean}} Wanted the row is that of the
+ *   index; it counts points of a tile that are in its cube, too
  * @typedef {object} Reader
  * @property {(stored: Stored) => Promise<ArrayBuffer>} sample
- * @property {(stored: Stored, parts: Array<{tile: number} & Part>) => Promise<ArrayBuffer>} parts
- *   one after the other
+ * @property {(stored: Stored, parts: Wanted[]) => Promise<ArrayBuffer>} parts one after the other,
+ *   all of cubes or all of tiles
  * @typedef {object} Chunk
  * @property {number} start
  * @property {number} stop
@@ -26,15 +29,18 @@ import {
  * @property {Points} object
  * @property {string} valuesOf what its values are of; empty = none have been read
  * @typedef {object} Look what the shader is given for the points of a chunk
- * @property {number} thinned how much farther apart neighbors are than if all were drawn
+ * @property {number[]} thinned how much farther apart neighbors are than if all were drawn: at
+ *   the tile, or at each tile of the cube
  * @property {boolean} known
  */
 
+/** Bytes a point. */
+const bytesOf = (/** @type {boolean} */ ofCube) => (ofCube ? 11 : 10);
 const MOST_POINTS = 6_000_000; // kept; of more, those that are not shown go
 const AT_ONCE = 3;
 
 export class MapTiles {
-  #index;
+  #nodes;
   #scene;
   #material;
   #reader;
@@ -42,7 +48,7 @@ export class MapTiles {
   #move;
   /** @type {Chunk[][]} */
   #chunks;
-  /** @type {Set<number>} tiles of which something is read */
+  /** @type {Set<number>} nodes of which something is read */
   #reading = new Set();
   #requests = 0;
   /** @type {{counts: number[], camera: Camera} | null} */
@@ -64,15 +70,15 @@ export class MapTiles {
    */
   constructor(index, { scene, material, reader, onLook, move }) {
     this.#move = move;
-    this.#index = index;
+    this.#nodes = nodesOf(index.tiles);
     this.#scene = scene;
     this.#material = material;
     this.#reader = reader;
     this.#onLook = onLook;
-    this.#chunks = index.tiles.map(() => []);
+    this.#chunks = this.#nodes.map(() => []);
   }
 
-  /** Points that have been read of each tile. */
+  /** Points that have been read of each node. */
   get have() {
     return this.#chunks.map((chunks) => chunks.at(-1)?.stop ?? 0);
   }
@@ -92,9 +98,9 @@ export class MapTiles {
         values ? this.#reader.sample(values) : null,
       ]);
       let [at, from] = [0, 0];
-      this.#index.tiles.forEach(({ sample }, k) => {
+      this.#nodes.forEach(({ sample }, k) => {
         if (!sample) return;
-        this.#add(k, { start: 0, stop: sample }, places.slice(at, (at += 10 * sample)));
+        this.#add(k, { start: 0, stop: sample }, places.slice(at, (at += bytesOf(true) * sample)));
         if (steps) this.#fill(this.#chunks[k][0], values, steps.slice(from, (from += 2 * sample)));
       });
     } finally {
@@ -105,7 +111,7 @@ export class MapTiles {
   }
 
   /**
-   * Which points are wanted: the count of each tile.
+   * Which points are wanted: the count of each node.
    * @param {number[]} counts
    * @param {Camera} camera
    */
@@ -123,7 +129,7 @@ export class MapTiles {
     const steps = await this.#reader.sample(values);
     if (this.#values !== values) return;
     let from = 0;
-    this.#index.tiles.forEach(({ sample }, k) => {
+    this.#nodes.forEach(({ sample }, k) => {
       if (!sample) return;
       const [first] = this.#chunks[k];
       if (first?.stop === sample) this.#fill(first, values, steps.slice(from, from + 2 * sample));
@@ -134,18 +140,18 @@ export class MapTiles {
   }
 
   /**
-   * Sets which points are drawn: the count of each tile, if they have been read.
+   * Sets which points are drawn: the count of each node, if they have been read.
    * @param {number[]} counts
-   * @returns {Array<{object: Points, points: number}>} nearest tiles last
+   * @returns {Array<{object: Points, points: number}>}
    */
   show(counts) {
     /** @type {Array<{object: Points, points: number}>} */
     const drawn = [];
+    const have = this.have.map((points, k) => Math.min(counts[k], points));
     this.#chunks.forEach((chunks, k) => {
-      const have = Math.min(counts[k], chunks.at(-1)?.stop ?? 0);
-      const thinned = Math.sqrt(this.#index.tiles[k].points / Math.max(have, 1));
+      const thinned = have[k] ? thinnedOf(this.#nodes, k, (node) => have[node]) : [];
       for (const { start, stop, object, valuesOf } of chunks) {
-        const shown = Math.min(stop, have) - start;
+        const shown = Math.min(stop, have[k]) - start;
         object.visible = shown > 0;
         if (shown <= 0) continue;
         object.geometry.setDrawRange(0, shown);
@@ -164,23 +170,23 @@ export class MapTiles {
    */
   along({ origin, direction }, { tan, least, planes }) {
     let nearest = Infinity;
-    this.#index.tiles.forEach((tile, k) => {
-      if (isOutside(tile, planes) || !this.#chunks[k].length) return;
-      const middle = tile.low_m.map((low, axis) => (low + tile.high_m[axis]) / 2);
-      const radius = Math.hypot(...minus(tile.high_m, tile.low_m)) / 2;
+    this.#nodes.forEach((node, k) => {
+      if (isOutside(node, planes) || !this.#chunks[k].length) return;
+      const middle = node.low_m.map((low, axis) => (low + node.high_m[axis]) / 2);
+      const radius = Math.hypot(...minus(node.high_m, node.low_m)) / 2;
       const to = minus(middle, origin);
       const depth = dot(to, direction);
       const beside = Math.sqrt(Math.max(0, dot(to, to) - depth * depth));
       if (beside > radius + tan * (depth + radius) + least) return;
       if (depth - radius > nearest) return;
       for (const chunk of this.#chunks[k])
-        nearest = Math.min(nearest, along(chunk.places, tile, { origin, direction }));
+        nearest = Math.min(nearest, along(chunk.places, node, { origin, direction }));
     });
     return Number.isFinite(nearest) ? nearest : null;
 
     /**
      * @param {Uint16Array} places
-     * @param {{low_m: number[], high_m: number[]}} tile
+     * @param {{low_m: number[], high_m: number[]}} node
      * @param {Ray} ray
      */
     function along(places, { low_m, high_m }, ray) {
@@ -207,34 +213,51 @@ export class MapTiles {
   #readOn() {
     if (!this.#wanted || !this.#begun) return;
     const { counts, camera } = this.#wanted;
-    const { tiles } = this.#index;
     const have = this.have;
-    const order = readingOrder(tiles, { counts, have }, camera);
+    const order = readingOrder(this.#nodes, { counts, have }, camera);
     const queue = order
       .filter((k) => !this.#reading.has(k))
-      .flatMap((tile) => {
-        const part = nextPart(have[tile], counts[tile], tiles[tile].points);
-        return part ? [{ tile, ...part }] : [];
+      .flatMap((k) => {
+        const part = nextPart(have[k], counts[k], this.#nodes[k].points);
+        return part ? [this.#wantedOf(k, part)] : [];
       });
     while (queue.length && this.#requests < AT_ONCE) this.#readParts(takeParts(queue));
     if (!order.length && !this.#reading.size) this.#readValues();
   }
 
-  async #readParts(/** @type {Array<{tile: number} & Part>} */ parts) {
+  /**
+   * @param {number} node
+   * @param {Part} part
+   * @returns {Wanted}
+   */
+  #wantedOf(node, { start, stop }) {
+    const ofCube = this.#nodes[node].cube < 0;
+    return { start, stop, node, ofCube, row: ofCube ? node : node - firstTile(this.#nodes) };
+  }
+
+  /** Parts as they are requested. */
+  #rowsOf(/** @type {Wanted[]} */ parts) {
+    return parts.map((part) => {
+      const { before } = this.#nodes[part.node];
+      return { ...part, start: part.start + before, stop: part.stop + before };
+    });
+  }
+
+  async #readParts(/** @type {Wanted[]} */ parts) {
     const values = this.#values;
     await this.#read(parts, async () => {
       const [places, steps] = await Promise.all([
-        this.#reader.parts("xyz", parts),
-        values ? this.#reader.parts(values, parts) : null,
+        this.#reader.parts("xyz", this.#rowsOf(parts)),
+        values ? this.#reader.parts(values, this.#rowsOf(parts)) : null,
       ]);
       let [at, from] = [0, 0];
-      for (const { tile, start, stop } of parts) {
+      for (const { node, ofCube, start, stop } of parts) {
         const count = stop - start;
         const [place, step] = [at, from];
-        [at, from] = [at + 10 * count, from + 2 * count];
-        const chunks = this.#chunks[tile];
+        [at, from] = [at + bytesOf(ofCube) * count, from + 2 * count];
+        const chunks = this.#chunks[node];
         if ((chunks.at(-1)?.stop ?? 0) !== start) continue; // forgotten meanwhile
-        this.#add(tile, { start, stop }, places.slice(place, at));
+        this.#add(node, { start, stop }, places.slice(place, at));
         const chunk = chunks.at(-1);
         if (steps && chunk) this.#fill(chunk, values, steps.slice(step, from));
       }
@@ -246,9 +269,9 @@ export class MapTiles {
   #readValues() {
     const values = this.#values;
     if (!values) return;
-    const missing = this.#chunks.flatMap((chunks, tile) => {
+    const missing = this.#chunks.flatMap((chunks, node) => {
       const chunk = chunks.find((one) => one.valuesOf !== values);
-      return chunk ? [{ tile, chunk, start: chunk.start, stop: chunk.stop }] : [];
+      return chunk ? [{ ...this.#wantedOf(node, chunk), chunk }] : [];
     });
     while (missing.length && this.#requests < AT_ONCE)
       this.#readValuesOf(values, takeParts(missing));
@@ -256,11 +279,11 @@ export class MapTiles {
 
   /**
    * @param {Stored} values
-   * @param {Array<{tile: number, chunk: Chunk} & Part>} parts
+   * @param {Array<{chunk: Chunk} & Wanted>} parts
    */
   async #readValuesOf(values, parts) {
     await this.#read(parts, async () => {
-      const steps = await this.#reader.parts(values, parts);
+      const steps = await this.#reader.parts(values, this.#rowsOf(parts));
       let from = 0;
       for (const { chunk, start, stop } of parts)
         this.#fill(chunk, values, steps.slice(from, (from += 2 * (stop - start))));
@@ -268,11 +291,11 @@ export class MapTiles {
   }
 
   /**
-   * @param {Array<{tile: number}>} parts
+   * @param {Wanted[]} parts
    * @param {() => Promise<void>} read
    */
   async #read(parts, read) {
-    for (const { tile } of parts) this.#reading.add(tile);
+    for (const { node } of parts) this.#reading.add(node);
     this.#requests++;
     try {
       await read();
@@ -282,7 +305,7 @@ export class MapTiles {
       this.onProblem(problem);
     } finally {
       this.#requests--;
-      for (const { tile } of parts) this.#reading.delete(tile);
+      for (const { node } of parts) this.#reading.delete(node);
     }
     this.onNews();
     this.#readOn();
@@ -300,10 +323,15 @@ export class MapTiles {
     const geometry = new BufferGeometry();
     geometry.setAttribute("place", new BufferAttribute(places, 3, true));
     geometry.setAttribute("about", new BufferAttribute(about, 4, true));
-    const tile = this.#index.tiles[k];
-    geometry.setAttribute("apart", new BufferAttribute(apartOf(places, tile), 1, true));
+    const node = this.#nodes[k];
+    const apart = apartOf(places, { ...node, points: node.whole });
+    geometry.setAttribute("apart", new BufferAttribute(apart, 1, true));
+    if (node.cube < 0) {
+      const slots = new Uint8Array(data, 10 * count, count);
+      geometry.setAttribute("slot", new BufferAttribute(slots, 1));
+    }
     const object = new Points(geometry, this.#material);
-    const { low_m: low, high_m: high } = tile;
+    const { low_m: low, high_m: high } = node;
     const [x, y, z] = minus(high, low);
     object.matrixWorld.set(x, 0, 0, low[0], 0, y, 0, low[1], 0, 0, z, low[2], 0, 0, 0, 1);
     if (this.#move) object.matrixWorld.premultiply(this.#move);
@@ -331,11 +359,11 @@ export class MapTiles {
     chunk.valuesOf = values;
   }
 
-  /** Forgets points that are not shown, the finest ones of each tile first. */
+  /** Forgets points that are not shown, the finest ones of each node first; never the sample. */
   #dropUnseen() {
     const counts = this.#wanted?.counts;
     for (const [k, chunks] of this.#chunks.entries())
-      while (this.total > MOST_POINTS && chunks.length > 1) {
+      while (this.total > MOST_POINTS && chunks.length > Math.sign(this.#nodes[k].sample)) {
         const last = /** @type {Chunk} */ (chunks.at(-1));
         if (counts && last.start < counts[k]) break;
         chunks.pop();

@@ -917,6 +917,8 @@ export interface MapTile {
   high_m: [number, number, number];
   points: number;
   sample: number;
+  coarse: number;
+  cube: number;
   spacing_m: number;
 }
 
@@ -2160,6 +2162,11 @@ export interface Operations {
   "GET /api/projects/{project_id}/map/walk": {
     path: { project_id: string };
     response: MapWalk;
+  };
+  "GET /api/projects/{project_id}/map/{key}/cubes": {
+    path: { project_id: string; key: string };
+    query: { stored: "xyz" | "intensity" | "normalized" | "time" | "uncertainty" | "thickness"; version: number; parts: string };
+    response: string;
   };
   "GET /api/projects/{project_id}/map/{key}/points": {
     path: { project_id: string; key: string };

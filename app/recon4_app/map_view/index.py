@@ -13,6 +13,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.classes import CLASSES, PointClass, is_delivered
 from recon4.products.storeys import storey_names
 from recon4.slices.map_crs import MapFrame
+from recon4_app.map_view.cubes import coarse_sizes, cubes_of
 from recon4_app.map_view.model import ColumnName, MapColumn, MapIndex, MapTile, Storey
 from recon4_app.map_view.points import FIELD_OF, read_shown, sample_sizes, steps_of, values_of
 from recon4_app.map_view.tuning import FIRST_VIEW, MAP_CHUNKS
@@ -170,15 +171,22 @@ def _extent(p_map: Array) -> tuple[Array, Array]:
 
 def _tiles(tiles: TileSet, sizes: NDArray[np.int64]) -> list[MapTile]:
     area_m2 = Cloud(tiles).boxes.area_m2
+    cube = np.zeros(len(tiles.tiles), np.int64)
+    for row, own in enumerate(cubes_of(tiles)):
+        cube[own] = row
     return [
         MapTile(
             low_m=tile.low_m,
             high_m=tile.high_m,
             points=len(tile),
             sample=int(size),
+            coarse=int(coarse),
+            cube=int(row),
             spacing_m=float(np.sqrt(area / max(len(tile), 1))),
         )
-        for tile, size, area in zip(tiles, sizes, area_m2, strict=True)
+        for tile, size, coarse, row, area in zip(
+            tiles, sizes, coarse_sizes(tiles), cube, area_m2, strict=True
+        )
     ]
 
 

@@ -13,7 +13,7 @@ from recon4.findings.walk import final_trajectory
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION
-from recon4.mapping.tiles import Tile
+from recon4.mapping.tiles import Tile, TileSet
 from recon4.pose_graph.files import load_graph
 from recon4.products.terrain import TerrainPart, spacing_m, terrain
 from recon4.products.tuning import TERRAIN
@@ -23,6 +23,7 @@ from recon4.slices.pick import points_near
 from recon4.slices.points import SliceWindow
 from recon4.slices.snap import PickRay, radius_around, snap
 from recon4.store.atomic import atomic_file, write_json
+from recon4_app.map_view.cubes import write_cubes
 from recon4_app.map_view.index import class_name, index_of
 from recon4_app.map_view.model import (
     HitPoint,
@@ -35,7 +36,7 @@ from recon4_app.map_view.model import (
     VolumeRequest,
 )
 from recon4_app.map_view.operator_marks import operator_marks
-from recon4_app.map_view.points import FIELD_OF, encoded, sample
+from recon4_app.map_view.points import FIELD_OF, encoded
 from recon4_app.map_view.tuning import MAP_PICKS, MAP_VOLUMES, MAP_WALK
 from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, tiles_of
 from recon4_app.viewer.cloud.parts import Cloud
@@ -53,12 +54,23 @@ def write_index(artifacts: Artifacts, out: str, *, evidence: Evidence | None) ->
     write_json(Path(out), made.model_dump(mode="json"))
 
 
-def write_sample(
+def write_coarse(
     artifacts: Artifacts, stored: Stored, out: str, *, evidence: Evidence | None
 ) -> None:
-    """Write the sample of a whole map."""
+    """Write the coarse points of a whole map.
+
+    Raises:
+        ConfigError: If the map has no such values.
+    """
+    tiles = map_of(artifacts, evidence)
+    _check_values(tiles, stored)
     with atomic_file(Path(out)) as temporary, temporary.open("wb") as file:
-        file.writelines(sample(map_of(artifacts, evidence), stored))
+        write_cubes(tiles, stored, file)
+
+
+def _check_values(tiles: TileSet, stored: Stored) -> None:
+    if stored != "xyz" and FIELD_OF[stored] not in tiles.fields:
+        raise ConfigError(CodedText("map-lacks-value", stored=stored))
 
 
 def chunk(
@@ -74,8 +86,7 @@ def chunk(
         ConfigError: If there are no such points, or no such values.
     """
     tiles = map_of(artifacts, evidence)
-    if stored != "xyz" and FIELD_OF[stored] not in tiles.fields:
-        raise ConfigError(CodedText("map-lacks-value", stored=stored))
+    _check_values(tiles, stored)
     for row, start, stop in parts:
         if row >= len(tiles.tiles) or stop > len(tiles.tiles[row]):
             raise ConfigError(CodedText("map-lacks-points", start=start, stop=stop, tile=row))

@@ -34,6 +34,10 @@ class MapTile(BaseModel):
     points: int
     sample: int
     """Its first points that are in the sample of the whole map."""
+    coarse: int
+    """Its first points that are in its cube: further ones are read of the tile."""
+    cube: int
+    """Row of the cube that has its coarse points, with those of tiles near it."""
     spacing_m: float
     """Distance of neighboring points if all are drawn [m]."""
 
@@ -123,14 +127,14 @@ class ChunkQuery(SampleQuery):
     """Which points of the map a response has."""
 
     parts: str = Field(pattern=f"^{_PART}(,{_PART})*$", max_length=4000)
-    """``TILE:START:STOP`` of each part, with commas between them: the row of its tile in the index,
-    its first point, counted in the order in which they are shown, and the one after its last."""
+    """``ROW:START:STOP`` of each part, with commas between them: the row of its tile or cube in the
+    index, its first point, counted in the order in which they are shown, and the one after it."""
 
     @property
     def rows(self) -> tuple[tuple[int, int, int], ...]:
-        """Tile, first point and last + 1 of each part."""
+        """Row, first point and last + 1 of each part."""
         numbers = (map(int, part.split(":")) for part in self.parts.split(","))
-        return tuple((tile, start, stop) for tile, start, stop in numbers)
+        return tuple((row, start, stop) for row, start, stop in numbers)
 
 
 class RayRequest(Strict):

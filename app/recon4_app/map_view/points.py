@@ -9,13 +9,13 @@ All little-endian, first the positions of all points, then their normals and cla
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.mapping.tuning import TILES
@@ -99,32 +99,42 @@ def encoded(tiles: TileSet, row: int, stored: Stored, *, rows: slice) -> bytes:
     if stored == "xyz":
         return b"".join(_places(tiles, tile, rows))
     field = FIELD_OF[stored]
-    return _steps(stored, read_shown(tile, [field], rows)[field], tiles).tobytes()
-
-
-def sample(tiles: TileSet, stored: Stored) -> Iterator[bytes]:
-    """The sample of the whole map, tile by tile; each as `encoded` makes it."""
-    for row, count in enumerate(sample_sizes(tiles).tolist()):
-        yield encoded(tiles, row, stored, rows=slice(0, count))
+    return steps(stored, read_shown(tile, [field], rows)[field], tiles).tobytes()
 
 
 def _places(tiles: TileSet, tile: Tile, rows: slice) -> tuple[bytes, bytes]:
     known = [name for name in ("normal", "classification") if name in tiles.fields]
     found = read_shown(tile, ["xyz", *known], rows)
     low = np.array(tile.low_m) - tile.origin_m
-    edge = np.maximum(np.array(tile.high_m) - tile.low_m, 1e-6)
-    part = np.clip((found["xyz"] - low) / edge, 0.0, 1.0)
-    about = np.zeros((len(part), 4), np.int8)
+    places = fractions(found["xyz"] - low, np.array(tile.high_m) - tile.low_m)
+    return places.tobytes(), shape_and_class(found).tobytes()
+
+
+def fractions(from_low_m: NDArray[Any], edge_m: Array) -> NDArray[np.uint16]:
+    """Positions as 16-bit fractions of a box.
+
+    Args:
+        from_low_m: From its lowest corner [m], (N, 3).
+        edge_m: Its edges [m], (3,).
+    """
+    part = np.clip(from_low_m / np.maximum(edge_m, 1e-6), 0.0, 1.0)
+    return np.rint(MAP_CHUNKS.place_steps * part).astype("<u2")
+
+
+def shape_and_class(found: dict[str, NDArray[Any]]) -> NDArray[np.int8]:
+    """Normals and classes of points, as far as they are known, (N, 4)."""
+    about = np.zeros((len(found["xyz"]), 4), np.int8)
     if "normal" in found:
         normal = np.nan_to_num(found["normal"].astype(np.float32))
         about[:, :3] = np.rint(127.0 * np.clip(normal, -1.0, 1.0)).astype(np.int8)
     if "classification" in found:
         about[:, 3] = found["classification"].view(np.int8)
-    return np.rint(65_535.0 * part).astype("<u2").tobytes(), about.tobytes()
+    return about
 
 
-def _steps(column: ColumnName, stored: NDArray[Any], tiles: TileSet) -> NDArray[np.uint16]:
+def steps(column: ColumnName, stored: NDArray[Any], tiles: TileSet) -> NDArray[np.uint16]:
+    """Values of a column in the steps of the index, (N,); the one after them = there is none."""
     offset, scale = steps_of(column, tiles)
     values = (values_of(column, stored, tiles) - offset) / scale
-    steps = np.clip(np.rint(values), 0.0, MAP_CHUNKS.value_steps)
-    return np.where(np.isfinite(steps), steps, MAP_CHUNKS.value_steps + 1).astype("<u2")
+    found = np.clip(np.rint(values), 0.0, MAP_CHUNKS.value_steps)
+    return np.where(np.isfinite(found), found, MAP_CHUNKS.value_steps + 1).astype("<u2")

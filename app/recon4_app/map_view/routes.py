@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Query, Request, Response
-from fastapi.responses import FileResponse, HTMLResponse
+from fastapi.responses import HTMLResponse
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 
@@ -21,6 +21,7 @@ from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Conflict
 from recon4_app.map_view import map_work
+from recon4_app.map_view.cubes import CubeFile
 from recon4_app.map_view.model import (
     ChunkQuery,
     MapIndex,
@@ -32,10 +33,11 @@ from recon4_app.map_view.model import (
     VolumeRequest,
 )
 from recon4_app.map_view.tuning import MAP_CHUNKS
-from recon4_app.network.request_caller import CalledBy
+from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
 
 SHARED = [Depends(needs(Permission.SHARED))]
+BYTES = "application/octet-stream"
 FOREVER = "private, max-age=31536000, immutable"
 """Chunks are named by the hash of their map: they never change."""
 
@@ -108,34 +110,29 @@ async def pick(project_id: str, ask: RayRequest, *, server: Server, caller: Call
     return await caller.wait(server.slices.run_interactive(terms, map_work.hit, artifacts, ask))
 
 
-@router.get("/{key}/sample", response_class=FileResponse, summary="A sample of the whole map")
+@router.get("/{key}/sample", response_class=Response, summary="A sample of the whole map")
 async def read_sample(
-    project_id: str,
-    key: str,
-    *,
-    part: Annotated[SampleQuery, Query()],
-    server: Server,
-    caller: CalledBy,
-) -> FileResponse:
-    """The first points of every tile, as many as the index says; ranges of bytes are allowed."""
-    _check_version(part.version)
-    stored = part.stored
-    slices, source = server.slices, f"map:{key}"
-    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
-    terms = slices.terms(project_id, caller.name, source)
-    name = "sample.bin"
+    project_id: str, key: str, *, part: Annotated[SampleQuery, Query()], caller: CalledBy
+) -> Response:
+    """The first points of every cube, as many as the index says, each as a part of `cubes`."""
+    coarse = await _coarse(caller, project_id, key, query=part)
+    if coarse is None:
+        return Response(status_code=304, headers=_kept_headers(key, part))
+    data = await run_in_threadpool(coarse.sample)
+    return Response(data, media_type=BYTES, headers=_kept_headers(key, part))
 
-    async def make(out: Path) -> None:
-        made = replace(terms, outputs={name: out})
-        await slices.run_interactive(
-            made, map_work.write_sample, artifacts, stored, name, evidence=evidence
-        )
 
-    path = await caller.wait(slices.kept(_kept_name(artifacts, evidence, f"{stored}.bin"), make))
-    return FileResponse(
-        path, media_type="application/octet-stream", headers={"Cache-Control": FOREVER}
-    )
+@router.get("/{key}/cubes", response_class=Response, summary="Coarse points of several tiles")
+async def read_cubes(
+    project_id: str, key: str, *, wanted: Annotated[ChunkQuery, Query()], caller: CalledBy
+) -> Response:
+    """Binary, part by part, each as `recon4_app.map_view.cubes` says; may be kept for ever."""
+    _check_parts(wanted.rows)
+    coarse = await _coarse(caller, project_id, key, query=wanted)
+    if coarse is None:
+        return Response(status_code=304, headers=_kept_headers(key, wanted))
+    data = await run_in_threadpool(coarse.read, wanted.rows)
+    return Response(data, media_type=BYTES, headers=_kept_headers(key, wanted))
 
 
 @router.get("/{key}/points", response_class=Response, summary="Points of some tiles")
@@ -153,9 +150,8 @@ async def read_points(
     _check_parts(rows)
     slices, source = parts(request).slices, f"map:{key}"
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    tag = f'"{MAP_CHUNKS.version}-{key}-{wanted.stored}-{wanted.parts.replace(",", "-")}"'
-    headers = {"ETag": tag, "Cache-Control": FOREVER}
-    if request.headers.get("if-none-match") == tag:
+    headers = _kept_headers(key, wanted)
+    if request.headers.get("if-none-match") == headers["ETag"]:
         return Response(status_code=304, headers=headers)
     evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
@@ -164,7 +160,7 @@ async def read_points(
             terms, map_work.chunk, artifacts, wanted.stored, rows, evidence=evidence
         )
     )
-    return Response(data, media_type="application/octet-stream", headers=headers)
+    return Response(data, media_type=BYTES, headers=headers)
 
 
 @router.post(
@@ -188,6 +184,36 @@ def _check_key(artifacts: dict[str, str], key: str) -> None:
     """Refuse what was asked of an earlier map: its place in the CRS may be another."""
     if Path(artifacts["map"]).name != key:
         raise Conflict(CodedText("map-remade-measure"))
+
+
+async def _coarse(
+    caller: Caller, project_id: str, key: str, *, query: SampleQuery
+) -> CubeFile | None:
+    """The coarse points of a map; None = the browser has what it asks for."""
+    _check_version(query.version)
+    slices, source = parts(caller.request).slices, f"map:{key}"
+    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
+    if caller.request.headers.get("if-none-match") == _kept_headers(key, query)["ETag"]:
+        return None
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
+    terms = slices.terms(project_id, caller.name, source)
+    name = "coarse.bin"
+
+    async def make(out: Path) -> None:
+        made = replace(terms, outputs={name: out})
+        await slices.run_interactive(
+            made, map_work.write_coarse, artifacts, query.stored, name, evidence=evidence
+        )
+
+    kept = slices.kept(_kept_name(artifacts, evidence, f"{query.stored}.bin"), make)
+    return CubeFile(await caller.wait(kept), query.stored)
+
+
+def _kept_headers(key: str, query: SampleQuery) -> dict[str, str]:
+    """Of points that browsers keep; a tag is only compared with those of the same address."""
+    which = query.parts.replace(",", "-") if isinstance(query, ChunkQuery) else "sample"
+    tag = f'"{MAP_CHUNKS.version}-{key}-{query.stored}-{which}"'
+    return {"ETag": tag, "Cache-Control": FOREVER}
 
 
 def _check_version(version: int) -> None:

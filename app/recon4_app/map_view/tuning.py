@@ -8,14 +8,24 @@ from msgspec import Struct
 class MapChunkTuning(Struct, frozen=True, kw_only=True):
     """Points as they are sent."""
 
-    version: int = 3
+    version: int = 4
     """Part of the names of kept files and of ETags: layout of index, sample and chunks."""
     sample_points: int = 60_000
     """Points of the coarsest sample of the whole map, which is sent first."""
+    cube_tiles: int = 64
+    """Most tiles whose coarse points are in one cube; the shader has as many sizes."""
+    coarse_points: int = 512
+    """Most first points of a tile that are in its cube: more would be drawn out of sight."""
     max_chunk_points: int = 1 << 18
     """Most points of one response."""
     max_parts: int = 64
     """Most parts of one response."""
+    place_bytes: tuple[int, ...] = (6, 4, 1)
+    """Of a point of a cube: position, normal with class, tile."""
+    value_bytes: tuple[int, ...] = (2,)
+    """Of one of its values."""
+    place_steps: float = 65_535.0
+    """Steps of a position within its box."""
     value_steps: int = 65_534
     """Steps of a value; the one after them says that there is no value."""
     length_step_m: float = 1e-4

@@ -37,11 +37,12 @@ export const readVolume = (project_id, volume) =>
 export const pointReader = (id, { key, version }) => ({
   sample: (/** @type {string} */ stored) =>
     readBytes(`${map(id)}/${name(key)}/sample?stored=${stored}&version=${version}`),
-  /** @param {Array<{tile: number, start: number, stop: number}>} wanted */
+  /** @param {Array<{ofCube: boolean, row: number, start: number, stop: number}>} wanted */
   parts: (/** @type {string} */ stored, wanted) =>
     readBytes(
-      `${map(id)}/${name(key)}/points?stored=${stored}&version=${version}&parts=` +
-        wanted.map(({ tile, start, stop }) => `${tile}:${start}:${stop}`).join(","),
+      `${map(id)}/${name(key)}/${wanted[0].ofCube ? "cubes" : "points"}` +
+        `?stored=${stored}&version=${version}&parts=` +
+        wanted.map(({ row, start, stop }) => `${row}:${start}:${stop}`).join(","),
     ),
 });
 
