@@ -42,6 +42,27 @@ class CubeColumns(NamedTuple):
 CUBE = CubeColumns()
 
 
+class EquationSums(NamedTuple):
+    """Where the sums of `planes.accumulate` begin in one array; see `recon4.kernels.lanes`."""
+
+    start: int = 0
+    """Of w J^T J for the correction at the start of the frame, (6, 8)."""
+    cross: int = 48
+    """For that at the start by that at the end, (6, 8)."""
+    end: int = 96
+    """For that at the end, (6, 8)."""
+    g_start: int = 144
+    """Of w J^T r, (8,)."""
+    g_end: int = 152
+    normals: int = 160
+    """Of n n^T, (3, 4)."""
+    all: int = 172
+    """Numbers of all of them."""
+
+
+SUMS = EquationSums()
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def compact(sums: NDArray[np.float64], used: int) -> tuple[NDArray[np.int32], int]:
     """Move the rows of cubes that have points to the front, in their order; zero the others.

@@ -15,8 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.moments import add_point
-from recon4.kernels.plane_tables import CUBE, EMPTY, STATE
+from recon4.kernels.lanes import add_outer, add_row, add_scaled
+from recon4.kernels.plane_tables import CUBE, EMPTY, STATE, SUMS
 
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
 """Rows of the array of criteria that a cube's points have to meet to count as a plane."""
@@ -40,13 +40,16 @@ def _key(level: int, ix: np.int64, iy: np.int64, iz: np.int64) -> np.int64:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _slot(keys: NDArray[np.int64], key: np.int64) -> np.int64:
-    """Slot of a key, or the free one where it belongs."""
-    mask = np.int64(len(keys) - 1)
+def _slot(keys: NDArray[np.int64], key: np.int64) -> np.uint64:
+    """Slot of a key, or the free one where it belongs.
+
+    Of an unsigned index Numba does not ask whether it counts from the end.
+    """
+    mask = np.uint64(len(keys) - 1)
     h = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
-    slot = np.int64(h >> np.uint64(20)) & mask
+    slot = (h >> np.uint64(20)) & mask
     while keys[slot] != key and keys[slot] != EMPTY:
-        slot = (slot + 1) & mask
+        slot = (slot + np.uint64(1)) & mask
     return slot
 
 
@@ -72,7 +75,8 @@ def add_points(
     Stops early if the tables are half full. Returns the row to continue with and the number of
     cubes used.
     """
-    levels = len(sizes)
+    levels, flat = len(sizes), sums.reshape(-1)
+    vx, vy, vz = sign * view[0], sign * view[1], sign * view[2]
     # Neighboring points mostly lie in one cube: its row is searched once.
     last_key, last_row = np.full(levels, EMPTY), np.zeros(levels, np.int64)
     for k in range(first, len(p)):
@@ -98,9 +102,12 @@ def add_points(
             x = p[k, 0] - (jx + 0.5) * sizes[level]
             y = p[k, 1] - (jy + 0.5) * sizes[level]
             z = p[k, 2] - (jz + 0.5) * sizes[level]
-            add_point(sums[row], sign, x, y, z)
-            for axis in range(3):
-                sums[row, CUBE.seen_from + axis] += sign * view[axis]
+            wx, wy, wz = sign * x, sign * y, sign * z
+            at = row * CUBE.sums
+            add_row(flat, at, (sign, wx, wy, wz))
+            add_row(flat, at + 4, (wx * x, wx * y, wx * z, wy * y))
+            add_row(flat, at + 8, (wy * z, wz * z))
+            add_row(flat, at + CUBE.seen_from, (vx, vy, vz))
     return len(p), used
 
 
@@ -273,7 +280,7 @@ def _finest_planes(
             slot = _slot(keys, key)
             if keys[slot] == EMPTY:
                 continue
-            row = rows[slot]
+            row = np.uint32(rows[slot])
             if state[row] == STATE.dirty:
                 state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
             if state[row] == STATE.plane:
@@ -344,14 +351,8 @@ def accumulate(
         Number of matches, sum of absolute distances, sum of w r², and the sum of n n^T (3, 3).
     """
     found = _finest_planes(keys, rows, sums, fits, state, sizes, criteria, q, finest)
-    J = np.empty(6)
-    H6b = np.zeros((6, 6))
-    H6m = np.zeros((6, 6))
-    H6e = np.zeros((6, 6))
-    normals = np.zeros((3, 3))
-    matches = 0
-    total = 0.0
-    chi2 = 0.0
+    a = np.zeros(SUMS.all)
+    matches, total, chi2 = 0, 0.0, 0.0
     for k in range(len(q)):
         residual[k] = np.nan
         if found[k] == EMPTY:
@@ -368,33 +369,32 @@ def accumulate(
         var = point_var + f[6] / f[8] * (1.0 + inplane_sq / f[7])
         w = 1.0 / (var * (1.0 + (r / kernel) ** 2))
         bx, by, bz = q[k, 0] - center[0], q[k, 1] - center[1], q[k, 2] - center[2]
-        J[0] = by * f[5] - bz * f[4]
-        J[1] = bz * f[3] - bx * f[5]
-        J[2] = bx * f[4] - by * f[3]
-        J[3], J[4], J[5] = f[3], f[4], f[5]
+        J = (
+            by * f[5] - bz * f[4], bz * f[3] - bx * f[5], bx * f[4] - by * f[3], f[3], f[4], f[5],
+        )  # fmt: skip
         s = fraction[k]
-        wb, wm, we = w * (1.0 - s) * (1.0 - s), w * s * (1.0 - s), w * s * s
-        for i in range(6):
-            ji = J[i]
-            for j in range(i, 6):
-                jj = ji * J[j]
-                H6b[i, j] += wb * jj
-                H6m[i, j] += wm * jj
-                H6e[i, j] += we * jj
-            g[i] += w * (1.0 - s) * ji * r
-            g[6 + i] += w * s * ji * r
-        for i in range(3):
-            for j in range(3):
-                normals[i, j] += f[3 + i] * f[3 + j]
+        add_outer(a, SUMS.start, w * (1.0 - s) * (1.0 - s), J)
+        add_scaled(a, SUMS.g_start, w * (1.0 - s), J, r)
+        if s != 0.0:
+            add_outer(a, SUMS.cross, w * s * (1.0 - s), J)
+            add_outer(a, SUMS.end, w * s * s, J)
+            add_scaled(a, SUMS.g_end, w * s, J, r)
+        add_outer(a, SUMS.normals, 1.0, (f[3], f[4], f[5]))
         residual[k] = r
         matches += 1
         total += abs(r)
         chi2 += w * r * r
+    normals = np.empty((3, 3))
     for i in range(6):
+        g[i] += a[SUMS.g_start + i]
+        g[6 + i] += a[SUMS.g_end + i]
         for j in range(6):
-            lo, hi = min(i, j), max(i, j)
-            H[i, j] += H6b[lo, hi]
-            H[6 + i, j] += H6m[lo, hi]
-            H[i, 6 + j] += H6m[lo, hi]
-            H[6 + i, 6 + j] += H6e[lo, hi]
+            at = 8 * min(i, j) + max(i, j)
+            H[i, j] += a[SUMS.start + at]
+            H[6 + i, j] += a[SUMS.cross + at]
+            H[i, 6 + j] += a[SUMS.cross + at]
+            H[6 + i, 6 + j] += a[SUMS.end + at]
+    for i in range(3):
+        for j in range(3):
+            normals[i, j] = a[SUMS.normals + 4 * min(i, j) + max(i, j)]
     return matches, total, chi2, normals

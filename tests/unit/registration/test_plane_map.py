@@ -333,3 +333,20 @@ def test_without_a_match_the_weak_direction_is_unknown():
     )
 
     assert np.isnan(found.weak_direction).all()
+
+
+def test_the_sums_are_those_of_one_point_after_the_other_to_the_last_bit():
+    planes = made_of(patch((0, 0, 1), 0.05, noise_m=0.01), patch((1, 0, 0.3), 0.4, seed=3))
+    asked = patch((0.1, 0, 1), 0.03, count=150, extent_m=1.0, seed=2)
+    fraction = np.random.default_rng(4).choice([0.0, 0.3, 0.7, 1.0], len(asked))
+    summed = {"H": np.zeros((12, 12)), "g": np.zeros(12), "normals": np.zeros((3, 3))}
+
+    together = hold(planes, asked, fraction=fraction)
+    for p, s in zip(asked, fraction, strict=True):
+        one = hold(planes, p[None], fraction=np.array([s]))
+        summed = {name: values + getattr(one, name) for name, values in summed.items()}
+
+    assert 100 < together.matches < 150
+    assert np.array_equal(together.H, summed["H"])
+    assert np.array_equal(together.g, summed["g"])
+    assert np.array_equal(together.normals, summed["normals"] / together.matches)
