@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 _RING_GAP = 3
 """An empty ring of a cell is skipped; largest difference of the rings of a segment."""
+_EDGE_RAD = 1e-5
+"""Nearer to the edge of a bin than this, or than twice this, an azimuth in single precision is
+computed [rad]; it is rounded by less than 1e-6."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -21,6 +24,36 @@ def _next_random(state: np.uint64) -> tuple[np.uint64, np.uint64]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def points_of_sensor(
+    sensor: NDArray[np.uint8],
+    row: int,
+    xyz: NDArray[np.float32],
+    ring: NDArray[np.uint8],
+    dt_ns: NDArray[np.int32],
+) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.int32]]:
+    """Positions, rings and times of the points of one sensor, in one pass over all points.
+
+    Args:
+        sensor: Of each point, (N,).
+        row: The one that is chosen.
+        xyz: Positions [m], (N, 3).
+        ring: Beams, (N,).
+        dt_ns: Times, (N,).
+    """
+    count = 0
+    for k in range(len(sensor)):
+        count += sensor[k] == row
+    p, r, t = np.empty((count, 3), np.float32), np.empty(count, np.uint8), np.empty(count, np.int32)
+    at = 0
+    for k in range(len(sensor)):
+        if sensor[k] == row:
+            p[at, 0], p[at, 1], p[at, 2] = xyz[k, 0], xyz[k, 1], xyz[k, 2]
+            r[at], t[at] = ring[k], dt_ns[k]
+            at += 1
+    return p, r, t
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _sort_by_cell(
     xyz: NDArray[np.float32], ring: NDArray[np.uint8], rings: int, bins: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
@@ -29,9 +62,20 @@ def _sort_by_cell(
     cell = np.empty(count, np.int32)
     start = np.zeros(bins * rings + 1, np.int64)
     scale = bins / (2.0 * np.pi)
+    edge = np.arange(bins + 1) / scale - np.pi
+    c, s = np.cos(edge), np.sin(edge)
+    column = -1
     for k in range(count):
-        azimuth = np.arctan2(xyz[k, 1], xyz[k, 0]) + np.float32(np.pi)
-        column = min(int(azimuth * scale), bins - 1)
+        x, y = np.float64(xyz[k, 0]), np.float64(xyz[k, 1])
+        # Mostly the bin of the point before, and farther within it than an azimuth is rounded.
+        inside = _EDGE_RAD * (abs(x) + abs(y))
+        if (
+            column < 0
+            or not c[column] * y - s[column] * x > inside
+            or not s[column + 1] * x - c[column + 1] * y > inside
+        ):
+            azimuth = np.arctan2(xyz[k, 1], xyz[k, 0]) + np.float32(np.pi)
+            column = min(int(azimuth * scale), bins - 1)
         cell[k] = column * rings + ring[k]
         start[cell[k] + 1] += 1
     for k in range(bins * rings):

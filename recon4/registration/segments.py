@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.kernels.segments import draw_pairs, segment_ends
+from recon4.kernels.segments import draw_pairs, points_of_sensor, segment_ends
 from recon4.model.lidar_facts import LidarFacts
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import Multiframe
@@ -56,18 +56,21 @@ def _of_sensor(
     frame: Multiframe, row: int, rig: Rig, *, settings: SegmentTuning = SEGMENTS
 ) -> tuple[Array, Array, Array, Array, Array] | None:
     sensor = rig.sensors[row]
-    rows = np.flatnonzero(frame.sensor == row)
-    if not sensor.enabled or len(rows) < 2:
+    if not sensor.enabled:
         return None
-    xyz = np.ascontiguousarray(frame.xyz[rows])
-    band = _bands(xyz, frame.ring[rows], lidar_model(sensor.model), most=settings.most_bands)
+    columns = map(np.ascontiguousarray, (frame.sensor, frame.xyz, frame.ring, frame.dt_ns))
+    of, p, rings, t_ns = columns
+    xyz, ring, dt_ns = points_of_sensor(of, row, p, rings, t_ns)
+    if len(xyz) < 2:
+        return None
+    band = _bands(xyz, ring, lidar_model(sensor.model), most=settings.most_bands)
     pairs = draw_pairs(
         xyz, band, int(band.max()) + 1, settings.azimuth_bins, settings.generated,
         settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
     )  # fmt: skip
     ends, times_s = np.empty((2, len(pairs), 3)), np.empty((2, len(pairs)))
     range_m = np.empty(len(pairs))
-    segment_ends(xyz, np.ascontiguousarray(frame.dt_ns[rows]), pairs, ends, times_s, range_m)
+    segment_ends(xyz, dt_ns, pairs, ends, times_s, range_m)
     a_body, b_body = (sensor.T_body_sensor @ end for end in ends)
     return a_body, b_body, times_s[0], times_s[1], range_m
 

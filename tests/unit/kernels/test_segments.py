@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from recon4.kernels.segments import draw_pairs
+from recon4.kernels.segments import _sort_by_cell, draw_pairs, points_of_sensor
 
 BINS, GENERATED, KEPT, LENGTH = 36, 20, 5, 0.34
 
@@ -129,3 +129,31 @@ def test_all_that_is_drawn_may_be_kept(kept):
 
     assert 36 * (kept - 2) < len(a) <= 36 * kept
     assert (ring[b] == 1).all()
+
+
+@pytest.mark.parametrize("bins", [2, 36])
+def test_a_point_is_in_the_bin_of_its_azimuth_whatever_point_came_before_it(bins):
+    rng = np.random.default_rng(7)
+    edges = np.linspace(-np.pi, np.pi, bins + 1)
+    angle = np.concatenate([rng.choice(edges, 400) + rng.normal(0, 4e-6, 400), edges])
+    reach_m = 10.0 ** rng.uniform(-1, 2, len(angle))
+    flat = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1) * reach_m[:, None]
+    xyz, ring = np.float32(flat), np.zeros(len(angle), np.uint8)
+
+    order, start = _sort_by_cell(xyz, ring, 1, bins)
+    alone = [_sort_by_cell(p[None], ring[:1], 1, bins)[1] for p in xyz]
+
+    bin_of = np.empty(len(xyz), int)
+    bin_of[order] = np.repeat(np.arange(bins), np.diff(start))
+    assert bin_of.tolist() == [int(np.argmax(one > 0)) - 1 for one in alone]
+
+
+def test_the_points_of_a_sensor_keep_their_order():
+    sensor = np.array([1, 0, 1, 1, 0], np.uint8)
+    xyz = np.arange(15, dtype=np.float32).reshape(5, 3)
+    ring, dt_ns = np.arange(5, dtype=np.uint8), np.arange(10, 15, dtype=np.int32)
+
+    found = points_of_sensor(sensor, 1, xyz, ring, dt_ns)
+
+    for got, column in zip(found, (xyz, ring, dt_ns), strict=True):
+        assert np.array_equal(got, column[[0, 2, 3]])
