@@ -11,8 +11,9 @@ import json
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,6 +145,17 @@ def refine_trajectory(
     return trajectory, rounds
 
 
+class _PlacedEnds(NamedTuple):
+    """The segments of a multiframe, placed by the trajectory."""
+
+    ends: Array
+    """Both ends of each [m], (N, 3)."""
+    seen_from: Array
+    """Place of the body in the middle of the multiframe [m], (3,)."""
+    fraction: Array
+    """Time of each end within the multiframe, 0..1, (N,)."""
+
+
 class _Sweep:
     """One pass over all multiframes to build the map, one to match them."""
 
@@ -163,9 +175,9 @@ class _Sweep:
     def build(self) -> PlaneMap:
         """Plane map of all segments of the walk; added in order, so that it is reproducible."""
         planes = PlaneMap()
-        for placed in self._in_order(self._ends, self._tuning.map_stride):
+        for placed in self._in_order(self._placed, self._tuning.map_stride):
             if placed is not None:
-                planes.add(*placed)
+                planes.add(placed.ends, placed.seen_from)
         planes.fit()
         return planes
 
@@ -184,11 +196,11 @@ class _Sweep:
         ratios: list[float] = []
         absent = _Absent(planes, self._gap_rows(), self._tuning.map_stride)
 
-        def forget(chunk: range) -> None:
-            absent.move_to(chunk, self._ends, count)
+        def forget(chunk: range, pool: ThreadPoolExecutor) -> None:
+            absent.move_to(chunk, partial(pool.map, self._placed), count)
 
         def match(row: int) -> MatchedFrame | None:
-            return matched.get(row) or self._match_one(planes, row)
+            return matched.get(row) or self._match_one(planes, absent.get(row) or self._placed(row))
 
         for row, found in enumerate(self._in_order(match, 1, before=forget)):
             if found is not None:
@@ -200,30 +212,31 @@ class _Sweep:
             return IntervalEquations(H, g), float("nan"), 0.0
         return IntervalEquations(H, g), float(np.mean(distances)), float(np.mean(ratios))
 
-    def _ends(self, row: int) -> tuple[Array, Array] | None:
-        """Ends of the segments of a multiframe, (N, 3), and from where they were seen, (3,)."""
-        if self._lost[row]:
-            return None
-        frame = self._frames[row]
-        segments = sample_segments(frame, self._frames.rig)
-        ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
-        return np.ascontiguousarray(ends.reshape(-1, 3)), self._place(frame)
-
-    def _place(self, frame: Multiframe) -> Array:
-        """Place of the body in the middle of a multiframe [m], (3,)."""
-        return self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
-
-    def _match_one(self, planes: PlaneMap, row: int) -> MatchedFrame | None:
+    def _placed(self, row: int) -> _PlacedEnds | None:
+        """The segments of a multiframe; None if it is lost."""
         if self._lost[row]:
             return None
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
         times_s = np.stack([segments.a_s, segments.b_s], axis=1)
-        found = planes.match(
-            ends.reshape(-1, 3),
+        return _PlacedEnds(
+            np.ascontiguousarray(ends.reshape(-1, 3)),
+            self._place(frame),
             times_s.reshape(-1) / (frame.duration_ns * 1e-9),
-            center=self._place(frame),
+        )
+
+    def _place(self, frame: Multiframe) -> Array:
+        """Place of the body in the middle of a multiframe [m], (3,)."""
+        return self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
+
+    def _match_one(self, planes: PlaneMap, placed: _PlacedEnds | None) -> MatchedFrame | None:
+        if placed is None:
+            return None
+        found = planes.match(
+            placed.ends,
+            placed.fraction,
+            center=placed.seen_from,
             finest=0,
             gate_m=self._tuning.gate_m,
         )
@@ -243,17 +256,17 @@ class _Sweep:
         work: Callable[[int], Result],
         stride: int,
         *,
-        before: Callable[[range], None] = lambda _: None,
+        before: Callable[[range, ThreadPoolExecutor], None] = lambda *_: None,
     ) -> Iterator[Result]:
         """Results of ``work`` for the multiframes in order, a chunk at a time on several threads.
 
-        ``before`` is called with the rows of a chunk while no thread is working.
+        ``before`` is called with the rows of a chunk and the threads, while none is working.
         """
         rows = range(0, len(self._frames), stride)
         with ThreadPoolExecutor(self._settings.graph.workers) as pool:
             for first in range(0, len(rows), REFINE_RUN.chunk):
                 chunk = rows[first : first + REFINE_RUN.chunk]
-                before(chunk)
+                before(chunk, pool)
                 yield from pool.map(work, chunk)
                 self._progress.advance(len(chunk))
 
@@ -263,24 +276,32 @@ class _Absent:
 
     def __init__(self, planes: PlaneMap, gap_rows: int, stride: int) -> None:
         self._planes, self._gap_rows, self._stride = planes, gap_rows, stride
-        self._ends: dict[int, tuple[Array, Array]] = {}
+        self._placed: dict[int, _PlacedEnds] = {}
         self._next = 0
 
+    def get(self, row: int) -> _PlacedEnds | None:
+        """The segments of a multiframe that is removed; None = it is not."""
+        return self._placed.get(row)
+
     def move_to(
-        self, rows: range, ends: Callable[[int], tuple[Array, Array] | None], count: int
+        self,
+        rows: range,
+        placed: Callable[[range], Iterator[_PlacedEnds | None]],
+        count: int,
     ) -> None:
         """Remove what is near in time to ``rows`` and add the rest again; rows only increase."""
         if self._gap_rows == 0:
             return
         first, last = rows[0] - self._gap_rows, rows[-1] + self._gap_rows
-        for row in [row for row in self._ends if row < first]:
-            self._planes.add(*self._ends.pop(row))
-        for row in range(self._next, min(last + 1, count), self._stride):
+        for row in [row for row in self._placed if row < first]:
+            again = self._placed.pop(row)
+            self._planes.add(again.ends, again.seen_from)
+        newer = range(self._next, min(last + 1, count), self._stride)
+        for row, found in zip(newer, placed(newer), strict=True):
             self._next = row + self._stride
-            placed = ends(row)
-            if placed is not None:
-                self._planes.remove(*placed)
-                self._ends[row] = placed
+            if found is not None:
+                self._planes.remove(found.ends, found.seen_from)
+                self._placed[row] = found
         self._planes.fit()
 
 

@@ -129,7 +129,7 @@ def test_both_ends_of_a_segment_are_matched_each_at_its_own_time(stroll):
     sweep = _Sweep(stroll, stroll.truth, lost_none(stroll), settings=SETTINGS, progress=Silent())
     frame, asked = stroll[25], Asked()
 
-    assert sweep._match_one(asked, 25) is None
+    assert sweep._match_one(asked, sweep._placed(25)) is None
 
     t_ns = frame.t_ns + np.rint(asked.fraction * frame.duration_ns).astype(np.int64)
     back = stroll.truth.at(t_ns).inverse()
