@@ -195,6 +195,16 @@ class SE3:
         """How far one pose moves a point at `ARM_M` [m]."""
         return float(np.linalg.norm(self.t)) + ARM_M * float(self.angle())
 
+    def moves_more_than(self, limit_m: float) -> bool:
+        """Whether `size_m` of one pose is above a limit.
+
+        Most are told by a bound without a logarithm: the norm of R - I is sqrt(8) times the sine
+        of half the angle, which is at least a pi-th of the angle.
+        """
+        turn_rad = np.pi / np.sqrt(8.0) * np.linalg.norm(self.R - np.eye(3))
+        bound_m = float(np.linalg.norm(self.t)) + ARM_M * float(turn_rad)
+        return bound_m > limit_m and self.size_m() > limit_m
+
     def stepped(self, step: Array) -> SE3:
         """One pose, turned about its own origin and moved by a tangent in the outer axes, (6,)."""
         return SE3(so3_exp(step[ROTATION]) @ self.R, self.t + step[TRANSLATION])

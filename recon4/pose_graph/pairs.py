@@ -120,7 +120,7 @@ class PairRegistrar:
     ) -> list[tuple[int, Edge]]:
         """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
-        out = []
+        out, limit_m = [], float("nan")
         reach = self.graph.target_reach
         for k in group:
             pair = pairs[k]
@@ -131,16 +131,9 @@ class PairRegistrar:
                 continue
             if target is None:
                 target = self._target(self._submaps.around(pair.i, reach), planes)
-            out.append(
-                (
-                    k,
-                    self._judge(
-                        pair,
-                        overlap_ratio,
-                        self._solve(target, ends, pair, overlap_ratio=overlap_ratio),
-                    ),
-                )
-            )
+                limit_m = self._limit_m(pair.i)
+            found = self._solve(target, ends, pair, overlap_ratio=overlap_ratio)
+            out.append((k, self._judge(pair, overlap_ratio, found, limit_m=limit_m)))
         return out
 
     def _overlap(self, pair: Pair) -> float:
@@ -171,11 +164,16 @@ class PairRegistrar:
             settings=settings, normal_noise_rad=self.graph.normal_noise_rad,
         )  # fmt: skip
 
-    def _judge(self, pair: Pair, overlap_ratio: float, found: Registration) -> Edge:
+    def _limit_m(self, target: int) -> float:
+        """Largest error of a pair of a target node [m] (A0 no. 12)."""
+        range_m = median_range_m(self.views.ends(target))
+        return range_m * self.graph.error_relative + self.graph.error_absolute_m
+
+    def _judge(
+        self, pair: Pair, overlap_ratio: float, found: Registration, *, limit_m: float
+    ) -> Edge:
         """Accept or reject (V Algorithm 2.1 line 8; A0 no. 12)."""
         g = self.graph
-        range_m = median_range_m(self.views.ends(pair.i))
-        limit_m = range_m * g.error_relative + g.error_absolute_m
         limits = RegistrationLimits(limit_m, g.min_match_ratio, g.min_degeneracy)
         edge = Edge(
             i=pair.i,

@@ -33,7 +33,7 @@ def register_to_planes(
         normal_noise_rad: Error of a plane's normal [rad]. Directions with no more information than
             such errors create keep the initial pose, and the result has no information there.
     """
-    T_target_source = initial
+    T_target_source, from_initial = initial, initial.inverse()
     rules = registration_tuning(settings)
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
@@ -45,10 +45,8 @@ def register_to_planes(
             break
         step = _gauss_newton_step(match.H[START, START], match.g[START])
         T_target_source = T_target_source.stepped(step)
-        if (
-            not np.isfinite(step).all()
-            or (initial.inverse() @ T_target_source).size_m() > rules.max_move_m
-        ):
+        moved = from_initial @ T_target_source
+        if not np.isfinite(step).all() or moved.moves_more_than(rules.max_move_m):
             stop = StopReason.UNSTABLE
             break
         if last_gate and tangent_size_m(step) < rules.converged_step_m:

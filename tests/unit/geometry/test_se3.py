@@ -223,3 +223,13 @@ def test_points_without_weight_do_not_matter():
 
 def test_a_quaternion_of_any_length_is_the_same_turn():
     assert np.allclose(matrix_from_quat([0.0, 0.0, 2.0, 2.0]), so3_exp([0.0, 0.0, np.pi / 2]))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-9, 0.1, 3.0, np.pi])
+def test_a_motion_is_larger_than_a_limit_when_its_size_is(angle):
+    T = SE3.exp(np.array([0.6 * angle, 0.0, -0.8 * angle, 0.1, 0.2, 0.3]))
+    size_m = T.size_m()
+
+    limits = [0.0, 0.5 * size_m, size_m - 1e-9, size_m, size_m + 1e-9, 1.4 * size_m, 9.0 * size_m]
+
+    assert [T.moves_more_than(limit) for limit in limits] == [size_m > limit for limit in limits]
