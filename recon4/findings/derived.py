@@ -5,7 +5,6 @@ A message for each kind has only sentences (`recon4.findings.sentences`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 
 import msgspec
@@ -18,14 +17,14 @@ from recon4.model.derived_kinds import DerivedKind
 
 
 @cache
-def derived_sentences(language: str = ENGLISH) -> Mapping[DerivedKind, tuple[Sentence, ...]]:
-    """The sentences of all kinds in a language."""
-    return {kind: sentences_of(_texts(language), kind) for kind in DerivedKind}
+def derived_sentences(kind: DerivedKind, language: str = ENGLISH) -> tuple[Sentence, ...]:
+    """The sentences of a kind in a language."""
+    return sentences_of(_texts(language), kind)
 
 
 def derived_text(one: Derived, language: str = ENGLISH) -> str:
     """What was derived, as sentences; its code if it lacks all values that they quote."""
-    sentences = derived_sentences(language)[one.kind]
+    sentences = derived_sentences(one.kind, language)
     values = known_values(one.values, language)
     return said_of(_texts(language), one.kind, sentences, values=values) or one.kind
 

@@ -74,7 +74,7 @@ def explained(code: str, language: str = ENGLISH) -> str:
     """
     name = code.upper()
     if name in list(DerivedKind):
-        sentences = derived_sentences(language)[DerivedKind(name)]
+        sentences = derived_sentences(DerivedKind(name), language)
         return "\n\n".join([name, *(textwrap.fill(one.readable, _WIDTH) for one in sentences)])
     try:
         kind = FindingKind(name)
@@ -102,7 +102,7 @@ def markdown() -> str:
 
 
 def _derived_row(kind: DerivedKind) -> str:
-    shown = " ".join(one.readable for one in derived_sentences()[kind])
+    shown = " ".join(one.readable for one in derived_sentences(kind))
     return f"- **{kind}**: {shown}"
 
 

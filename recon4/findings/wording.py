@@ -18,7 +18,7 @@ Texts call the functions of `recon4.locales.numbers`, and ``COUNTED``, ``COUNTS`
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 
@@ -54,12 +54,31 @@ class KindText:
     """Empty = its text says so."""
 
 
+class KindTexts(Mapping[FindingKind, KindText]):
+    """What the texts of a language say of all kinds, each read when it is asked for."""
+
+    def __init__(self, texts: Texts) -> None:
+        """Prepare."""
+        self._texts, self._known = texts, dict[FindingKind, KindText]()
+
+    def __getitem__(self, kind: FindingKind) -> KindText:
+        if kind not in self._known:
+            self._known[kind] = _kind_text(self._texts, kind)
+        return self._known[kind]
+
+    def __iter__(self) -> Iterator[FindingKind]:
+        return iter(FindingKind)
+
+    def __len__(self) -> int:
+        return len(FindingKind)
+
+
 @dataclass(frozen=True, slots=True)
 class Catalog:
     """The texts of all kinds of findings in one language."""
 
     texts: Texts
-    kinds: Mapping[FindingKind, KindText]
+    kinds: KindTexts
     readers: frozenset[FindingKind]
     """Kinds that readers of recordings warn of, not witnesses."""
 
@@ -73,8 +92,9 @@ def catalog(language: str = ENGLISH) -> Catalog:
     """All kinds of findings in a language."""
     texts = Texts(language, "findings", "readers", "counts", functions=functions)
     of_readers = set(Texts(ENGLISH, "readers").names())
-    kinds = {kind: _kind_text(texts, kind) for kind in FindingKind}
-    return Catalog(texts, kinds, frozenset(kind for kind in FindingKind if kind in of_readers))
+    return Catalog(
+        texts, KindTexts(texts), frozenset(kind for kind in FindingKind if kind in of_readers)
+    )
 
 
 def text_of(finding: Finding, language: str = ENGLISH) -> str:

@@ -6,6 +6,7 @@ A message has a text and *parts* (attributes in Fluent). Functions that texts ca
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -20,6 +21,8 @@ from recon4.locales.numbers import ShownText, number_functions, shown
 
 Shown = bool | int | float | str
 Functions = Mapping[str, Callable[..., str]]
+_BEGIN = re.compile(r"^([a-zA-Z][\w-]*) *=", re.MULTILINE)
+"""Where a message begins; what belongs to it is indented."""
 
 
 class Texts:
@@ -46,11 +49,13 @@ class Texts:
             key: _shown(one) for key, one in {**number_functions(language), **own}.items()
         }
         self._bundle = FluentBundle([language], functions=called, use_isolating=False)
-        self._messages: dict[str, ast.Message] = {}
-        for file in files:
-            found = messages_of(root / language / f"{file}.ftl")
-            self._messages |= found
-            self._bundle.add_resource(ast.Resource(list(found.values())))
+        self._in_bundle: set[str] = set()
+        self._messages = {
+            name: messages
+            for file in files
+            for messages in [messages_of(root / language / f"{file}.ftl")]
+            for name in messages
+        }
         self._fallback: Texts | None = None
         if language != ENGLISH:
             self._fallback = Texts(ENGLISH, *files, functions=functions, root=root)
@@ -97,6 +102,8 @@ class Texts:
             return self._fallback.part(name, part, values)
 
     def _formatted(self, name: str, part: str, values: Mapping[str, Shown]) -> str:
+        if name not in self._in_bundle:
+            self._load(name)
         message = self._bundle.get_message(name)
         pattern = message.attributes[part] if part else message.value
         if pattern is None:
@@ -107,10 +114,23 @@ class Texts:
             raise KeyError(f"{name}{f'.{part}' if part else ''}: {errors[0]}")
         return str(text)
 
+    def _load(self, name: str) -> None:
+        """Give a message to the bundle, and those that it refers to.
+
+        Raises:
+            KeyError: If there is no such message.
+        """
+        message = self._messages[name][name]
+        self._bundle.add_resource(ast.Resource([message]))
+        self._in_bundle.add(name)
+        for other in _names_in(message, ast.MessageReference) & self._messages.keys():
+            if other not in self._in_bundle:
+                self._load(other)
+
     def _entry(self, name: str) -> ast.Message:
         if name not in self._messages and self._fallback is not None:
             return self._fallback._entry(name)
-        return self._messages[name]
+        return self._messages[name][name]
 
 
 def _shown(function: Callable[..., str]) -> Callable[..., ShownText]:
@@ -123,28 +143,70 @@ def texts(language: str, *files: str) -> Texts:
     return Texts(language, *files)
 
 
+class Messages(Mapping[str, ast.Message]):
+    """The messages of a file by their names, each parsed when it is asked for.
+
+    A program says few of two thousand texts, and many of our processes live for a second.
+    """
+
+    def __init__(self, text: str) -> None:
+        """Find where the messages begin.
+
+        Args:
+            text: The file.
+        """
+        begins = [*_BEGIN.finditer(text)]
+        ends = [one.start() for one in begins[1:]] + [len(text)]
+        self._sources = {
+            begin[1]: text[begin.start() : end] for begin, end in zip(begins, ends, strict=True)
+        }
+        self._parsed: dict[str, ast.Message] = {}
+
+    def __getitem__(self, name: str) -> ast.Message:
+        if name not in self._parsed:
+            (self._parsed[name],) = (
+                one
+                for one in FluentParser(with_spans=False).parse(self._sources[name]).body
+                if isinstance(one, ast.Message)
+            )
+        return self._parsed[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._sources)
+
+    def __len__(self) -> int:
+        return len(self._sources)
+
+
 @cache
-def messages_of(file: Path) -> dict[str, ast.Message]:
+def messages_of(file: Path) -> Messages:
     """The messages of a file by their names; none if the language does not have this file."""
-    if not file.is_file():
-        return {}
-    found = FluentParser(with_spans=False).parse(file.read_text("utf-8"))
-    return {one.id.name: one for one in found.body if isinstance(one, ast.Message)}
+    return Messages(file.read_text("utf-8") if file.is_file() else "")
 
 
 def quoted_by(pattern: ast.Pattern) -> frozenset[str]:
     """Names of the values that a text quotes."""
-    visitor = _Quoted()
-    visitor.visit(pattern)
+    return _names_in(pattern, ast.VariableReference)
+
+
+def _names_in(
+    node: ast.BaseNode, kind: type[ast.VariableReference | ast.MessageReference]
+) -> frozenset[str]:
+    """Names of all nodes of a kind below a node."""
+    visitor = _Names(kind)
+    visitor.visit(node)
     return frozenset(visitor.names)
 
 
-class _Quoted(Visitor):
-    def __init__(self) -> None:
+class _Names(Visitor):
+    def __init__(self, kind: type[ast.VariableReference | ast.MessageReference]) -> None:
+        self._kind = kind
         self.names: set[str] = set()
 
-    def visit_VariableReference(self, node: ast.VariableReference) -> None:  # noqa: N802 (theirs)
-        self.names.add(node.id.name)
+    def generic_visit(self, node: ast.BaseNode) -> None:
+        if isinstance(node, self._kind):
+            self.names.add(node.id.name)
+        super().generic_visit(node)
 
 
 def readable(pattern: ast.Pattern) -> str:

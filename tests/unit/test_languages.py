@@ -50,6 +50,13 @@ def test_a_file_of_texts_parses(path):
 
     assert [one.content for one in found if isinstance(one, ast.Junk)] == []
     assert len(names) == len(set(names)), "a message is there twice"
+    one_by_one = messages_of(path)
+    assert [*one_by_one] == names
+    assert all(
+        one_by_one[one.id.name].equals(one, ignored_fields=["comment"])
+        for one in found
+        if isinstance(one, ast.Message)
+    )
 
 
 @pytest.mark.parametrize(("language", "file"), TRANSLATED)

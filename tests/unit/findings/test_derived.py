@@ -60,7 +60,7 @@ def kind_of(arguments):
 
 def quoted(kind):
     """Values that any sentence of a kind quotes or depends on."""
-    return set().union(*(one.quotes | ({one.given} - {""}) for one in derived_sentences()[kind]))
+    return set().union(*(one.quotes | ({one.given} - {""}) for one in derived_sentences(kind)))
 
 
 def texts_in(keyword):
@@ -94,7 +94,7 @@ def test_a_reader_states_all_values_of_some_sentence():
     silent = []
     for place, arguments, keywords in CALLS:
         values = {one.arg for one in keywords}
-        sentences = derived_sentences()[kind_of(arguments)]
+        sentences = derived_sentences(kind_of(arguments))
         if None not in values and not any(one.quotes <= values for one in sentences):
             silent.append(place)
 
@@ -118,7 +118,7 @@ def test_each_kind_has_words_and_some_reader_and_no_finding_has_its_code():
 
     assert set(DerivedKind) - used == {DerivedKind.EARLIER_SENTENCE}
     assert set(messages_of(ROOT / ENGLISH / "derived.ftl")) == set(map(str, DerivedKind))
-    assert all(derived_sentences().values())
+    assert all(derived_sentences(kind) for kind in DerivedKind)
     assert set(map(str, DerivedKind)).isdisjoint(map(str, FindingKind))
     assert all(kind.name == kind.value.replace("-", "_") for kind in DerivedKind)
 
