@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from enum import IntEnum
 from pathlib import Path
@@ -95,9 +96,10 @@ def write_raster(raster: GeoRaster, path: Path, *, frame: MapFrame, description:
         tags.tagtype[tag] = 2 if text else (3 if tag == GeoTag.KEYS else 12)
         tags[tag] = values if text else tuple(values)
     tags[TiffImagePlugin.IMAGEDESCRIPTION] = description.encode("ascii", "replace").decode()
-    image = Image.fromarray(raster.pixels)
-    with atomic_file(path) as temporary:
-        image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
+    image, made = Image.fromarray(raster.pixels), io.BytesIO()
+    image.save(made, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
+    with atomic_file(path) as temporary:  # libtiff itself does not tell a full disk
+        temporary.write_bytes(made.getbuffer())
 
 
 def write_world_file(raster: GeoRaster, path: Path, *, frame: MapFrame) -> None:

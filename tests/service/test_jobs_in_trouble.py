@@ -61,7 +61,7 @@ def test_a_full_disk_is_reported_and_the_job_can_be_resumed(server, recording):
     done = server.wait_state(again, "succeeded")
 
     os.close(gate)
-    assert "no space" in failed["note"] and "finished stages are kept" in failed["note"]
+    assert "no space" in failed["note"] and "nothing that was finished is lost" in failed["note"]
     assert done["status"]["stages"][0]["state"] == "reused"
 
 

@@ -6,7 +6,7 @@ job-out-of-memory = der Speicher reicht nicht: der Auftrag hat die Grenze des Se
 job-taken-over = eine Datei hat den Prozess übernommen, der sie las; er wurde beendet: diese Aufzeichnung nicht verwenden
 job-program-error = { $error } im Programm; das Protokoll hat die Einzelheiten
 job-row-damaged = diese Zeile von jobs.sqlite ist beschädigt: { $detail }
-job-disk-full = beim Schreiben von { $file } wurde die Platte voll; Platz schaffen und erneut starten: fertige Stufen bleiben
+job-disk-full = beim Schreiben von { $file } wurde die Platte voll; Platz schaffen und erneut starten: nichts Fertiges ist verloren
 worker-continues = der Rechenprozess { EXIT($how, $number) }, { PLACE($stage, $what) }; es geht nach der letzten fertigen Stufe weiter
 worker-died = der Rechenprozess endete { $attempts }-mal: zuletzt { EXIT($how, $number) }, { PLACE($stage, $what) }; vielleicht ist die Aufzeichnung beschädigt oder zu groß für diesen Rechner: das Protokoll ansehen, dann fortsetzen
 

@@ -6,7 +6,7 @@ job-out-of-memory = out of memory: the job reached the server's memory limit; cl
 job-taken-over = a file took over the process that read it, which was ended: do not use this recording
 job-program-error = { $error } in the program; the log has the traceback
 job-row-damaged = this row of jobs.sqlite is damaged: { $detail }
-job-disk-full = no space left on the disk while writing { $file }; make room and start again: finished stages are kept
+job-disk-full = no space left on the disk while writing { $file }; make room and start again: nothing that was finished is lost
 worker-continues = the worker { EXIT($how, $number) }, { PLACE($stage, $what) }; it continues after the last finished stage
 worker-died = the worker died { $attempts } times: last it { EXIT($how, $number) }, { PLACE($stage, $what) }; perhaps the recording is damaged or too large for this computer: see the log, then resume
 

@@ -1,12 +1,13 @@
 """Orthophotos, terrain, contours and volumes of maps whose every measure is known."""
 
 import json
+import resource
 
 import numpy as np
 import pytest
 import rasterio
 
-from recon4.errors import ConfigError
+from recon4.errors import ConfigError, NoSpace
 from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
@@ -99,6 +100,21 @@ def test_heights_are_read_by_gdal_in_the_crs(meadow, tmp_path):
         assert read.nodata == -9999.0
     assert heights[place] == pytest.approx(300.0 + 3.25 * SLOPE, abs=0.03)
     assert heights.mask[hole]
+
+
+def test_a_raster_on_a_full_disk_says_so_and_leaves_nothing(meadow, tmp_path):
+    path = tmp_path / "dtm.tif"
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (256, limits[1]))
+    try:
+        with pytest.raises(NoSpace, match=r"no space left .*dtm\.tif"):
+            write_product(
+                "terrain", ProductSource(meadow, PLACED, None), path, options=ProductOptions()
+            )
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_contours_follow_the_slope(ground):
