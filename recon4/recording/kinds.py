@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -91,6 +92,10 @@ _OTHERS = {
     b"ASTM-E57": "an E57 point cloud: a finished scan, not a recording",
     b"\x7fELF": "a program",
 }
+
+
+_PTX = re.compile(rb"\d+\s*\n\d+\s*\n(?:\S+[ \t]+\S+[ \t]+\S+\s*\n){4}")
+"""Columns, rows, position and axes of the scanner, a line each."""
 
 
 @dataclass(frozen=True)
@@ -190,9 +195,15 @@ def _file_kind(path: Path) -> RecordingKind:
     for reads, kind in _BY_LINES:
         if reads(path):
             return kind
+    raise UnknownFormat(f"{path.name}: no reader recognizes it ({_looks(head)}); {_known()}")
+
+
+def _looks(head: bytes) -> str:
+    """What an unknown file may be, by its first bytes."""
+    if _PTX.match(head):
+        return "looks like PTX scans: finished scans, not a recording"
     what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
-    looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
-    raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")
+    return f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
 
 
 def _begins(*magic: bytes) -> Callable[[Path], bool]:

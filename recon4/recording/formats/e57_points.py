@@ -91,4 +91,5 @@ class E57Points:
         return np.ascontiguousarray(points)
 
     def _unsound(self, error: Exception) -> CorruptFile:
-        return CorruptFile(f"{self._name}: not a sound E57 file: {error}")
+        said = (str(error) or repr(error)).splitlines()[0]  # below it: places in the library
+        return CorruptFile(f"{self._name}: not a sound E57 file: {said}")

@@ -64,6 +64,8 @@ def open_cloud(
         RecordingError: If it cannot be opened or is too large.
     """
     head = _head(path)
+    if not head:
+        raise UnknownFormat(f"{path.name}: the file is empty (0 bytes)")
     columns, stated = "", StatedCrs()
     kind = _kind(head, path)
     if kind == "las":

@@ -129,6 +129,7 @@ def test_the_same_input_gives_the_same_bytes(pcap, tmp_path):
     [
         ("a.pcap", b"", EmptyRecording, "the file is empty"),
         ("a.pcap", b"\xff\xd8\xff\xe0 photo", UnknownFormat, "looks like a JPEG image"),
+        ("a.ptx", b"2\n3\n" + b"1 0 0\n" * 4, UnknownFormat, "looks like PTX scans"),
         ("a.bag", b"PK\x03\x04 archive", UnknownFormat, "a zip archive: unpack it first"),
         ("a.txt", b"hello", UnknownFormat, "known: packets of LiDARs .pcap., .*, rosbag1, rosbag2"),
         ("a.las", b"LASF\x00\x00", UnknownFormat, "a LAS/LAZ point cloud"),

@@ -7,7 +7,7 @@ import numpy as np
 import pye57
 import pytest
 
-from recon4.errors import ConfigError, CorruptFile, RecordingError
+from recon4.errors import ConfigError, CorruptFile, RecordingError, UnknownFormat
 from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3
 from recon4.recording.formats.reference_clouds import read_points
@@ -117,6 +117,8 @@ def test_a_cut_or_damaged_file_is_refused_or_whole_never_half(tmp_path, name):
         (lambda lines: ["9" * 12, *lines[1:]], "scan 1: expected a number of columns"),
         (lambda lines: ["999999999", *lines[1:]], "million points are promised"),
         (lambda lines: [*lines[:8], "1 0 nan 0", *lines[9:]], "not finite"),
+        (lambda lines: [*lines[:6], *["0 0 0 0"] * 4, *lines[10:]], "is no rotation"),
+        (lambda lines: [*lines[:6], "1e300 0 0 0", *lines[7:]], "is no rotation"),
         (lambda lines: [*lines[:3], "1 0", *lines[4:]], "expected 3 numbers in its head"),
         (lambda lines: [*lines[:20], "1.0 two 3.0 0.5", *lines[21:]], "no line of numbers"),
         (lambda lines: [*lines[:20], "1" * 600, *lines[21:]], "a line has 512 bytes"),
@@ -139,6 +141,27 @@ def test_ptx_files_of_other_makers_are_read(data, name, points):
     found = np.concatenate(list(read_points(data(f"clouds/ptx/{name}"))))
 
     assert len(found) == points
+
+
+def test_a_damaged_e57_file_is_refused_in_one_line(tmp_path):
+    path = tmp_path / "a.e57"
+    write_e57(path)
+    damaged = bytearray(path.read_bytes())
+    damaged[2000] ^= 1
+    path.write_bytes(damaged)
+
+    with pytest.raises(CorruptFile, match=r"a\.e57: not a sound E57 file: .+$") as refused:
+        list(read_points(path))
+    assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize("ending", ["e57", "ptx", "copc.laz"])
+def test_an_empty_reference_is_called_empty(tmp_path, ending):
+    path = tmp_path / f"a.{ending}"
+    path.touch()
+
+    with pytest.raises(UnknownFormat, match="empty"):
+        list(read_points(path))
 
 
 def test_a_chunk_table_that_lies_ends_the_child_not_us(tmp_path):
