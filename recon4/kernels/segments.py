@@ -8,9 +8,6 @@ from numpy.typing import NDArray
 
 _RING_GAP = 3
 """An empty ring of a cell is skipped; largest difference of the rings of a segment."""
-_EDGE_RAD = 1e-5
-"""Nearer to the edge of a bin than this, or than twice this, an azimuth in single precision is
-computed [rad]; it is rounded by less than 1e-6."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -67,8 +64,9 @@ def _sort_by_cell(
     column = -1
     for k in range(count):
         x, y = np.float64(xyz[k, 0]), np.float64(xyz[k, 1])
-        # Mostly the bin of the point before, and farther within it than an azimuth is rounded.
-        inside = _EDGE_RAD * (abs(x) + abs(y))
+        # Mostly the bin of the point before: at least 1e-5 rad within it, while an azimuth in
+        # single precision is rounded by less than 1e-6.
+        inside = 1e-5 * (abs(x) + abs(y))
         if (
             column < 0
             or not c[column] * y - s[column] * x > inside
