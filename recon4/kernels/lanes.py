@@ -16,17 +16,16 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-_LANES = 4
-_ROW = ir.VectorType(ir.DoubleType(), _LANES)
+_ROW = ir.VectorType(ir.DoubleType(), 4)
 
 
 def _outer(typing: Any, sums: Any, to: Any, weight: Any, v: Any) -> Any:
     def make(builder: Any, numbers: Any, rows: Any, at: Callable[[int], Any]) -> None:
         by, values = numbers
         for i, value in enumerate(values):
-            for k in range(i // _LANES, len(rows)):
+            for k in range(i // _ROW.count, len(rows)):
                 product = builder.fmul(by, builder.fmul(_spread(builder, value), rows[k]))
-                _add(builder, at(_LANES * (len(rows) * i + k)), product)
+                _add(builder, at(_ROW.count * (len(rows) * i + k)), product)
 
     return types.void(sums, types.int64, types.float64, v), _of_rows(make)
 
@@ -36,7 +35,7 @@ def _scaled(typing: Any, sums: Any, to: Any, weight: Any, v: Any, factor: Any) -
         by, _, factor = numbers
         for k, row in enumerate(rows):
             product = builder.fmul(builder.fmul(by, row), _spread(builder, factor))
-            _add(builder, at(_LANES * k), product)
+            _add(builder, at(_ROW.count * k), product)
 
     return types.void(sums, types.int64, types.float64, v, types.float64), _of_rows(make)
 
@@ -45,7 +44,7 @@ def _row(typing: Any, sums: Any, to: Any, v: Any) -> Any:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         data = context.make_array(signature.args[0])(context, builder, args[0]).data
         v = _numbers(builder, args[2])
-        if len(v) == _LANES:
+        if len(v) == _ROW.count:
             place = builder.bitcast(builder.gep(data, [args[1]]), _ROW.as_pointer())
             _add(builder, place, _joined(builder, v))
         else:
@@ -75,7 +74,7 @@ def _of_rows(make: Callable[..., None]) -> Callable[..., Any]:
     def code(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         array = context.make_array(signature.args[0])(context, builder, args[0])
         v = _numbers(builder, args[3])
-        rows = [_joined(builder, v[k : k + _LANES]) for k in range(0, len(v), _LANES)]
+        rows = [_joined(builder, v[k : k + _ROW.count]) for k in range(0, len(v), _ROW.count)]
 
         def at(offset: int) -> Any:
             place = builder.add(args[1], ir.Constant(ir.IntType(64), offset))
@@ -94,7 +93,7 @@ def _numbers(builder: Any, given: Any) -> Any:
 
 def _joined(builder: Any, numbers: Any) -> Any:
     """Up to four numbers side by side, with zeros behind them."""
-    row = ir.Constant(_ROW, [0.0] * _LANES)
+    row = ir.Constant(_ROW, [0.0] * _ROW.count)
     for k, number in enumerate(numbers):
         row = builder.insert_element(row, number, ir.Constant(ir.IntType(32), k))
     return row
@@ -102,7 +101,7 @@ def _joined(builder: Any, numbers: Any) -> Any:
 
 def _spread(builder: Any, number: Any) -> Any:
     """One number in all lanes."""
-    return _joined(builder, [number] * _LANES)
+    return _joined(builder, [number] * _ROW.count)
 
 
 def _add(builder: Any, place: Any, product: Any) -> None:
