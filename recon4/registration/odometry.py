@@ -72,7 +72,11 @@ class Odometry:
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
-        view = FrameView(frame, self._rig)
+        return self.push_view(FrameView(frame, self._rig))
+
+    def push_view(self, view: FrameView) -> OdometryStep:
+        """Register the next multiframe, as `push`; its segments are drawn already."""
+        frame = view.frame
         self._begin_moving(frame)
         tried = self._registered(view)
         self._tracking.next(tried.seen)

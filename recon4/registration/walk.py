@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,7 @@ from recon4.model.odometry_figures import MovingFigures
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
+from recon4.registration.frame_view import FrameView
 from recon4.registration.hypothesis import Hypothesis
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.line_odometry import LineOdometry
@@ -130,9 +132,9 @@ def _register(
 ) -> Iterator[OdometryStep]:
     """Register all multiframes in order, and report the growing trajectory."""
     shown: list[OdometryStep] = []
-    tracked = track(frames, progress, what="odometry", unit="multiframe")
-    for number, frame in enumerate(tracked, start=1):
-        step = odometry.push(frame)
+    pushed = _pushed(frames, odometry)
+    tracked = track(pushed, progress, what="odometry", unit="multiframe", total=len(frames))
+    for number, step in enumerate(tracked, start=1):
         if step.lost:
             progress.event(TrackingLost(frame_id=step.frame_id, t_ns=step.t_mid_ns))
         if number % REPORTED_POSES.every == 1 % REPORTED_POSES.every:
@@ -141,6 +143,29 @@ def _register(
             _report_poses(shown, progress)
             shown.clear()
         yield step
+
+
+def _pushed(frames: RecordedFrames, odometry: Odometry | LineOdometry) -> Iterator[OdometryStep]:
+    """Steps of all multiframes in order."""
+    if isinstance(odometry, Odometry):
+        yield from map(odometry.push_view, _views(frames))
+    else:
+        yield from map(odometry.push, frames)
+
+
+def _views(frames: RecordedFrames) -> Iterator[FrameView]:
+    """The multiframes in order; a thread reads and samples one while the one before is fitted."""
+    rest = iter(frames)
+
+    def view() -> FrameView | None:
+        frame = next(rest, None)
+        return None if frame is None else FrameView(frame, frames.rig)
+
+    with ThreadPoolExecutor(1) as pool:
+        ahead = pool.submit(view)
+        while (one := ahead.result()) is not None:
+            ahead = pool.submit(view)
+            yield one
 
 
 def _report_poses(steps: Sequence[OdometryStep], progress: Progress) -> None:
