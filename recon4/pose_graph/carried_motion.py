@@ -23,7 +23,7 @@ from recon4.store.arrays import load_arrays
 
 _COLUMNS = [
     "weak_direction", "weak_sd_m", "weak_motion_sd_m", "quat_xyzw",
-    "converged", "lost", "bridged", "stationary", "piece",
+    "converged", "lost", "bridged", "stationary", "piece", "motion_cov",
 ]  # fmt: skip
 
 
@@ -37,6 +37,9 @@ class CarriedMotion:
     """Attitude at each multiframe, (N, 3, 3)."""
     observed: NDArray[np.bool_]
     """Whether the points of a multiframe observe its shift along all directions, (N,)."""
+    motion_cov: Array
+    """Covariance of turn and shift over each multiframe by the filter, in odom axes, (N, 6, 6);
+    zero where it begins a piece, whose poses are relative to it, and where the body stands."""
 
     def between(self, frame_ids: Times) -> Array:
         """The same between consecutive nodes, in axes of the body at the later one, (M - 1, 3, 3).
@@ -82,8 +85,11 @@ def load_carried_motion(odometry: Path) -> CarriedMotion | None:
     along = np.nan_to_num(steps["weak_direction"]) * steps["weak_motion_sd_m"][:, None]
     new_piece = np.diff(steps["piece"], prepend=steps["piece"][:1]) != 0
     tracked = steps["converged"] & ~steps["lost"] & ~steps["bridged"] & ~new_piece
+    motion_cov = steps["motion_cov"].copy()
+    motion_cov[:1] = motion_cov[new_piece | steps["stationary"]] = 0.0
     return CarriedMotion(
         along[:, :, None] * along[:, None, :],
         matrix_from_quat(steps["quat_xyzw"]),
         tracked & (steps["stationary"] | (steps["weak_sd_m"] < OBSERVATION.observed_sd_m)),
+        motion_cov,
     )

@@ -22,6 +22,7 @@ from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement
 from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.priors import PositionPriors
+from recon4.pose_graph.single_poses import unseen_errors, weak_part
 from recon4.pose_graph.tuning_solve import UNCERTAINTY
 
 
@@ -99,8 +100,12 @@ class _Chain:
     usual: Array
     """Stated deviation of half a second of odometry as usual on the walk: turn about the best axis
     [rad], shift along the worst one [m]."""
+    limits: Array
+    """That at which a direction is weak on this walk: turn [rad], shift [m]."""
     step_rho: Array
     """Correlation of its whitened error with that of the step before, symmetric, (K - 1, 6, 6)."""
+    rows: Rows
+    """Node of each knot, (K,)."""
     knot_of: Rows
     """Knot nearest to each node, (N,)."""
 
@@ -139,31 +144,35 @@ def pose_uncertainty(
     if positions is not None:
         _add_positions(information, positions, graph=graph, chain=chain)
     every = cho_solve(cho_factor(information), np.eye(6 * knots)).reshape(knots, 6, knots, 6)
-    own = np.arange(knots)
+    knot = np.arange(knots)
     on_earth = positions is not None
     single = _single(chain, model, agrees.ratio)
+    unseen = _unseen(chain, graph, known.carried)
     modes = known.modes(chain.t_ns, chain.T_map_body, on_earth=on_earth)
-    alone = _alone(chain, model, single, on_earth=on_earth) + modes @ np.swapaxes(modes, 1, 2)
-    cov = every[own, :, own, :] + alone
+    alone = _alone(chain, model, single, on_earth=on_earth) + unseen
+    alone = alone + modes @ np.swapaxes(modes, 1, 2)
+    cov = every[knot, :, knot, :] + alone
     place = every[:, TRANSLATION, :, TRANSLATION]
-    shape = _shape_cov(place, modes[:, TRANSLATION], chain.T_map_body.t, single_m=single[1])
+    own = single[1] ** 2 * np.eye(3) + unseen[:, TRANSLATION, TRANSLATION]
+    shape = _shape_cov(place, modes[:, TRANSLATION], chain.T_map_body.t, own=own)
     helpful = _helpful(place.transpose(0, 2, 1, 3), alone[:, TRANSLATION, TRANSLATION], chain.t_ns)
     return PoseUncertainty(chain.t_ns, cov, on_earth, shape, helpful)
 
 
-def _shape_cov(place: Array, modes: Array, p_map: Array, *, single_m: float) -> Array:
+def _shape_cov(place: Array, modes: Array, p_map: Array, *, own: Array) -> Array:
     """Covariances of positions after the best alignment, (K, 3, 3).
 
     Args:
         place: Covariance of all positions by the graph, (K, 3, K, 3).
         modes: Shifts of the positions by known errors, (K, 3, M).
         p_map: Positions, (K, 3).
-        single_m: Error of each position that no other shares.
+        own: Covariance of each position's error that no other shares, (K, 3, 3).
     """
-    count = 3 * len(p_map)
+    count, knot = 3 * len(p_map), np.arange(len(p_map))
     known = modes.reshape(count, -1)
-    cov = place.reshape(count, count) + known @ known.T + single_m**2 * np.eye(count)
-    return aligned_cov(cov, p_map)
+    cov = (place.reshape(count, count) + known @ known.T).reshape(place.shape)
+    cov[knot, :, knot, :] += own
+    return aligned_cov(cov.reshape(count, count), p_map)
 
 
 def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
@@ -199,7 +208,7 @@ def _chain(
     """Join nodes to at most `UNCERTAINTY.max_knots` knots."""
     stride = -(-len(graph) // UNCERTAINTY.max_knots)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
-    step_cov, rate, usual = _steps(graph, model, agrees, carried=carried)
+    step_cov, rate, usual, limits = _steps(graph, model, agrees, carried=carried)
     step_s = _step_seconds(graph.t_ns)
     covs, rhos = [], []
     for first, last in pairwise(rows.tolist()):
@@ -214,7 +223,9 @@ def _chain(
         rhos.append(V * np.exp(-step_s[first:last].sum() * values) @ V.T)
     nearest = np.abs(graph.t_ns[:, None] - graph.t_ns[rows]).argmin(axis=1)
     poses = graph.T_map_body[rows]
-    return _Chain(graph.t_ns[rows], poses, np.array(covs), usual, np.array(rhos), nearest)
+    return _Chain(
+        graph.t_ns[rows], poses, np.array(covs), usual, limits, np.array(rhos), rows, nearest
+    )
 
 
 def _step_seconds(t_ns: Times) -> Array:
@@ -230,7 +241,7 @@ def _transport(arm_m: Array) -> Array:
 
 def _steps(
     graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement, *, carried: CarriedMotion | None
-) -> tuple[Array, Array, Array]:
+) -> tuple[Array, Array, Array, Array]:
     """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
 
     Args:
@@ -241,11 +252,13 @@ def _steps(
 
     Returns:
         Covariances and symmetric matrices with the inverse correlation times as eigenvalues
-        [1/s], (N - 1, 6, 6) each, in axes of the map; what half a second usually states, (2,).
+        [1/s], (N - 1, 6, 6) each, in axes of the map; what half a second usually states, and
+        where it is weak, (2,) each.
     """
     stated = _stated(graph)
     half_s = 0.5 / _step_seconds(graph.t_ns)[:, None]
-    cov, rate, usual = np.zeros_like(stated), np.zeros_like(stated), np.zeros(2)
+    cov, rate = np.zeros_like(stated), np.zeros_like(stated)
+    usual, limits = np.zeros(2), np.zeros(2)
     for row, (part, weak_at, surely, most, observed_s) in enumerate(
         (
             (ROTATION, model.weak_rad, np.inf, model.observed_rad, model.turn_s),
@@ -255,9 +268,8 @@ def _steps(
         values, V = np.linalg.eigh(stated[:, part, part])
         best, _, worst = np.median(half_s * np.sqrt(values), axis=0)
         usual[row] = worst if part is TRANSLATION else best
-        limit = min(max(weak_at, model.weak_ratio * best), surely)
-        ratio = half_s * np.sqrt(values) / limit
-        weak = ratio**4 / (1.0 + ratio**4)
+        limits[row] = min(max(weak_at, model.weak_ratio * best), surely)
+        weak = weak_part(half_s * np.sqrt(values), limits[row])
         if part is TRANSLATION and carried is not None:
             weak[carried.observed_between(graph.frame_ids)] = 0.0
             weak = np.maximum(weak, _ratio_along(V, carried.in_map(graph), values))
@@ -270,7 +282,7 @@ def _steps(
         inverse_s = (1.0 - weak) / observed_s + weak / model.weak_s
         cov[:, part, part] = V * true[:, None, :] @ np.swapaxes(V, 1, 2)
         rate[:, part, part] = V * inverse_s[:, None, :] @ np.swapaxes(V, 1, 2)
-    return cov + model.moved**2 * agrees.moved, rate, usual
+    return cov + model.moved**2 * agrees.moved, rate, usual, limits
 
 
 def _stated(graph: PoseGraph) -> Array:
@@ -353,6 +365,20 @@ def _single(chain: _Chain, model: ErrorModel, ratio: Array) -> Array:
     """Error of a single pose that no other shares: turn [rad], shift [m]."""
     anchor = ratio * [model.anchor_rad, model.anchor_m]
     return np.maximum(anchor, model.anchor_ratio * chain.usual)
+
+
+def _unseen(chain: _Chain, graph: PoseGraph, carried: CarriedMotion | None) -> Array:
+    """What the registration of each knot's multiframes left unknown, (K, 6, 6)."""
+    if carried is None:
+        return np.zeros((len(chain.t_ns), 6, 6))
+    frame_s = np.median(_step_seconds(graph.t_ns) / np.diff(graph.frame_ids))
+    return unseen_errors(
+        carried,
+        graph.frame_ids[chain.rows],
+        chain.T_map_body.R,
+        half_s=0.5 / float(frame_s),
+        limits=chain.limits,
+    )
 
 
 def _alone(chain: _Chain, model: ErrorModel, single: Array, *, on_earth: bool) -> Array:

@@ -76,7 +76,8 @@ def test_a_motion_that_is_stated_to_be_unsure_may_be_moved_by_as_much(
     plain = agreement(graph, CALIBRATED).moved[30]
     along = np.linalg.eigh(plain[3:, 3:])[1][:, -1]
     cov = np.tile(stated_m**2 * np.outer(along, along), (NODES, 1, 1))
-    carried = CarriedMotion(cov, graph.T_map_body.R, np.ones(NODES, bool))
+    observed, sure = np.ones(NODES, bool), np.zeros((NODES, 6, 6))
+    carried = CarriedMotion(cov, graph.T_map_body.R, observed, sure)
 
     known = agreement(graph, CALIBRATED, carried=carried).moved[30]
 

@@ -32,6 +32,8 @@ EXACT = ErrorModel(
     anchor_rad=1e-6, anchor_m=1e-5, anchor_ratio=0.0,
 )  # fmt: skip
 """The stated deviations are true, and correlated over 2 s."""
+SURE = np.zeros((14, 6, 6))
+"""What the filter states of multiframes about which nothing is left to know."""
 
 
 def walk(nodes: int) -> tuple[np.ndarray, SE3]:
@@ -283,7 +285,7 @@ def test_standard_deviations_of_carried_motions_add_up() -> None:
     along = np.outer([0.0, 0.6, 0.8], [0.0, 0.6, 0.8])
     sd_m = np.array([0.5, 0.01, 0.04, 0.001])
     carried = CarriedMotion(
-        sd_m[:, None, None] ** 2 * along, np.tile(np.eye(3), (4, 1, 1)), sd_m > 0
+        sd_m[:, None, None] ** 2 * along, np.tile(np.eye(3), (4, 1, 1)), sd_m > 0, SURE[:4]
     )
 
     np.testing.assert_allclose(carried.between(np.array([0, 3]))[0], 0.051**2 * along, atol=1e-15)
@@ -295,7 +297,7 @@ def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> No
     R = graph.T_map_body.R
     shift = np.zeros((14, 3, 3))
     shift[6:11, 0, 0] = 0.005**2
-    carried = CarriedMotion(shift, R, np.ones(14, bool))
+    carried = CarriedMotion(shift, R, np.ones(14, bool), SURE)
     cov = np.diag(STEP_SD**2)
     with_shift = np.tile(cov, (13, 1, 1))
     with_shift[:, TRANSLATION, TRANSLATION] += carried.between(graph.frame_ids)
@@ -324,7 +326,7 @@ def test_a_step_that_points_observe_is_known_however_large_its_covariance(
     edges = [replace(e, information=wide) if e.i == 8 else e for e in graph.edges]
     points = np.ones(14, bool)
     points[9] = observed
-    carried = CarriedMotion(np.zeros((14, 3, 3)), graph.T_map_body.R, points)
+    carried = CarriedMotion(np.zeros((14, 3, 3)), graph.T_map_body.R, points, SURE)
 
     found = pose_uncertainty(replace(graph, edges=tuple(edges)), known=KnownErrors(carried=carried))
 
@@ -341,12 +343,14 @@ def test_points_observe_what_is_tracked_converged_and_not_weak(tmp_path: Path) -
     columns["lost"][4] = columns["bridged"][5] = True
     columns |= {"piece": np.array([0] * 7 + [1]), "weak_motion_sd_m": np.zeros(8)}
     columns |= {"weak_direction": np.zeros((8, 3)), "quat_xyzw": np.tile([0.0, 0, 0, 1], (8, 1))}
+    columns |= {"motion_cov": np.tile(np.eye(6), (8, 1, 1))}
     np.savez(tmp_path / "steps.npz", **columns)
 
     found = load_carried_motion(tmp_path)
 
     assert found.observed.tolist() == [False, True, True, False, False, False, True, False]
     assert found.observed_between(np.array([0, 2, 3, 6, 7])).tolist() == [True, False, False, False]
+    assert found.motion_cov.any(axis=(1, 2)).tolist() == [False, False, *[True] * 5, False]
 
 
 def test_single_poses_are_as_wrong_as_the_worst_axis_of_the_odometry_states() -> None:
