@@ -52,10 +52,15 @@ def audited_error(parameters: Sequence[ParameterFigures]) -> RigError:
     """The error of the poses by what an audit found of the LiDARs; the worst of them counts.
 
     The odometry estimates the errors of the IMU by itself, and an error of the GNSS antenna moves
-    the map on the earth only.
+    the map on the earth only. Where one LiDAR is alone, what is found of the IMU's mount may as
+    well be an error of its own, which turns every pose of the body and bends no map.
     """
-    off = [row for row in parameters if row.status == "off" and row.sensor not in (IMU, GNSS)]
+    lidars = [row for row in parameters if row.sensor not in (IMU, GNSS)]
+    off = [row for row in lidars if row.status == "off"]
     found = [_of_one(list(rows)) for _, rows in groupby(off, key=lambda row: row.sensor)]
+    if not lidars:
+        of_imu = [row for row in parameters if row.sensor == IMU and row.status == "off"]
+        found = [RigError(turn_rad=RIG_ERROR.either * _size(of_imu, "rotation"))]
     return RigError(
         turn_rad=max((one.turn_rad for one in found), default=0.0),
         shift_m=max((one.shift_m for one in found), default=0.0),
@@ -65,8 +70,7 @@ def audited_error(parameters: Sequence[ParameterFigures]) -> RigError:
 def _of_one(rows: Sequence[ParameterFigures]) -> RigError:
     """The same of one LiDAR, by the rows that are off."""
     turn_rad, shift_m, clock_s = (
-        float(np.linalg.norm([row.change for row in rows if row.quantity == quantity]))
-        for quantity in ("rotation", "position", "clock")
+        _size(rows, quantity) for quantity in ("rotation", "position", "clock")
     )
     return RigError(
         turn_rad=RIG_ERROR.pull * float(np.hypot(turn_rad, RIG_ERROR.turn_rad_s * clock_s)),
@@ -80,3 +84,7 @@ def _of_one(rows: Sequence[ParameterFigures]) -> RigError:
             )
         ),
     )
+
+
+def _size(rows: Sequence[ParameterFigures], quantity: str) -> float:
+    return float(np.linalg.norm([row.change for row in rows if row.quantity == quantity]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 from msgspec import Struct
 
 
@@ -72,6 +73,9 @@ class RigErrorTuning(Struct, frozen=True, kw_only=True):
     turns 0.3 to 2.5 with it, 0.8 to 20 without it)."""
     arm_m: float = 0.6
     """Surfaces that a wrongly turned LiDAR sees pull the body aside by its turn times this [m]."""
+    either: float = float(np.sqrt(0.5 / 3.0))
+    """A turn between the only LiDAR and the IMU is an error of one of them, as likely of either:
+    half of its square, on three axes."""
     walk_m_s: float = 1.3
     turn_rad_s: float = 1.0
     """Speeds by which an error of a LiDAR's clock becomes one of the pose."""

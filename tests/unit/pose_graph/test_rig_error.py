@@ -80,9 +80,19 @@ def test_the_worst_lidar_counts_and_neither_imu_nor_antenna():
     small = [found("a", "rotation", "y", 0.003), found("a", "rotation", "z", 0.004)]
     large = [found("b", "rotation", "x", 0.02), found("b", "rotation", "y", 9.0, "consistent")]
 
-    assert audited_error(nothing) == EXACT
+    assert audited_error([*nothing, found("a", "rotation", "x", 0.5, "consistent")]) == EXACT
     assert audited_error(small).turn_rad == pytest.approx(0.35 * 0.005)
     assert audited_error([*nothing, *small, *large]).turn_rad == pytest.approx(0.35 * 0.02)
+
+
+def test_a_lidar_that_is_alone_may_be_turned_as_well_as_its_imu():
+    turned_by = [found("imu", "rotation", "x", 0.03), found("imu", "rotation", "y", 0.04)]
+    others = [found("imu", "clock", "", 0.02), found("imu", "rotation", "z", 0.5, "consistent")]
+
+    alone = audited_error([*turned_by, *others])
+
+    assert np.sqrt(3.0) * alone.turn_rad == pytest.approx(np.sqrt(0.5) * 0.05)
+    assert alone.shift_m == 0.0
 
 
 def test_a_mount_and_a_clock_that_are_off_shift_the_body():
