@@ -26,8 +26,8 @@ def clock_jumps(frames: Frames, starts_ns: Times) -> list[ClockJump]:
     """Find gaps in which the body went on as before, as if none of the time had passed.
 
     It must walk or turn before and after: where it stands, a pause of the recording looks the same.
-    The scans beyond the gap must fit one pose alone, no farther from the one before it than the
-    body goes from one multiframe to the next.
+    The first scan with enough points beyond the gap must fit one pose alone, no farther from the
+    last one before it than the body goes from one multiframe to the next.
 
     Args:
         frames: Multiframes of a walk in order of time.
@@ -48,12 +48,14 @@ def _jump_after(frames: Frames, row: int) -> Iterator[ClockJump]:
     if before[0] < 0 or after[-1] >= len(frames):
         return
     jump = _ends_of(frames, row)
-    last, next_ = frames[before[-1]], frames[after[0]]
-    across_s = 1e-9 * (next_.t_mid_ns - jump.length_ns - last.t_mid_ns)
+    # The nearest tell most: key scans meters apart may come near again beyond the next one.
+    last = row if _has_enough(frames, row, beside=row - 1) else row - 1
+    next_ = row + 1 if _has_enough(frames, row + 1, beside=row + 2) else row + 2
+    across_s = 1e-9 * (frames[next_].t_mid_ns - jump.length_ns - frames[last].t_mid_ns)
     speeds = [_speed(frames, places) for places in (before, after)]
     if across_s <= 0.0 or not all(speed.goes_on for speed in speeds):
         return
-    left, met = _seen(frames, before[-1]), _seen(frames, after[0])
+    left, met = _seen(frames, last), _seen(frames, next_)
     found = sure_pose(left.scan, met, left, initial=[SE3.identity()])
     if found is None:
         return
@@ -62,6 +64,11 @@ def _jump_after(frames: Frames, row: int) -> Iterator[ClockJump]:
     near = np.linalg.norm(found.t) < CLOCKS_SET.off_m + most_m
     if near and found.angle() < CLOCKS_SET.off_rad + most_rad:
         yield jump
+
+
+def _has_enough(frames: Frames, row: int, *, beside: int) -> bool:
+    """Whether a multiframe has points enough to tell its place."""
+    return len(frames[row]) >= CLOCKS_SET.enough * len(frames[beside])
 
 
 def _ends_of(frames: Frames, row: int) -> ClockJump:

@@ -60,6 +60,8 @@ class ClocksSetTuning(Struct, frozen=True, kw_only=True):
     """Gaps of a recording that are looked at."""
     frames: int = 4
     """Multiframes on both sides by which the motion is measured."""
+    enough: float = 0.5
+    """A multiframe with this part of the points of the one beside it tells its place."""
     least_ratio: float = 0.5
     """Of the points that match, from one multiframe to the next."""
     moving_m_s: float = 0.25

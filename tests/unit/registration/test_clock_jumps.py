@@ -57,6 +57,15 @@ def test_other_gaps_stay(pose, seconds, away_s):
     assert not found(with_gap(pose, seconds, away_s=away_s))
 
 
+def test_who_was_elsewhere_right_after_a_gap_shows_that_time_passed():
+    """Key scans: a gap of 3.6 s, the next one 4.3 m away, and the one after it back on the path."""
+    made = with_gap(strolling, 37.0)
+    away = scan(strolling, T0_NS + 40 * FRAME_NS, frame_id=ROW, columns=360)
+    made.frames[ROW] = replace(away, t_ns=made.frames[ROW].t_ns)
+
+    assert not found(made)
+
+
 def test_a_gap_at_the_ends_of_a_walk_stays():
     made = with_gap(strolling, 37.0)
     made.frames = made.frames[3:]
