@@ -12,7 +12,6 @@ from typing import Any
 
 from fastapi import APIRouter, Depends, FastAPI, Request
 from fastapi.responses import HTMLResponse, JSONResponse
-from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.routing import BaseRoute
 
@@ -103,6 +102,7 @@ from recon4_app.uploads import routes as upload_routes
 from recon4_app.uploads.store import UploadStore
 from recon4_app.viewer import page, proxy
 from recon4_app.viewer.pool import ViewerPool
+from recon4_app.web_files import WebFiles
 from recon4_app.webhooks import routes as webhook_routes
 from recon4_app.webhooks.deliver import Webhooks
 from recon4_app.webhooks.store import WebhookStore
@@ -148,7 +148,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
     if settings.behind is not None:
         app.add_middleware(ProxyMiddleware, address=settings.behind)
     error_responses.install(app)
-    app.mount("/web", StaticFiles(directory=WEB), name="web")
+    app.mount("/web", WebFiles(directory=WEB), name="web")
     _add_pages(app)
     check_declared(app)
     return app

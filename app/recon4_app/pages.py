@@ -18,6 +18,7 @@ from starlette.requests import HTTPConnection
 from recon4.locales.languages import ENGLISH, ROOT, best_of, languages
 from recon4.locales.texts import texts
 from recon4_app.network.behind import prefix_of
+from recon4_app.web_files import key_of
 
 
 def _folder() -> Path:
@@ -75,17 +76,27 @@ def _preloads(script: str) -> str:
     return "".join(_PRELOAD.format(f"/web/{path}") for path in paths)
 
 
-def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) -> HTMLResponse:
+def web_key() -> str:
+    """Names the content of `WEB`; it is part of the addresses of all files that a page loads."""
+    return key_of(WEB)
+
+
+def page_response(
+    file: str, request: Request, fills: Mapping[str, str] = {}, *, head: str = ""
+) -> HTMLResponse:
     """A page as the response to a request.
 
     Args:
         file: Path of the page, relative to `web/`.
         request: Its server may have a prefix.
         fills: HTML for the places of the page: ``title`` for ``{title}``.
+        head: HTML in front of its title.
     """
-    page = html_of(file, prefix_of(request.scope))
+    prefix = prefix_of(request.scope)
+    page = html_of(file, prefix).replace(f'="{prefix}/web/', f'="{prefix}/web/{web_key()}/')
     language = language_of(request)
     page = _in_language(page, language)
+    page = page.replace("<title>", f"{head}<title>", 1)
     for place, content in fills.items():
         page = page.replace(f"{{{place}}}", content)
     headers = {"Content-Language": language, "Vary": "Accept-Language, Cookie"}

@@ -70,6 +70,23 @@ def test_the_page_says_that_the_map_is_opened_until_it_is_drawn(page, server):
     expect(page.locator("#opening")).to_be_hidden()
 
 
+@looks("desktop light")
+def test_what_the_page_begins_with_is_requested_once_and_beside_the_scripts(page, server):
+    asked = []
+    page.on("request", lambda request: asked.append(request.url.removeprefix(server.url)))
+    opened(page, server)
+
+    first = ["/api/me", "/api/projects/office", "/map?key=", "/sample?stored=xyz"]
+    found = [[k for k, url in enumerate(asked) if one in url] for one in first]
+    assert [len(found[0]), len(found[2]), len(found[3])] == [1, 1, 1]
+    runs = next(k for k, url in enumerate(asked) if url.endswith("/map/map.js"))
+    assert all(rows[0] < runs + 3 for rows in found)
+    timing = "performance.getEntriesByType('resource').filter(({ name }) => name.match('/web/'))"
+    page.reload()
+    rested(page)
+    assert page.evaluate(f"{timing}.filter(({{ transferSize }}) => transferSize > 0).length") == 0
+
+
 @looks("desktop light", "phone dark")
 def test_the_map_is_drawn_and_fills_the_window(server, page, screenshot):
     opened(page, server)

@@ -19,7 +19,7 @@ globalThis.location = /** @type {any} */ ({
   pathname: `${BASE}projects/my%20office/review/`,
 });
 
-const { at, forgetKept, idHere, keep, kept, pathHere, pathInside, socketUrl, wholeUrl } =
+const { at, baseOf, forgetKept, idHere, keep, kept, pathHere, pathInside, socketUrl, wholeUrl } =
   await import("../../web/shared/address.js");
 
 test("addresses begin where the module was loaded from", () => {
@@ -27,6 +27,13 @@ test("addresses begin where the module was loaded from", () => {
   assert.equal(at("/"), BASE);
   assert.equal(wholeUrl("/pair"), `https://example.org${BASE}pair`);
   assert.equal(socketUrl("/api/live/stream"), `wss://example.org${BASE}api/live/stream`);
+});
+
+test("the key of the modules is no part of the server's path", () => {
+  const key = "0123456789abcdef";
+  for (const base of ["/", "/maps/old/", "/web/"])
+    for (const keyed of ["web/", `web/${key}/`])
+      assert.equal(baseOf(`https://example.org${base}${keyed}shared/address.js`), base);
 });
 
 test("the path of a page is that of the server", () => {

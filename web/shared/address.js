@@ -1,8 +1,15 @@
 // Addresses of this server. It may be at a path of its host (https://example.org/recon4/), so no
 // other module writes an address that begins with a slash, or reads where it is from `location`.
 
-/** The path of this server, from where this module was loaded: "/", or as "/recon4/". */
-const BASE = new URL("../../", import.meta.url).pathname;
+/**
+ * The path of a server from the address of this module: "/", or as "/recon4/". The key of the
+ * content of all modules may stand before them.
+ */
+export const baseOf = (/** @type {string} */ module) =>
+  new URL(/\/web\/[0-9a-f]{16}\/shared\/[^/]*$/.test(module) ? "../../../" : "../../", module)
+    .pathname;
+
+const BASE = baseOf(import.meta.url);
 
 /** The address of a path of this server: at("/api/me"). */
 export const at = (/** @type {string} */ path) => BASE + path.slice(1);

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 from typing import Annotated
+from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.responses import HTMLResponse
@@ -19,7 +21,7 @@ from recon4.untrusted.bounded import read_json_object
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
-from recon4_app.errors import BadRequest, Conflict
+from recon4_app.errors import BadRequest, Conflict, NotFound
 from recon4_app.map_view import map_work
 from recon4_app.map_view.cubes import CubeFile
 from recon4_app.map_view.model import (
@@ -33,10 +35,13 @@ from recon4_app.map_view.model import (
     VolumeRequest,
 )
 from recon4_app.map_view.tuning import MAP_CHUNKS
+from recon4_app.network.behind import prefix_of
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
 
 SHARED = [Depends(needs(Permission.SHARED))]
+_UNQUOTED = "!~*'()"
+"""What `encodeURIComponent` leaves as it is, besides letters, digits and ``-_.``."""
 BYTES = "application/octet-stream"
 FOREVER = "private, max-age=31536000, immutable"
 """Chunks are named by the hash of their map: they never change."""
@@ -53,7 +58,25 @@ page = APIRouter()
 @page.get("/projects/{project_id}/map/", include_in_schema=False, dependencies=SHARED)
 def map_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
-    return page_response("map/map.html", request)
+    return page_response("map/map.html", request, head=_preloads(project_id, request))
+
+
+def _preloads(project_id: str, request: Request) -> str:
+    """Links to what the page reads first: a browser requests it beside the scripts.
+
+    Their addresses are those of `web/shared/api/map.js`, to the letter.
+    """
+    project = f"{prefix_of(request.scope)}/api/projects/{quote(project_id, safe=_UNQUOTED)}"
+    first = [f"{prefix_of(request.scope)}/api/me", project]
+    try:
+        key = Path(parts(request).slices.artifacts(project_id)["map"]).name
+    except NotFound:
+        pass  # without a map the page leads to that of the project
+    else:
+        sample = f"{project}/map/{key}/sample?stored=xyz&version={MAP_CHUNKS.version}"
+        first += [f"{project}/map?key=", sample]
+    link = '<link rel="preload" as="fetch" crossorigin="anonymous" href="{}" />'
+    return "".join(f"{link.format(escape(one))}\n    " for one in first)
 
 
 @router.get("", summary="What is in the map")
