@@ -12,6 +12,7 @@ import {
   drawingTarget,
   giveLook,
   pointMaterial,
+  rendererOf,
   screenMaterial,
   sheetOf,
 } from "./materials.js";
@@ -19,12 +20,7 @@ import { placeCamera } from "./projection.js";
 import { nodesOf } from "./nodes.js";
 import { layersOf } from "./walk_layers.js";
 import { MapTiles } from "./tiles.js";
-import {
-  PerspectiveCamera,
-  Scene,
-  WebGLRenderer,
-} from "../shared/vendor/three/three.module.min.js";
-import { t } from "../shared/texts.js";
+import { Color, PerspectiveCamera, Scene } from "../shared/vendor/three/three.module.min.js";
 
 /**
  * @import {Camera, Screen} from "./camera.js"
@@ -47,13 +43,8 @@ import { t } from "../shared/texts.js";
 
 const REST_MS = 160;
 const WARM_UP = 2; // first frames, in which shaders are compiled
+const FIRST_SHARPNESS = 0.5; // of the first image: it is soon drawn again
 const SHARPEST = 2; // pixels of the canvas per pixel of the page
-
-function rendererOf(/** @type {HTMLCanvasElement} */ canvas) {
-  const context = canvas.getContext("webgl2", { antialias: false });
-  if (context) return new WebGLRenderer({ canvas, context, antialias: false, alpha: false });
-  throw new Error(t("no-webgl-3d"));
-}
 
 export class MapCanvas {
   #canvas;
@@ -187,7 +178,10 @@ export class MapCanvas {
 
   #frame() {
     const drawing = this.#drawing;
-    if (!drawing || !this.#isReady()) return this.#ask();
+    if (!drawing) return;
+    const ground = BACKGROUNDS[drawing.dark ? "dark" : "light"];
+    if (!this.tiles.begun) return this.#clear(null, new Color(...ground)); // no shaders yet
+    if (!this.#isReady()) return this.#ask();
     const moving = performance.now() - this.#moved < REST_MS;
     const first = this.#hadPoints !== this.tiles.total > 0; // few at once, before many
     if (moving || first) this.#drawCoarse(drawing);
@@ -309,8 +303,8 @@ export class MapCanvas {
    */
   #begin(drawing, into) {
     const { width, height } = this.screen;
-    const ratio =
-      Math.min(devicePixelRatio, SHARPEST) * (into === this.#coarse ? this.pace.sharpness : 1);
+    const coarse = this.drawn.points ? this.pace.sharpness : FIRST_SHARPNESS;
+    const ratio = Math.min(devicePixelRatio, SHARPEST) * (into === this.#coarse ? coarse : 1);
     const [wide, tall] = [Math.round(width * ratio), Math.round(height * ratio)];
     if (into.width !== wide || into.height !== tall) into.setSize(wide, tall);
     const nodes = this.#sides().flatMap((side) => side.nodes);
@@ -325,8 +319,16 @@ export class MapCanvas {
     uniforms.strength.value = drawing.depth ? 25 : 0;
     uniforms.fine.value = into === this.#fine;
     uniforms.ground.value.set(...BACKGROUNDS[drawing.dark ? "dark" : "light"]);
+    this.#clear(into, 0);
+  }
+
+  /**
+   * @param {WebGLRenderTarget | null} into null = the canvas
+   * @param {number | Color} color
+   */
+  #clear(into, color) {
     this.#renderer.setRenderTarget(into);
-    this.#renderer.setClearColor(0, 1);
+    this.#renderer.setClearColor(color, 1);
     this.#renderer.clear();
   }
 
@@ -340,8 +342,7 @@ export class MapCanvas {
     uniforms.parallel.value = camera.parallel;
     uniforms.focal.value = camera.parallel ? focal / camera.distance : focal;
     uniforms.sizes.value.set(ratio, 24 * ratio);
-    uniforms.mode.value =
-      color === "height" ? 0 : color === "class" ? 2 : color === "plain" ? 3 : 1;
+    uniforms.mode.value = { height: 0, class: 2, plain: 3 }[/** @type {string} */ (color)] ?? 1;
     uniforms.ends.value.set(...this.#endsOf(color, ends));
     rampOf(color).forEach((rgb, k) => {
       const [r, g, b] = rgb.map((x) => x / 255);

@@ -16,7 +16,9 @@ import {
   Vector3,
   Vector4,
   WebGLRenderTarget,
+  WebGLRenderer,
 } from "../shared/vendor/three/three.module.min.js";
+import { t } from "../shared/texts.js";
 
 /**
  * @import {MapNode} from "./nodes.js"
@@ -40,6 +42,13 @@ export function boundsOf(/** @type {Array<Pick<MapNode, "low_m" | "high_m">>} */
       boxes.reduce((found, box) => best(found, box[end][axis]), boxes[0]?.[end][axis] ?? 0),
     );
   return { low: all("low_m", Math.min), high: all("high_m", Math.max) };
+}
+
+/** What draws on a canvas. */
+export function rendererOf(/** @type {HTMLCanvasElement} */ canvas) {
+  const context = canvas.getContext("webgl2", { antialias: false });
+  if (context) return new WebGLRenderer({ canvas, context, antialias: false, alpha: false });
+  throw new Error(t("no-webgl-3d"));
 }
 
 /** Colors and depths of an image. */

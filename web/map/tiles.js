@@ -55,7 +55,7 @@ export class MapTiles {
   #wanted = null;
   /** @type {Camera | null} */
   #refused = null; // until it moves: a server that refuses is not asked on and on
-  #begun = false; // parts follow the sample: read beside it, they would overlap it
+  begun = false; // parts follow the sample: read beside it, they would overlap it
   /** @type {Stored | ""} */
   #values = "";
   total = 0;
@@ -104,7 +104,7 @@ export class MapTiles {
         if (steps) this.#fill(this.#chunks[k][0], values, steps.slice(from, (from += 2 * sample)));
       });
     } finally {
-      this.#begun = true;
+      this.begun = true;
     }
     this.onNews();
     this.#readOn();
@@ -211,7 +211,7 @@ export class MapTiles {
   }
 
   #readOn() {
-    if (!this.#wanted || !this.#begun) return;
+    if (!this.#wanted || !this.begun) return;
     const { counts, camera } = this.#wanted;
     const have = this.have;
     const order = readingOrder(this.#nodes, { counts, have }, camera);
