@@ -78,7 +78,10 @@ class ImportReport:
             kind: What it is; the catalog has its words.
             values: As for `warning`.
         """
-        found = Derived(kind=kind, values=_known(values))
+        self.keep(Derived(kind=kind, values=_known(values)))
+
+    def keep(self, found: Derived) -> None:
+        """Keep once what a reader derived before there was a report."""
         if found in self.derived:
             return
         if len(self.derived) < LIMITS.texts:

@@ -29,7 +29,7 @@ def open_frames(request: OpenRequest) -> Recording:
     frames = list_frames(paths[0])
     frames = replace(frames, t_ns=without_jumps(frames.t_ns, request.jumps))
     for one in frames.derived:
-        report.derive(one.kind, **one.values)
+        report.keep(one)
     rig = request.rig
     fields = request.fields if rig is None else rig.sensors[0].fields
     period_s = frames.period_ns / 1e9

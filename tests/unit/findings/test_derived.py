@@ -22,7 +22,7 @@ from recon4.recording.report import ImportReport
 from tests.source_trees import sources, trees_with
 
 CODE = Path(__file__).parents[3]
-MADE_IN = ("info.py", "info_head.py")
+MADE_IN = ("info.py", "info_head.py", "folders.py", "frame_numbers.py")
 FROZEN = Path(__file__).with_name("report_with_sentences.json")
 """``report.json`` of a version that wrote sentences."""
 WORDS = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
