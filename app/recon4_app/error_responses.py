@@ -12,6 +12,7 @@ import secrets
 from collections.abc import Mapping
 from http import HTTPStatus
 from typing import NotRequired, TypedDict
+from urllib.parse import quote
 
 from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
@@ -27,13 +28,13 @@ from recon4.locales.texts import Shown, texts
 from recon4.store.atomic import is_full
 from recon4_app.access.people import MAY, Person
 from recon4_app.errors import STORAGE, AppError, NoRoom, Remedy, RemedyLink
-from recon4_app.network.behind import route_path
+from recon4_app.network.behind import prefix_of, route_path
 from recon4_app.pages import SHARED_TEXTS, language_of, page_response
 
 log = logging.getLogger(__name__)
 
 LOST = "shared/lost.html"
-"""The error page of browsers; ``{title}`` and ``{detail}`` are filled in."""
+"""The error page of browsers; `_page` fills in its places."""
 TITLES = {403: "lost-not-allowed", 404: "lost-not-found"}
 """Of the error page, by status: names of texts."""
 FRAMEWORK_CODES: Mapping[int, str] = {404: "address-unknown", 405: "method-not-allowed"}
@@ -207,12 +208,29 @@ def _page(
     request: Request, status: int, detail: CodedText, *, headers: Mapping[str, str] | None
 ) -> HTMLResponse:
     language = language_of(request)
-    title = texts(language, SHARED_TEXTS)(TITLES.get(status, "lost-failed"))
-    fills = {"title": title, "detail": html.escape(detail.said(language))}
+    say = texts(language, SHARED_TEXTS)
+    way, text = _way_on(request)
+    fills = {
+        "title": say(TITLES.get(status, "lost-failed")),
+        "detail": html.escape(detail.said(language)),
+        "way": html.escape(way),
+        "way-text": say(text),
+    }
     page = page_response(LOST, request, fills)
     page.status_code = status
     page.headers.update(headers or {})
     return page
+
+
+def _way_on(request: Request) -> tuple[str, str]:
+    """Where a person goes from the error page: address, name of its text.
+
+    A guest may open one map, and not the list of projects.
+    """
+    who: Person | None = request.scope.get("state", {}).get("person")
+    guest = who is not None and who.project
+    path = f"/projects/{quote(who.project, safe='')}/map/" if who and guest else "/"
+    return prefix_of(request.scope) + path, "shared-map-open" if guest else "all-projects"
 
 
 def _problem(

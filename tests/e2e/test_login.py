@@ -269,6 +269,8 @@ def test_a_guest_opens_a_link_and_sees_one_map_until_it_is_revoked(
 
         dialog.get_by_role("button", name="Revoke the link for Client").first.click()
         expect(dialog.get_by_role("listitem").last).to_contain_text("revoked")
+        guest.get_by_role("group", name="Kind").get_by_text("Vertical").click()
+        expect(guest.get_by_text("This visit has ended")).to_be_visible()  # not a password
         guest.goto(link)
         expect(guest.locator("#status .shown")).to_contain_text("points")  # the other one works
         guest.goto(f"{server.url}/guest#{made['token']}")

@@ -112,6 +112,15 @@ def test_a_guest_learns_of_no_people_files_or_other_projects(server, guest):
     assert guest.get("/projects/office/map/").status_code == 200
 
 
+def test_every_error_page_leads_a_guest_back_to_the_shared_map(guest):
+    for path, status in (("/", 403), ("/projects/secret/map/", 403), ("/nowhere", 404)):
+        page = guest.get(path, headers={"Accept": "text/html,*/*"})
+
+        assert page.status_code == status
+        assert 'href="/projects/office/map/">Open the shared map<' in page.text
+        assert ">All projects<" not in page.text
+
+
 @pytest.mark.parametrize("asked", [{"source": "project:secret"}, {"reference": "0" * 12}])
 def test_a_guest_sees_no_other_map_by_its_name(guest, asked):
     image = {"plane": PLANE, "width": 64, "height": 64, **asked}

@@ -8,6 +8,7 @@ import { t } from "../shared/texts.js";
 
 /** The token, and the view that the link shows: "TOKEN?camera=…". */
 const [token, query] = location.hash.slice(1).split(/\?(.*)/s);
+const ended = location.search === "?ended";
 forgetFragment();
 
 async function open() {
@@ -17,7 +18,8 @@ async function open() {
   }
   const place = token && (await attempt(byId("message"), () => openGuestLink(token)));
   if (place) return location.replace(mapUrl(place.project) + (query ? `?${query}` : ""));
-  byId("words").textContent = token ? t("guest-nothing") : t("guest-no-link");
+  byId("words").textContent = t(token ? "guest-nothing" : ended ? "guest-ended" : "guest-no-link");
 }
 
+addEventListener("hashchange", () => location.reload()); // a link pasted into this page
 open();

@@ -4,6 +4,7 @@ export {
   ApiError,
   LIVE_URL as liveUrl,
   changeHeaders,
+  GUEST_ENDED,
   isGuest,
   isSignedIn,
   readCurrentUser,

@@ -103,6 +103,8 @@ export async function isSignedIn() {
 }
 
 export const LIVE_URL = at("/live");
+/** Where a guest's visit ends. */
+export const GUEST_ENDED = at("/guest?ended");
 const BEFORE_LOGIN = [at("/login"), at("/pair"), at("/guest")];
 
 /**
@@ -115,8 +117,10 @@ export async function changeHeaders(method = "POST") {
   return token ? { "X-Recon4-Token": token } : {};
 }
 
-function leaveForLogin() {
+async function leaveForLogin() {
   if (BEFORE_LOGIN.includes(location.pathname)) return;
+  const me = await known.me?.catch(() => null);
+  if (me && isGuest(me)) return location.assign(GUEST_ENDED); // a guest has no password
   // A phone may have no password; the pairing page offers both.
   const paired = location.pathname === LIVE_URL;
   const login = at(`/login#next=${encodeURIComponent(pathHere())}`);

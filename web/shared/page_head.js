@@ -2,6 +2,7 @@
 
 import { at, pathHere } from "./address.js";
 import {
+  GUEST_ENDED,
   isGuest,
   liveUrl,
   mapUrl,
@@ -33,6 +34,9 @@ const PAGES = [
   ["review/", t("head-review")],
   ["slices/", t("head-slices")],
 ];
+
+/** Begins the name of a guest, as the server has it in every language. */
+const GUEST_NAME = "guest: ";
 
 export class PageHead extends HTMLElement {
   /** @type {HeadState} */
@@ -81,8 +85,9 @@ export class PageHead extends HTMLElement {
 
   async #leave() {
     try {
+      const { me } = this.#state;
       await signOut();
-      location.assign(at("/login"));
+      location.assign(me && isGuest(me) ? GUEST_ENDED : at("/login"));
     } catch (error) {
       this.#draw({ problem: asError(error).message });
     }
@@ -117,7 +122,9 @@ export class PageHead extends HTMLElement {
     if (!login) return nothing;
     return html`${
         role === "guest"
-          ? html`<span class="who"><b>${name}</b></span>`
+          ? html`<span class="who"
+              >${t("role-guest")}: <b>${name.slice(GUEST_NAME.length)}</b></span
+            >`
           : html`<a
               class="who"
               href=${at("/account")}

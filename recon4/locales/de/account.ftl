@@ -20,6 +20,7 @@ sign-in-password = Mit Passwort anmelden
 guest-signed-in = Dieser Browser ist schon angemeldet: abmelden, um zu sehen, was ein Gast sieht.
 guest-nothing = Dieser Link öffnet nichts.
 guest-no-link = Den erhaltenen Link öffnen; seine Adresse endet mit einem langen Wort.
+guest-ended = Dieser Besuch ist beendet: den erhaltenen Link erneut öffnen. Öffnet er nichts, bei der Person nachfragen, von der er ist.
 
 ## Kopplung, auf dem Telefon
 

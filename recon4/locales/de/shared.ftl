@@ -92,6 +92,7 @@ unit-versions = Versionen
 lost-not-allowed = Nicht erlaubt
 lost-not-found = Seite nicht gefunden
 lost-failed = Die Anfrage ist fehlgeschlagen
+shared-map-open = Geteilte Karte öffnen
 no-response = Der Server antwortet nicht. Läuft er noch?
 bad-response = Antwort des Servers: { $status }
 

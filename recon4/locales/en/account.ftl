@@ -20,6 +20,7 @@ sign-in-password = Sign in with a password
 guest-signed-in = This browser is signed in already: sign out to see what a guest sees.
 guest-nothing = This link opens nothing.
 guest-no-link = Open the link that you were given; its address ends with a long word.
+guest-ended = This visit has ended: open the link that you were given again. If it opens nothing, ask the person who sent it.
 
 ## Pairing, on the phone
 

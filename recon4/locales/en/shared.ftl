@@ -92,6 +92,7 @@ unit-versions = versions
 lost-not-allowed = Not allowed
 lost-not-found = Page not found
 lost-failed = The request failed
+shared-map-open = Open the shared map
 no-response = The server does not answer. Is it still running?
 bad-response = The server returned { $status }
 
