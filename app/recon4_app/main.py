@@ -18,6 +18,7 @@ from starlette.routing import BaseRoute
 from recon4 import __version__
 from recon4.archive.verify import open_state, seal_state
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.newest_approval import judging_folders
 from recon4.review.trusted_keys import STATE, record_own_key
 from recon4.store.atomic import make_folders
@@ -90,7 +91,6 @@ from recon4_app.rigs import routes as rig_routes
 from recon4_app.rigs.calibrations import Calibrations
 from recon4_app.rigs.store import RigStore
 from recon4_app.rigs.uses import RigUses
-from recon4_app.server_routes import READ_ONLY
 from recon4_app.settings import ServerSettings
 from recon4_app.slices import align_routes, reference_routes, site_routes, target_routes
 from recon4_app.slices import routes as slice_routes
@@ -227,7 +227,7 @@ def serve(
         def ready() -> None:
             access: Access = app.state.parts.access
             notice = startup_notice(access, best, others=others, certificate=certificate)
-            read_only = [READ_ONLY] if settings.read_only else []
+            read_only = [CodedText("notice-read-only")] if settings.read_only else []
             on_ready(best + path, [*read_only, *notice])
 
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)

@@ -28,6 +28,10 @@ class RestoredFile:
     day: str
     """Day of the copy that replaces it; empty = there was no intact copy."""
 
+    def kept_as(self) -> dict[str, int | str]:
+        """Values of a notice: whether the damaged file is kept, and as what."""
+        return {"kept": int(bool(self.aside)), "aside": self.aside}
+
 
 class StateCopies:
     """The newest copies of a SQLite file, in the folder ``backups`` beside it."""

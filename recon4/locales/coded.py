@@ -83,6 +83,38 @@ class CodedText(str):
         }
 
 
+def flat_values(values: Mapping[str, Shown]) -> dict[str, Shown]:
+    """Values as a file or another process keeps them; `stored_text` reads them.
+
+    A coded text among them stays one: its own text, then its code as ``NAME:``, then its values as
+    ``NAME:VALUE``.
+
+    >>> flat_values({"why": CodedText("job-unknown", job="a1")})
+    {'why': 'no job a1', 'why:': 'job-unknown', 'why:job': 'a1'}
+    """
+    flat: dict[str, Shown] = {}
+    for name, value in values.items():
+        if isinstance(value, CodedText):
+            inner = {"": value.code, **flat_values(value.values)}
+            flat |= {name: str(value), **{f"{name}:{key}": one for key, one in inner.items()}}
+        else:
+            flat[name] = value
+    return flat
+
+
+def _folded(values: Mapping[str, Shown]) -> dict[str, Shown]:
+    """The values that `flat_values` wrote; what is nested deeper than any text is left out."""
+    known = {name: value for name, value in values.items() if name.count(":") <= 8}
+    folded = {name: value for name, value in known.items() if ":" not in name}
+    for name, value in folded.items():
+        begin = f"{name}:"
+        inner = {key[len(begin) :]: one for key, one in known.items() if key.startswith(begin)}
+        code = inner.pop("", None)
+        if isinstance(code, str):
+            folded[name] = stored_text(code, inner, str(value))
+    return folded
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredText:
     """A text as a file keeps it: in English, and with code and values if it has a code."""
@@ -98,7 +130,7 @@ class StoredText:
             return StoredText(text=text)
         values = {
             name: int(value) if isinstance(value, bool) else value
-            for name, value in text.said_values(ENGLISH).items()
+            for name, value in flat_values(text.values).items()
         }
         return StoredText(text=str(text), code=text.code, values=values)
 
@@ -144,12 +176,12 @@ def said(text: str, language: str) -> str:
 
 
 def stored_text(code: str, values: Mapping[str, Shown], english: str) -> str:
-    """A text that was stored with its code and values; only English if they say nothing now.
+    """A text that was stored with its code and `flat_values`; only English if they say nothing now.
 
     A later version may have another code; what another process sent may be anything.
     """
     try:
-        return CodedText(code, **values)
+        return CodedText(code, **_folded(values))
     except (KeyError, TypeError, ValueError):
         return english
 

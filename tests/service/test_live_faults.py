@@ -265,7 +265,7 @@ def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_reports_wh
         for module in ("recon4.live.recorder.process", "recon4.live.mapper.process"):
             await asyncio.to_thread(wait_for, lambda m=module: not process_of(m, project), module)
         await asyncio.sleep(0.1)  # the event loop reaps them
-        return left, capture.problem
+        return left, "; ".join(capture.problems)
 
     left, problem = asyncio.run(run())
 

@@ -10,6 +10,7 @@ import logging
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4_app.state_copies import StateCopies
 
 log = logging.getLogger(__name__)
@@ -39,12 +40,12 @@ def restore_access(state: Path) -> str:
     restored = copies.restore()
     if restored is None:
         return ""
-    kept = f"; it is kept as {restored.aside}" if restored.aside else ""
-    notice = (
-        f"The file of people and of the audit log, {ACCESS_FILE}, was damaged ({restored.damage})"
-        f"{kept}. The copy of {restored.day} replaces it: people, roles and passwords are those of "
-        "that day, later entries of the audit log are missing, and everybody has to sign in again. "
-        "An admin should look through the list of people."
+    notice = CodedText(
+        "notice-people-restored",
+        file=ACCESS_FILE,
+        damage=restored.damage,
+        **restored.kept_as(),
+        day=restored.day,
     )
     log.error(notice)
     return notice

@@ -17,7 +17,7 @@ from typing import Any, get_type_hints
 from pydantic import BaseModel, TypeAdapter
 
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
-from recon4.locales.coded import CodedText, stored_text
+from recon4.locales.coded import CodedText, flat_values, stored_text
 from recon4.untrusted.names import is_unnameable
 from recon4_app.compute_pool.model import FileAccess
 from recon4_app.compute_pool.tuning import POOL_MESSAGES
@@ -116,7 +116,7 @@ def encode_error(error: Exception) -> bytes:
     candidates = [str(one) for one in found if not is_unnameable(one)]
     reply = CallError(name=name, message=message, problems=problems, candidates=candidates)
     if error.args and isinstance(text := error.args[0], CodedText):
-        reply.code, reply.values = text.code, dict(text.values)
+        reply.code, reply.values = text.code, flat_values(text.values)
     return reply.model_dump_json().encode()
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from recon4.locales.coded import CodedText, as_coded, stored_text
+from recon4.locales.coded import CodedText, as_coded, flat_values, stored_text
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +19,7 @@ def reason_of(note: str) -> JobReason | None:
     """What is stored beside a note; None = it has no code."""
     if not isinstance(note, CodedText):
         return None
-    return JobReason(code=note.code, values=dict(note.values))
+    return JobReason(code=note.code, values=flat_values(note.values))
 
 
 def said_before(reason: JobReason | None, note: str) -> str:

@@ -183,17 +183,8 @@ def _restore(copies: StateCopies) -> str:
     restored = copies.restore()
     if restored is None:
         return ""
-    kept = f"; it is kept as {restored.aside}" if restored.aside else ""
-    replaced = (
-        f"The backup of {restored.day} replaces it: jobs started later are no longer listed."
-        if restored.day
-        else "There is no intact backup, so the list is empty."
-    )
-    notice = (
-        f"The list of jobs was damaged ({restored.damage}){kept}. {replaced} Projects and "
-        "recordings are unchanged; start such a job again and it continues after its last "
-        "finished stage."
-    )
+    code = "notice-jobs-restored" if restored.day else "notice-jobs-empty"
+    notice = CodedText(code, damage=restored.damage, **restored.kept_as(), day=restored.day)
     log.error(notice)
     return notice
 

@@ -13,7 +13,7 @@ from recon4.live.project_files import discard
 from recon4.live.protocol import Done, Pause, Request, Resume, Status, Stopped
 from recon4.live.session import CaptureSession
 from recon4.live.tuning import LINE_CLIENT
-from recon4.locales.coded import CodedText, coded
+from recon4.locales.coded import CodedText, coded, text_of
 from recon4_app.errors import Conflict
 from recon4_app.live.stream_state import StreamState
 from recon4_app.live.tuning import CAPTURES
@@ -40,8 +40,8 @@ class Capture:
         self.session = session
         self.stream = StreamState()
         self.state = State.RECORDING
-        self.problem = ""
-        """Why the map does not grow; empty = it does."""
+        self.problems: tuple[str, ...] = ()
+        """Why the recording ended, and why the map does not grow; none = it does."""
         self._recorder: LineClient | None = None
         self._tasks: list[asyncio.Task[None]] = []
         self._mapper_starts = 0
@@ -108,7 +108,7 @@ class Capture:
                     if isinstance(message, Status):
                         self.state = State.PAUSED if message.paused else State.RECORDING
                     elif isinstance(message, Stopped) and message.why != "stopped":
-                        self._ended_because = f"The recording ended by itself: {message.why}"
+                        self._ended_because = CodedText("capture-ended-itself", why=message.why)
                     self.stream.take(message)
         except OSError as error:
             log.warning("recorder of %s: %s", self.project, error)
@@ -117,8 +117,8 @@ class Capture:
             self._recorder = None
         self.state = State.FINISHING
         if not self._ended_because and not self.session.outcome.exists():
-            self._ended_because = "the recorder died; its recording until then is safe"
-        self.problem = self._ended_because or self.problem
+            self._ended_because = CodedText("capture-recorder-died")
+        self.problems = self._problems(*self.problems)
 
     async def _follow_mapper(self) -> None:
         """Follow the mapper; start it if none runs."""
@@ -126,25 +126,25 @@ class Capture:
         while done is None and self._mapper_starts < CAPTURES.mapper_starts:
             try:
                 async with linked(self.session.socket("mapper")) as link:
-                    self.problem = self._ended_because  # a failed start before is over
+                    self.problems = self._problems()  # a failed start before is over
                     done = await self._receive_mapper(link)
             except OSError:  # no mapper runs: it died, or none was started yet
                 self._mapper_starts += 1
                 try:
                     await started(self.session, "mapper", env=worker_environment())
                 except ConfigError as error:
-                    self.problem = str(error)
-        problems = [self._ended_because]
+                    self.problems = self._problems(text_of(error))
         if done is not None:  # finished: earlier problems no longer count
-            problems.append(done.problem)
+            self.problems = self._problems(done.problem)
         else:
-            problems.append("the map stopped growing (its process died)")
-            if self._recorder is not None:
-                problems.append("the recording continues")
-        self.problem = "; ".join(filter(None, problems))
+            goes_on = CodedText("capture-recording-goes-on") if self._recorder else ""
+            self.problems = self._problems(CodedText("capture-map-stopped"), goes_on)
         while self._recorder is not None:
             await self.stream.news(self.stream.version, timeout_s=1.0)
         self.state = State.READY
+
+    def _problems(self, *others: str) -> tuple[str, ...]:
+        return tuple(filter(None, (self._ended_because, *others)))
 
     async def _receive_mapper(self, link: LineClient) -> Done | None:
         """The message ``done``; None if the mapper died or closed the connection as too slow."""

@@ -12,6 +12,7 @@ from fastapi import WebSocket
 from recon4 import __version__
 from recon4.live.findings import findings, rates
 from recon4.live.newest_messages import Newest
+from recon4.locales.coded import as_coded
 from recon4.locales.languages import ENGLISH
 from recon4_app.live.capture import Capture, State
 from recon4_app.live.current_capture import CurrentCapture
@@ -142,7 +143,8 @@ def state_of(
     records = capture.state in (State.RECORDING, State.PAUSED)
     newest = capture.stream.newest if records else Newest()
     battery = current_capture.power.battery
-    found = findings(current_capture.rig, newest, capture.problem, language=language)
+    problem = "; ".join(as_coded(one).said(language) for one in capture.problems)
+    found = findings(current_capture.rig, newest, problem, language=language)
     found += capture.stream.so_far.findings(records=records, language=language)
     found += battery_findings(battery, language)
     found = sorted(found, key=lambda one: URGENCY.index(one.level))

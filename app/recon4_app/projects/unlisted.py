@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from recon4.locales.coded import CodedText
 from recon4.store.project import is_project
 from recon4.untrusted.names import visible
 from recon4_app.projects.store import PROJECT_ID
@@ -19,10 +20,7 @@ def unlisted_notices(root: Path) -> list[str]:
         return []
     shown = ", ".join(visible(name, most=64) for name in names[: UNLISTED.max_shown])
     more = " …" if len(names) > UNLISTED.max_shown else ""
-    return [
-        f"Not listed: {shown}{more} ({len(names)} in all). The folder name of a project has "
-        "up to 64 letters A-Z, digits, '.', '_' and '-': rename the folder."
-    ]
+    return [CodedText("notice-unlisted", names=shown + more, count=len(names))]
 
 
 def _is_unlisted(entry: os.DirEntry[str]) -> bool:

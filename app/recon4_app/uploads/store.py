@@ -69,8 +69,7 @@ class UploadStore:
         with self._lock:
             damaged = list(self._damaged.items())
         return [
-            f"Upload {name} cannot be resumed, its files are damaged ({why}). Send the recording "
-            f"again. What was received is kept for a while in {self._folder / name}."
+            CodedText("notice-upload", upload=name, damage=why, folder=str(self._folder / name))
             for name, why in damaged
         ]
 

@@ -119,6 +119,10 @@ capture-ended = die Aufnahme ist zu Ende
 capture-none = es läuft keine Aufnahme
 capture-running = { $project } wird aufgenommen: erst beenden
 capture-still-running = die Aufnahme läuft noch: erst beenden
+capture-ended-itself = Die Aufnahme hat von selbst geendet: { NAMED($why, of: "word-stopped") }
+capture-recorder-died = der Recorder ist abgestürzt; seine Aufnahme bis dahin ist sicher
+capture-map-stopped = die Karte wächst nicht mehr (ihr Prozess ist abgestürzt)
+capture-recording-goes-on = die Aufnahme läuft weiter
 
 ## Karte, Notizen, Schnitte
 
@@ -260,6 +264,22 @@ order-of-other = angefordert hat es { $name }: dort oder bei einem Verwalter nac
 order-of-another = angefordert hat es eine andere Person: dort oder bei einem Verwalter nachfragen
 project-or-title = ein Projekt braucht einen Namen: project oder title angeben
 capture-needs-name = eine Aufnahme braucht einen Namen: project oder place angeben
+notice-read-only = Der Ordner der Projekte ist schreibgeschützt: er wird gezeigt, wie er ist. Aufträge, Uploads, Prüfungen, Rigs und Live-Aufnahmen brauchen eine Kopie davon.
+notice-disk = Die Platte ist fast voll: frei sind { DECIMAL($free_gb, digits: 1) } GB von { DECIMAL($disk_gb, digits: 0) } GB. Projekte oder Uploads löschen, die niemand mehr braucht: die Seite Speicher listet sie auf.
+notice-unlisted = Nicht aufgeführt: { $names } (insgesamt { $count }). Der Ordner eines Projekts heißt mit bis zu 64 Buchstaben A-Z, Ziffern, '.', '_' und '-': den Ordner umbenennen.
+notice-upload = Der Upload { $upload } lässt sich nicht fortsetzen, seine Dateien sind beschädigt ({ $damage }). Die Aufzeichnung erneut senden. Was ankam, bleibt eine Weile in { $folder }.
+notice-jobs-restored = Die Liste der Aufträge war beschädigt ({ $damage }){ $kept ->
+    [0] {""}
+   *[other] ; sie bleibt als { $aside }
+    }. Die Sicherung vom { $day } ersetzt sie: spätere Aufträge sind nicht mehr aufgeführt. Projekte und Aufzeichnungen sind unverändert; ein solcher Auftrag setzt nach seiner letzten fertigen Stufe fort, wenn er neu gestartet wird.
+notice-jobs-empty = Die Liste der Aufträge war beschädigt ({ $damage }){ $kept ->
+    [0] {""}
+   *[other] ; sie bleibt als { $aside }
+    }. Eine heile Sicherung gibt es nicht, also ist die Liste leer. Projekte und Aufzeichnungen sind unverändert; ein solcher Auftrag setzt nach seiner letzten fertigen Stufe fort, wenn er neu gestartet wird.
+notice-people-restored = Die Datei der Personen und des Protokolls, { $file }, war beschädigt ({ $damage }){ $kept ->
+    [0] {""}
+   *[other] ; sie bleibt als { $aside }
+    }. Die Kopie vom { $day } ersetzt sie: Personen, Rollen und Passwörter sind die jenes Tages, spätere Einträge des Protokolls fehlen, und alle müssen sich neu anmelden. Ein Verwalter sollte die Liste der Personen durchsehen.
 
 ## Seiten, die helfen
 
@@ -324,6 +344,7 @@ field-json_invalid = kein gültiges JSON
 
 ## Wörter
 
+word-stopped-the-disk-is-nearly-full = die Platte ist fast voll
 word-weakness-repeat = eine Wiederholung
 word-weakness-spatial = benachbarte Tasten
 word-weakness-sequence = eine Folge wie abc oder 123

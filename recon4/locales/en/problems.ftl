@@ -119,6 +119,10 @@ capture-ended = the recording has ended
 capture-none = nothing is being captured
 capture-running = { $project } is being captured: stop it first
 capture-still-running = the capture is still running: stop it first
+capture-ended-itself = The recording ended by itself: { NAMED($why, of: "word-stopped") }
+capture-recorder-died = the recorder died; its recording until then is safe
+capture-map-stopped = the map stopped growing (its process died)
+capture-recording-goes-on = the recording continues
 
 ## Map, notes, slices
 
@@ -260,6 +264,22 @@ order-of-other = { $name } ordered it: ask them, or an admin
 order-of-another = another person ordered it: ask them, or an admin
 project-or-title = a project needs a name: give project or title
 capture-needs-name = a capture needs a name: give project or place
+notice-read-only = The folder of the projects cannot be written: it is shown as it is. Jobs, uploads, reviews, rigs and live captures need a copy of it.
+notice-disk = The disk is nearly full: { DECIMAL($free_gb, digits: 1) } GB of { DECIMAL($disk_gb, digits: 0) } GB are free. Delete projects or uploads that are not needed: the page Storage lists them.
+notice-unlisted = Not listed: { $names } ({ $count } in all). The folder name of a project has up to 64 letters A-Z, digits, '.', '_' and '-': rename the folder.
+notice-upload = Upload { $upload } cannot be resumed, its files are damaged ({ $damage }). Send the recording again. What was received is kept for a while in { $folder }.
+notice-jobs-restored = The list of jobs was damaged ({ $damage }){ $kept ->
+    [0] {""}
+   *[other] ; it is kept as { $aside }
+    }. The backup of { $day } replaces it: jobs started later are no longer listed. Projects and recordings are unchanged; start such a job again and it continues after its last finished stage.
+notice-jobs-empty = The list of jobs was damaged ({ $damage }){ $kept ->
+    [0] {""}
+   *[other] ; it is kept as { $aside }
+    }. There is no intact backup, so the list is empty. Projects and recordings are unchanged; start such a job again and it continues after its last finished stage.
+notice-people-restored = The file of people and of the audit log, { $file }, was damaged ({ $damage }){ $kept ->
+    [0] {""}
+   *[other] ; it is kept as { $aside }
+    }. The copy of { $day } replaces it: people, roles and passwords are those of that day, later entries of the audit log are missing, and everybody has to sign in again. An admin should look through the list of people.
 
 ## Pages that help
 
@@ -336,6 +356,7 @@ field-json_invalid = JSON decode error
 
 ## Words
 
+word-stopped-the-disk-is-nearly-full = the disk is nearly full
 word-weakness-repeat = a repetition
 word-weakness-spatial = neighboring keys
 word-weakness-sequence = a sequence such as abc or 123

@@ -34,7 +34,7 @@ def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
     capture = asyncio.run(run())
 
     assert next(connections, None) is None
-    assert capture.problem == ""
+    assert capture.problems == ()
     assert not (session.folder / "mapper.txt").exists()
 
 
@@ -52,19 +52,19 @@ def test_a_mapper_that_started_after_all_is_no_problem_any_more(tmp_path):
 
     async def run():
         capture = Capture(session)
-        capture.problem = "the mapper did not start"
+        capture.problems = ("the mapper did not start",)
         async with await asyncio.start_unix_server(serve, session.socket("mapper")):
             await capture.follow()
             while capture.stream.version == 0:
                 await capture.stream.news(0, timeout_s=0.1)
-            while_mapping = capture.problem
+            while_mapping = capture.problems
             seen.set()
             while not capture.over:
                 await capture.stream.news(capture.stream.version, timeout_s=0.1)
             await capture.leave()
         return while_mapping
 
-    assert asyncio.run(run()) == ""
+    assert asyncio.run(run()) == ()
 
 
 def test_a_capture_whose_recorder_never_ran_is_not_taken_up(tmp_path):

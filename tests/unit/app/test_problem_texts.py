@@ -14,6 +14,7 @@ from recon4.locales.coded import (
     FILES,
     KINDS,
     CodedText,
+    StoredText,
     as_coded,
     coded,
     codes,
@@ -26,6 +27,7 @@ from recon4.locales.texts import messages_of, texts
 from recon4_app.compute_pool.messages import decode_error, encode_error
 from recon4_app.error_responses import field_message
 from recon4_app.errors import NotFound
+from recon4_app.jobs.reason import in_language, reason_of
 from recon4_app.network.close_codes import close_reason
 
 OTHERS = languages()[1:]
@@ -170,3 +172,23 @@ def test_a_rule_of_our_own_is_said_too():
 
     assert field_message(problem, "de").endswith("project oder title angeben")
     assert field_message(problem, ENGLISH).endswith("a project needs a name: give project or title")
+
+
+def test_what_a_text_quotes_keeps_its_code_in_a_file_and_through_the_compute_pool():
+    deepest = CodedText("capture-map-stopped")
+    text = CodedText("project-busy", detail=CodedText("approve-damaged", detail=deepest))
+    job, file = reason_of(text), StoredText.of(text)
+    assert job is not None
+
+    pooled = coded(decode_error(encode_error(ConfigError(text)))).said("de")
+
+    assert pooled == text.said("de") and deepest.said("de") in pooled
+    assert in_language(job, str(text), "de") == file.said("de") == pooled
+    assert file.said(ENGLISH) == str(text)
+
+
+def test_values_that_nest_without_end_are_cut():
+    names = [":".join(["detail"] * depth) for depth in range(1, 700)]
+    hostile = {name: "busy" for name in names} | {f"{name}:": "project-busy" for name in names}
+
+    assert stored_text("project-busy", hostile, "") == 9 * "not now: " + "busy"
