@@ -161,12 +161,14 @@ def test_jobs_wait_for_their_turn_and_a_project_has_one_at_a_time(server, tmp_pa
 
     refused = server.post("/api/jobs", json={"project": "office", "recordings": [str(recording)]})
     waiting = server.get(f"/api/jobs/{second}").json()
+    early = server.get("/projects/staircase/map/", headers={"Accept": "text/html"})
     cancelled = server.post(f"/api/jobs/{second}/cancel").json()
     twice = server.post(f"/api/jobs/{second}/cancel")
 
     assert refused.status_code == 409
     assert "already has a job" in refused.json()["detail"]
     assert waiting["job"]["state"] == "queued"
+    assert (early.status_code, early.headers["location"]) == (303, "/projects/staircase/")
     assert cancelled["job"]["state"] == "cancelled"
     assert twice.status_code == 409
     server.post(f"/api/jobs/{first}/cancel")

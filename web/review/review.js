@@ -10,6 +10,7 @@ import {
   readEffect,
   readJournal,
   readPair,
+  readProject,
   readQueue,
   readReview,
   readWalk,
@@ -354,6 +355,7 @@ listenToActions(actions, view, reasonField(), () => Boolean(state.selected?.draw
 await attempt(message, begin);
 if (message.textContent) view.clear(t("nothing-to-review"));
 await attempt(message, async () => {
+  only("page-head").name = (await readProject(id)).name;
   queue.me = (await readCurrentUser()).name;
   await team.begin(state.server?.may_review ?? false);
 });

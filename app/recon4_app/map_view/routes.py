@@ -9,7 +9,6 @@ from typing import Annotated
 from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Query, Request, Response
-from fastapi.responses import HTMLResponse
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 
@@ -37,7 +36,7 @@ from recon4_app.map_view.model import (
 from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.network.behind import prefix_of
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.pages import page_response
+from recon4_app.projects.project_pages import map_page_response
 
 SHARED = [Depends(needs(Permission.SHARED))]
 _UNQUOTED = "!~*'()"
@@ -56,9 +55,10 @@ page = APIRouter()
 
 
 @page.get("/projects/{project_id}/map/", include_in_schema=False, dependencies=SHARED)
-def map_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
-    server.projects.folder(project_id)
-    return page_response("map/map.html", request, head=_preloads(project_id, request))
+def map_page(project_id: str, request: Request, server: Server) -> Response:
+    head = _preloads(project_id, request)
+    file = "map/map.html"
+    return map_page_response(file, request, server=server, project_id=project_id, head=head)
 
 
 def _preloads(project_id: str, request: Request) -> str:

@@ -8,7 +8,6 @@ from typing import Annotated, TypeVar
 
 import numpy as np
 from fastapi import APIRouter, Depends, Query, Response
-from fastapi.responses import HTMLResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
@@ -45,7 +44,7 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict, project_page
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.pages import page_response
+from recon4_app.projects.project_pages import map_page_response
 from recon4_app.review.model import (
     AlignmentView,
     Approve,
@@ -82,9 +81,9 @@ page = APIRouter()
 
 
 @page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
-def review_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
-    server.projects.folder(project_id)
-    return page_response("review/review.html", request)
+def review_page(project_id: str, request: Request, server: Server) -> Response:
+    file = "review/review.html"
+    return map_page_response(file, request, server=server, project_id=project_id)
 
 
 @router.get("", dependencies=LOOK, summary="State of the review")

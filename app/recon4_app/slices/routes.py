@@ -25,7 +25,8 @@ from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Refused
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.pages import Language, page_response
+from recon4_app.pages import Language
+from recon4_app.projects.project_pages import map_page_response
 from recon4_app.projects.routes import REPORT_POLICY
 from recon4_app.slices import control_work, readers, slice_work
 from recon4_app.slices.exports import ExportRequest
@@ -77,9 +78,9 @@ page = APIRouter()
 
 
 @page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=SHARED)
-def slices_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
-    server.projects.folder(project_id)
-    return page_response("slices/slices.html", request)
+def slices_page(project_id: str, request: Request, server: Server) -> Response:
+    file = "slices/slices.html"
+    return map_page_response(file, request, server=server, project_id=project_id)
 
 
 @router.get("", dependencies=SHARED_MAP, summary="Facts about the map")
