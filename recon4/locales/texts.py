@@ -156,7 +156,7 @@ class Messages(Mapping[str, ast.Message]):
             text: The file.
         """
         begins = [*_BEGIN.finditer(text)]
-        ends = [one.start() for one in begins[1:]] + [len(text)]
+        ends = [*(one.start() for one in begins), len(text)][1:]
         self._sources = {
             begin[1]: text[begin.start() : end] for begin, end in zip(begins, ends, strict=True)
         }

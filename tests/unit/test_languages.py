@@ -96,6 +96,7 @@ def test_a_language_needs_a_folder_and_no_code(tmp_path, monkeypatch):
 
     french = Texts("fr", "findings", root=tmp_path)
 
+    assert not messages_of(tmp_path / "fr" / "rigs.ftl"), "a file that it lacks has no texts"
     assert languages(tmp_path) == ("en", "fr")
     assert french("points", count=1.5) == "1,5 points"
     assert french("a") == "b", "English where there is no translation"
