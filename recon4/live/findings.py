@@ -173,7 +173,9 @@ def _sensors(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
         what = say("what-lidar" if only_lidars else "what-scanner")
         if arrives:
             return [CaptureFinding("error", say("none-sends", what=what, arrives=arrives))]
-        text = say("none-sends-anything", what=what, time=_seconds(shortest, say))
+        ports = ", ".join(str(port) for port in sorted({s.port for s in rig.sensors}))
+        known = {"what": what, "ports": say("ports", ports=ports)}
+        text = say("none-sends-anything", time=_seconds(shortest, say), **known)
         return [CaptureFinding("error", text)]
     return elsewhere + [
         CaptureFinding("error", say("sensor-silent", sensor=_title(sensor, say), time=time))

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from recon4.errors import ConfigError
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.assembly.shots import Shots
@@ -22,12 +23,14 @@ from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor, Recognized, same_start
 from recon4.recording.packets.lidar_imu import LidarImu
+from recon4.recording.packets.makes import can_be_of
 from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
 from recon4.recording.packets.senders import packets_of
 from recon4.recording.packets.streams import first_datagrams, recognized
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, assign_topics
+from recon4.recording.rig_mismatch import mismatch_text
 from recon4.recording.tuning_heads import PROBE
 from recon4.settings import IngestSettings
 
@@ -130,11 +133,15 @@ class PacketTopics:
         return found is not None and found.imu is not None
 
     def _decoder(self, row: int, sensor: Sensor) -> PacketDecoder:
+        found, head = self.packets.found(sensor.topic), self.packets.head(sensor.topic)
+        if not can_be_of(sensor, found, head, self.packets.companions):
+            model = found.model or found.family if found else ""
+            raise ConfigError(mismatch_text(self.rig, f"{sensor.topic}: packets of a {model}"))
         beside = self._samples_of(sensor)
         of = PacketSensor(
             row=row,
             sensor=sensor,
-            head=self.packets.head(sensor.topic),
+            head=head,
             beside=join_datagrams([self.packets.head(name) for name in beside]),
             companions=[*described_in(self.rig), *self.packets.companions],
             settings=self.settings,

@@ -124,6 +124,12 @@ class ImportReport:
         counted = "; ".join(self.text(name) for name in sorted(self.counts))
         return f"no usable points ({counted or 'nothing read'})"
 
+    @property
+    def nothing_decoded(self) -> bool:
+        """Whether there was no cloud and no packet as long as those of its sensor."""
+        counts = self.counts
+        return not counts["clouds"] and counts["packets"] <= counts["packets_wrong_length"]
+
     def counted(self) -> str:
         """All counts in one value, such as ``points=100 points_nan=5``; empty = nothing read."""
         return " ".join(f"{name}={self.counts[name]}" for name in sorted(self.counts))

@@ -17,6 +17,7 @@ from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_mismatch import mismatch_text
 
 THESIS_RIG = "4recon"
 
@@ -205,7 +206,7 @@ def assign_topics(rig: Rig, streams: Sequence[Stream], report: ImportReport) -> 
             report.derive(DerivedKind.SENSOR_TOPIC, sensor=sensor.name, topic=topic)
     if not chosen:
         raise ConfigError(
-            f"no LiDAR of the rig {rig.name!r} is in the recording; it has {_names(streams)}"
+            f"no LiDAR of the rig is in the recording: {mismatch_text(rig, _names(streams))}"
         )
     _warn_unassigned(rig, chosen, _free(topics, chosen), report=report)
     sensors = [replace(s, topic=chosen.get(s.name, s.topic)) for s in rig.sensors]
@@ -221,7 +222,8 @@ def _warn_unassigned(
 ) -> None:
     for sensor in rig.sensors:
         if sensor.name not in chosen:
-            report.warn(FindingKind.SENSOR_NOT_RECORDED, sensor=sensor.name)
+            named = {"topic": sensor.topic} if sensor.topic else {}
+            report.warn(FindingKind.SENSOR_NOT_RECORDED, sensor=sensor.name, **named)
     for topic in free:
         report.warn(FindingKind.TOPIC_UNASSIGNED, topic=topic)
 

@@ -227,7 +227,7 @@ def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk
 
     for pattern in (
         r"vertical LiDAR silent for \d+ s",
-        r"No LiDAR sends anything for \d+ s: check power and cables",
+        r"No LiDAR sends anything for \d+ s: check power and cables, and that it sends to .*",
         r"vertical: its clock is .* s off the recorder's and no GPS drives it.*",
         r"\d+ % of the data packets: never arrived: check cable and recorder",
         r"\d+ % of the data packets: received twice, the copies dropped",

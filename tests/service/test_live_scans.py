@@ -123,7 +123,10 @@ def test_a_laser_that_falls_silent_is_said(server, log, tmp_path):
 
     phone = Phone()
     with sending(server, log, alter=for_three_seconds):
-        said = "No scanner sends anything for 5 s: check power and cables"
+        said = (
+            "No scanner sends anything for 5 s: check power and cables, and that it sends to "
+            "port 8311, 8312 of this computer"
+        )
         asyncio.run(phone.follow(server, lambda p, message: said in texts(message)))
     stopped(server, phone)
 

@@ -176,7 +176,9 @@ SERIALS-CHANGE = Anderes Gerät
 
 SENSOR-NOT-RECORDED = Sensor nicht aufgezeichnet
     .text1 = Der Sensor { $sensor } des Rigs ist nicht in der Aufzeichnung.
+    .text2 = Die Rig-Datei nennt das Topic { $topic }.
     .meaning = Die Karte entsteht ohne ihn.
+    .remedy = Sein Topic in der Rig-Datei berichtigen.
 
 TOPIC-UNASSIGNED = Topic ohne Sensor
     .text1 = Das Topic { $topic } gehört zu keinem Sensor des Rigs und wird nicht gelesen.

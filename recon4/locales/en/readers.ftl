@@ -177,7 +177,9 @@ SERIALS-CHANGE = Another device
 
 SENSOR-NOT-RECORDED = Sensor not recorded
     .text1 = Sensor { $sensor } of the rig is not in the recording.
+    .text2 = The rig file names the topic { $topic }.
     .meaning = The map is made without it.
+    .remedy = Correct its topic in the rig file.
 
 TOPIC-UNASSIGNED = Topic without a sensor
     .text1 = Topic { $topic } belongs to no sensor of the rig and is not read.

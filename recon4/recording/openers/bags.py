@@ -15,6 +15,7 @@ from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.packets.companions import companions_of
 from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_mismatch import mismatch_text
 
 
 def open_line_bag(request: OpenRequest) -> Recording | None:
@@ -36,7 +37,9 @@ def open_lidar_bag(request: OpenRequest) -> Recording:
         report=request.report,
         given=Given(companions_of(request.paths), request.fields),
     )
-    return Recording(bag.rig, bag.read, bag.seconds)
+    there = ", ".join(f"{one.label} {one.model}" for one in bag.streams)
+    seen = mismatch_text(request.rig, there) if request.rig is not None else ""
+    return Recording(bag.rig, bag.read, bag.seconds, seen=seen)
 
 
 def _files(request: OpenRequest) -> list[Path]:

@@ -21,6 +21,7 @@ from recon4.recording.packets.streams import PacketStream, require_one_capture
 from recon4.recording.packets.tuning import CAPTURE_STREAMS
 from recon4.recording.profiler_rigs import WUERZBURG
 from recon4.recording.rig_choice import Stream, choose_rig, rig_to_complete, with_lidars
+from recon4.recording.rig_mismatch import mismatch_text
 from recon4.recording.scan_capture import ScanCapture, scan_streams
 
 
@@ -53,7 +54,11 @@ def _opened(request: OpenRequest, rig: Rig | ChooseRig) -> Recording:
         open_file=request.open_file,
     )
     return Recording(
-        pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=CAPTURE_STREAMS.wait_s
+        pcap.rig,
+        partial(_read_pcap, pcap),
+        _seconds(pcap.streams),
+        wait_s=CAPTURE_STREAMS.wait_s,
+        seen=mismatch_text(rig, pcap.seen) if isinstance(rig, Rig) else "",
     )
 
 

@@ -56,6 +56,9 @@ class Recording:
     """Gaps known before reading."""
     wait_s: float = ASSEMBLY.wait_s
     """Largest lead of one sensor's shots over another's [s], see `Assembler`."""
+    seen: str = ""
+    """What it has against the rig that was given, for a reading without points; empty = nothing to
+    say."""
     kind: str = ""
     """What it is, for people; empty = the kind of its files."""
 

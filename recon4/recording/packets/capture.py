@@ -11,7 +11,6 @@ import numpy as np
 
 from recon4.errors import EmptyRecording
 from recon4.model.derived_kinds import DerivedKind
-from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
@@ -27,6 +26,7 @@ from recon4.recording.packets.family import PacketSamples, PacketSensor
 from recon4.recording.packets.file_overlaps import goes_on_in
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.slots import in_slots
+from recon4.recording.packets.stream_match import match_streams
 from recon4.recording.packets.streams import (
     PacketStream,
     fits,
@@ -138,6 +138,11 @@ class PacketCapture:
             yield channel.decoder.flush()
 
     @property
+    def seen(self) -> str:
+        """The streams of the heads of the files in words."""
+        return _listed(self.streams)
+
+    @property
     def rotation_hz(self) -> dict[str, float]:
         """Measured rotation rate by the name of the sensor [Hz]; complete after reading."""
         return {channel.sensor.name: channel.decoder.rotation_hz for channel in self._channels}
@@ -206,7 +211,7 @@ class PacketCapture:
             yield self._imu.of("", PacketSamples(*self._samples.push(mine.t_ns.tolist(), texts)))
 
     def _assign(self, groups: list[tuple[PacketStream, ...]]) -> list[_Channel]:
-        chosen = _match(self.rig.sensors, groups, self._report)
+        chosen = match_streams(self.rig.sensors, groups, self._companions, report=self._report)
         channels = []
         for row, sensor in enumerate(self.rig.sensors):
             if row not in chosen:
@@ -216,7 +221,7 @@ class PacketCapture:
                     address=sensor.address,
                     anywhere=not sensor.address,
                     port=sensor.port,
-                    found=self._sent_instead(sensor),
+                    found=self._sent_instead(sensor, chosen),
                 )
                 continue
             channels.append(self._channel(row, chosen[row]))
@@ -259,9 +264,11 @@ class PacketCapture:
             return ""
         return next(iter(own), "")
 
-    def _sent_instead(self, sensor: Sensor) -> str:
+    def _sent_instead(self, sensor: Sensor, chosen: dict[int, tuple[PacketStream, ...]]) -> str:
+        """What is refused of its address and port, or is a LiDAR of another make."""
+        taken = {id(stream) for streams in chosen.values() for stream in streams}
         others = [s for s in self.streams if s.refused and fits(sensor, s.source, s.port)]
-        return "; ".join(s.text for s in others)
+        return _listed([*others, *(s for s in self.streams if _is_left(s, taken))])
 
     def _beside(self, data: PacketStream) -> Datagrams:
         """First other packets of a LiDAR: those of its sender to other ports."""
@@ -287,10 +294,20 @@ class PacketCapture:
 
 def _found_instead(streams: Sequence[PacketStream], heads: ImportReport) -> str:
     """What capture files without data packets have, and why it is not read."""
+    return "; ".join(filter(None, [_listed(streams), unread_text(heads)]))
+
+
+def _listed(streams: Sequence[PacketStream]) -> str:
+    """Some streams in words."""
     texts = [stream.text for stream in streams[: LISTED.streams]]
     more = len(streams) - len(texts)
     texts += [f"{more} other streams"] * (more > 0)
-    return "; ".join(filter(None, [*texts, unread_text(heads)]))
+    return "; ".join(texts)
+
+
+def _is_left(stream: PacketStream, taken: set[int]) -> bool:
+    """Whether a stream of points was not taken for a sensor."""
+    return stream.kind == "data" and id(stream) not in taken
 
 
 def sensors_of(streams: list[PacketStream], open_file: OpenFile) -> list[tuple[PacketStream, ...]]:
@@ -332,50 +349,3 @@ def _lidar(stream: PacketStream) -> Stream:
         stream.port,
         serial=stream.found.serial if stream.found and stream.shared else "",
     )
-
-
-def _match(
-    sensors: Sequence[Sensor], groups: list[tuple[PacketStream, ...]], report: ImportReport
-) -> dict[int, tuple[PacketStream, ...]]:
-    """Row of the sensor to its streams."""
-    chosen: dict[int, tuple[PacketStream, ...]] = {}
-    left = list(groups)
-    for row in sorted(range(len(sensors)), key=lambda row: not sensors[row].address):
-        fitting = [s for s in left if fits(sensors[row], s[0].source, s[0].port)]
-        fitting = [s for s in fitting if _is_of(s[0], sensors[row])] or fitting
-        if fitting:
-            chosen[row] = _full(fitting, fitting)[0]
-            left.remove(chosen[row])
-    likely = _full(left, groups)
-    for row in (row for row in range(len(sensors)) if row not in chosen):
-        if not likely:
-            break
-        streams = min(likely, key=lambda streams: streams[0].port != sensors[row].port)
-        chosen[row] = streams
-        left.remove(streams)
-        likely.remove(streams)
-        expected = sensors[row].address
-        where: dict[str, Value] = {"address": expected} if expected else {"anywhere": True}
-        report.derive(
-            DerivedKind.SENSOR_ELSEWHERE,
-            sensor=sensors[row].name,
-            sender=streams[0].label,
-            port=sensors[row].port,
-            **where,
-        )
-    for streams in left:
-        report.warn(FindingKind.PACKETS_UNASSIGNED, sender=streams[0].label)
-    return chosen
-
-
-def _is_of(stream: PacketStream, sensor: Sensor) -> bool:
-    """Whether a stream of an address and port that several sensors share is of this one."""
-    return not stream.shared or sensor.serial == (stream.found.serial if stream.found else "")
-
-
-def _full(
-    some: list[tuple[PacketStream, ...]], all_of: list[tuple[PacketStream, ...]]
-) -> list[tuple[PacketStream, ...]]:
-    """Those that are no trickle beside the largest of others."""
-    most = max((sum(s.packets for s in streams) for streams in all_of), default=0)
-    return [k for k in some if sum(s.packets for s in k) >= CAPTURE_STREAMS.foreign_ratio * most]

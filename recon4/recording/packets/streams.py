@@ -26,6 +26,7 @@ from recon4.recording.limits import LIMITS
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, Recognized
+from recon4.recording.packets.makes import can_be_of
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -100,6 +101,7 @@ class PacketStream:
     def text(self) -> str:
         """What its packets are, for messages that say why there is no data."""
         what = _CONTENTS.get(self.kind, self.refused)
+        what += f" of a {self.model}" * bool(self.kind == "data" and self.model)
         return f"{self.packets} packets from {self.label} ({what})"
 
 
@@ -201,6 +203,8 @@ def late_stream(
             continue
         found = recognized(mine, companions)
         if found is None or found.kind != "data":
+            continue
+        if not can_be_of(sensor, found, mine, companions):
             continue
         return PacketStream(
             file=path,

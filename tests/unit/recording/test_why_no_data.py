@@ -5,11 +5,14 @@ import struct
 import numpy as np
 import pytest
 
-from recon4.errors import EmptyRecording
+from recon4.errors import ConfigError, EmptyRecording
+from recon4.model.rig import parse_rig
 from recon4.recording.info import describe
 from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import rig_to_complete
+from tests.builders import write_room_bag
+from tests.unit.recording.ingested import run
 from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
 from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture, read
 from tests.warned import K, warned, words
@@ -136,6 +139,50 @@ def test_a_sensor_of_the_rig_whose_packets_are_refused_says_why(tmp_path):
 
     flags = "80 of 80 data packets: blocks without their flag"
     assert warned(report, K.PACKETS_MISSING, sensor="b", found=flags)
+
+
+@pytest.mark.parametrize("model", ["XT32", "OS1-64", "Mid-360"])
+def test_a_capture_against_the_rig_of_another_make_says_what_sends_and_what_is_expected(
+    tmp_path, model
+):
+    path = capture(tmp_path / "v.pcap", (FIRST, 2370, spin(100)))
+    other = rig(sensor("top", model=model, port=2368, address="10.0.0.5"))
+
+    with pytest.raises(EmptyRecording) as caught:
+        run(path, out=tmp_path / "o", rig=other)
+
+    text = str(caught.value)
+    assert f"expects top: {model} from 10.0.0.5 to port 2368; the recording has" in text
+    assert "100 packets from 192.168.1.201 to port 2370 (data packets of a VLP-16)" in text
+    assert "recon4 info RECORDING --rig-out rig.toml" in text
+
+
+def test_packets_of_another_make_are_none_of_a_sensor_beside_others(tmp_path):
+    path = capture(tmp_path / "v.pcap", (FIRST, 2368, spin(100)), (SECOND, 2369, spin(100)))
+
+    _, points, _, report = read(
+        [path], rig(sensor("a", port=2368), sensor("b", model="XT32", port=2369))
+    )
+
+    assert points == {0: 100 * 384}
+    assert warned(
+        report, K.PACKETS_MISSING, sensor="b", found="port 2369 (data packets of a VLP-16)"
+    )
+
+
+@pytest.mark.parametrize(
+    ("model", "topic"), [("VLP-16", "/other/packets"), ("XT32", "/velodyne_packets")]
+)
+def test_a_bag_against_another_rig_says_its_topics_and_those_expected(tmp_path, model, topic):
+    bag = write_room_bag(tmp_path, "mcap", seconds=0.3)
+    other = parse_rig(f'[[sensor]]\nname = "top"\nmodel = "{model}"\ntopic = "{topic}"', where="r")
+
+    with pytest.raises(ConfigError) as caught:
+        run(bag, out=tmp_path / "o", rig=other)
+
+    text = str(caught.value)
+    assert f"expects top: {model} in {topic}; the recording has /velodyne_packets" in text
+    assert "VLP-16; correct the rig" in text
 
 
 def test_a_capture_of_other_protocols_names_them(tmp_path):
