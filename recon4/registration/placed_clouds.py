@@ -85,5 +85,6 @@ def placed_text(name: str, moves_m: float) -> str:
         f"{name}: its points are in the frame of a map already: the view moves on by "
         f"{moves_m:.1f} m in ten clouds, and all that was seen stays in place. Expected the points "
         "as the sensor measured them: topic or files before the odometry (as /points_raw), not "
-        "registered ones (as /cloud_registered)"
+        "registered ones (as /cloud_registered). If they are as measured: set as_measured of "
+        "ingest (page: All settings; command: --set ingest.as_measured=true)"
     )

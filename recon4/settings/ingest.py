@@ -21,6 +21,9 @@ class IngestSettings(Checked):
     deskewed: bool = False
     """The clouds are undistorted already, or the sensor stood still: all points are taken as
     measured at the cloud's stamp. For terrestrial laser scans and clouds of other programs."""
+    as_measured: bool = False
+    """The clouds are as their sensor measured them, although they look like clouds that a program
+    has put into the frame of its map: they are not refused for it."""
     points_unit_m: Annotated[float, ValueRange(1e-6, 1e3, "m")] = 1.0
     """Unit of the points of clouds [m]: 0.001 if they are in millimeters."""
 

@@ -66,7 +66,8 @@ def _frames(
     sources = Sources(recordings, rig, imu, gnss)
     ingest(sources, context.out, settings=context.settings.ingest, progress=context.progress)
     store = FrameStore.open(context.out)
-    if moves_m := view_moves_on(store):
+    as_measured = context.settings.ingest.as_measured
+    if moves_m := 0.0 if as_measured else view_moves_on(store):
         raise UnknownFormat(placed_text(recordings[0].name, moves_m))
     jumps = clock_jumps(store, store.index["t_ns"])
     if jumps:  # read once more, because a revolution may go on across a jump

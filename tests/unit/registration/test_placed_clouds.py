@@ -6,11 +6,18 @@ import numpy as np
 import pytest
 from msgspec import structs
 
+from recon4.errors import UnknownFormat
+from recon4.progress import Silent
 from recon4.registration import placed_clouds
 from recon4.registration.placed_clouds import view_moves_on
 from recon4.registration.tuning_motion import PLACED
+from recon4.settings import IngestSettings
+from recon4.settings.reads import ImportReads
+from recon4.store.stage import StageContext
+from recon4.workflows.stages import FRAMES
 from tests.room_walks import T0_NS
 from tests.scanned_room import ScannedWalk, standing, strolling, walk
+from tests.unit.recording.ingested import frame_folder
 
 
 def placed(made, pose):
@@ -66,3 +73,18 @@ def test_a_lidar_that_stands_and_never_scans_twice_alike_is_no_placed_cloud(monk
 
 def test_a_short_walk_shows_nothing():
     assert view_moves_on(placed(walk(strolling, 8, with_imu=False, columns=60), strolling)) == 0.0
+
+
+def test_who_knows_that_clouds_are_as_measured_says_so_in_a_setting(tmp_path, monkeypatch):
+    monkeypatch.setattr(placed_clouds, "view_moves_on", lambda frames: 0.5)
+    folder = frame_folder(tmp_path / "f", ["0.pcd", "1.pcd"])
+
+    def read(name, **options):
+        settings = ImportReads(ingest=IngestSettings(**options))
+        (tmp_path / name).mkdir()
+        context = StageContext(tmp_path / name, settings, Silent())
+        return FRAMES.function(context, recordings=(folder,), rig=None, imu=None, gnss=None)
+
+    with pytest.raises(UnknownFormat, match=r"--set ingest\.as_measured=true"):
+        read("refused")
+    assert read("read", as_measured=True).multiframes == 2
