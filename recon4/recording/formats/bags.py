@@ -344,10 +344,10 @@ class Bag:
             for topic in source.index.topics.values():
                 key = (topic.topic, topic.msgtype)
                 counts[key] = counts.get(key, 0) + topic.msgcount
-                if topic.msgtype not in PACKET_MESSAGES:
-                    known = definitions.get(topic.msgtype)
-                    definitions[topic.msgtype] = known or topic.definition
-        self._points = point_readers(definitions)
+                known = definitions.get(topic.msgtype)
+                definitions[topic.msgtype] = known or topic.definition
+        points = {k: text for k, text in definitions.items() if k not in PACKET_MESSAGES}
+        self._points, self._types = point_readers(points), MessageTypes(definitions)
         self.topics = tuple(self._topic(n, t, c) for (n, t), c in sorted(counts.items()))
         filled = [s.index for s in self._sources if s.index.message_count]
         require_one_walk(

@@ -99,14 +99,23 @@ class PointRow:
 
 
 def _of_livox(message: Any, *, noise: bool) -> Columns:
-    """Points of Livox's drivers; their times count from that of the message."""
+    """Points of Livox's drivers; their times count from that of the message.
+
+    The first driver had an even step from point to point, and neither times nor tags; forks name
+    the reflectivity an intensity.
+    """
     points: Columns = message.points
     stamp = message.header.stamp
     base = message.timebase or stamp.sec * 1_000_000_000 + stamp.nanosec
-    since = points["offset_time"].astype(np.int64) + min(base, _LATEST_NS)
-    table = {name: points[name] for name in ("x", "y", "z", "tag", "line")}
-    table |= {"intensity": points["reflectivity"], EXACT_TIME: since}
-    if noise:
+    table: Columns = {
+        name: points[name] for name in ("x", "y", "z", "tag", "line") if name in points
+    }
+    table["intensity"] = points["reflectivity" if "reflectivity" in points else "intensity"]
+    step_ns = int(getattr(message, "timestep", 0))
+    since = points.get("offset_time", np.arange(len(table["x"])) * step_ns if step_ns else None)
+    if since is not None:
+        table[EXACT_TIME] = since.astype(np.int64) + min(base, _LATEST_NS)
+    if noise and "tag" in points:
         table |= {"noise": is_noise(points["tag"]), "echo": echo_of_tag(points["tag"])}
     return table
 

@@ -1,12 +1,18 @@
-"""Types of messages that are decoded with definitions from here, never with those in a bag."""
+"""Types of messages that are decoded with definitions from here.
+
+Messages of packets whose definition in the bag is another one are read by that, field by field.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
 from functools import cache
+from types import MappingProxyType
 from typing import Any
 
+from recon4.recording.formats.message_schema import read_message
+from recon4.recording.formats.own_packets import own_schemas
 from recon4.recording.packets.messages import DEFINITIONS, PACKET_MESSAGES
 
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
@@ -31,16 +37,27 @@ def typestore(*, ros1: bool) -> Any:
 class MessageTypes:
     """Decodes the messages of a bag, and keeps which version of a type it holds."""
 
-    def __init__(self) -> None:
-        """Begin with the usual versions."""
+    def __init__(self, definitions: Mapping[str, str] = MappingProxyType({})) -> None:
+        """Begin with the usual versions.
+
+        Args:
+            definitions: Type of the messages of a bag -> its definition in the bag.
+
+        Raises:
+            CorruptFile: If that of a message of packets lacks what is needed.
+        """
         self._found: dict[str, str] = {}
+        self._own = own_schemas(definitions)
 
     def decode(self, kind: str, data: bytes, *, ros1: bool) -> Any:
-        """A message as an object with its fields, by the first version that takes all its bytes.
+        """A message as an object with its fields, by the definition in the bag if it is another one
+        than those known, else by the first version that takes all its bytes.
 
         Raises:
             Exception: Of many kinds, from generated code, if it fits none.
         """
+        if kind in self._own:
+            return read_message(self._own[kind], data, ros1=ros1)
         store = typestore(ros1=ros1)
         decode = store.deserialize_ros1 if ros1 else store.deserialize_cdr
         last, *others = sorted(_names_of(kind), key=self._found.get(kind, kind).__eq__)

@@ -239,13 +239,17 @@ def no_sender(payloads: Payloads) -> list[str]:
     return [""] * len(payloads)
 
 
+def stamp_ns(stamped: Any) -> int:
+    """The stamp of a decoded header or packet [ns]."""
+    return int(stamped.stamp.sec) * SECOND_NS + int(stamped.stamp.nanosec)
+
+
 def stamped_packet(packet: Any) -> tuple[int, bytes]:
     """Time of arrival [ns] and bytes of a decoded packet with ``stamp`` and ``data``; of a fixed
     room for ``data`` those that ``size`` counts.
     """
     size = int(getattr(packet, "size", len(packet.data)))
-    t_ns = int(packet.stamp.sec) * SECOND_NS + int(packet.stamp.nanosec)
-    return t_ns, np.asarray(packet.data, np.uint8)[:size].tobytes()
+    return stamp_ns(packet), np.asarray(packet.data, np.uint8)[:size].tobytes()
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,7 @@ from recon4.recording.packets.family import (
     PacketSensor,
     Payloads,
     Recognized,
+    stamp_ns,
 )
 from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
 from recon4.recording.packets.ouster.data_packets import OusterPackets, turning_of
@@ -53,7 +54,9 @@ _SIZES_WITHOUT_HEADER = frozenset(one.size for one in USUAL_LAYOUTS if not one.p
 def packets_of_message(message: Any) -> list[tuple[int, bytes]]:
     """The packet in a message; LEGACY drivers send one spare byte, and all sizes are even."""
     packet = bytes(message.buf)
-    return [(0, packet[: len(packet) & ~1])]
+    header = getattr(message, "header", None)
+    t_ns = stamp_ns(header) if header is not None else 0
+    return [(t_ns, packet[: len(packet) & ~1])]
 
 
 def senders(payloads: Payloads) -> list[str]:
@@ -67,7 +70,12 @@ def senders(payloads: Payloads) -> list[str]:
 _PACKAGES = ("ouster_ros", "ouster_msgs", "ouster_sensor_msgs")
 """Of the drivers for ROS 1, early and later ROS 2."""
 _MESSAGES = {
-    name: MessagePackets({name: "uint8[] buf\n"}, packets_of_message, senders=senders)
+    name: MessagePackets(
+        {name: "uint8[] buf\n"},
+        packets_of_message,
+        senders=senders,
+        versions=({name: "std_msgs/Header header\nuint8[] buf\n"},),
+    )
     for name in (f"{package}/msg/PacketMsg" for package in _PACKAGES)
 }
 
