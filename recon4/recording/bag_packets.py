@@ -134,7 +134,7 @@ class PacketTopics:
 
     def _decoder(self, row: int, sensor: Sensor) -> PacketDecoder:
         found, head = self.packets.found(sensor.topic), self.packets.head(sensor.topic)
-        if not can_be_of(sensor, found, head, self.packets.companions):
+        if not can_be_of(sensor, found, head=head, companions=self.packets.companions):
             model = found.model or found.family if found else ""
             raise ConfigError(mismatch_text(self.rig, f"{sensor.topic}: packets of a {model}"))
         beside = self._samples_of(sensor)

@@ -187,9 +187,7 @@ def ingest(
         receivers = _Receivers(writer, found, live.watch)
         written = _write_frames(recording, assembler, receivers, progress=progress)
         if not written.duration_ns:
-            unread = report.nothing_decoded and bool(recording.seen)
-            seen = f"; {recording.seen}" * unread
-            raise EmptyRecording(f"{paths[0].name}: {report.why_no_points()}{seen}")
+            raise EmptyRecording(f"{paths[0].name}: {report.why_no_points(recording.seen)}")
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)

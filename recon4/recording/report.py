@@ -119,13 +119,18 @@ class ImportReport:
     def _losses(self) -> list[Loss]:
         return losses(self.counts, self.details) + replaced(self.counts, self.details)
 
-    def why_no_points(self) -> str:
-        """That there is no usable point, with all that was counted."""
+    def why_no_points(self, seen: str = "") -> str:
+        """That there is no usable point, with all that was counted.
+
+        Args:
+            seen: What the recording has against its rig; said if no packet was one of a sensor.
+        """
         counted = "; ".join(self.text(name) for name in sorted(self.counts))
-        return f"no usable points ({counted or 'nothing read'})"
+        more = f"; {seen}" * bool(seen and self._nothing_decoded)
+        return f"no usable points ({counted or 'nothing read'}){more}"
 
     @property
-    def nothing_decoded(self) -> bool:
+    def _nothing_decoded(self) -> bool:
         """Whether there was no cloud and no packet as long as those of its sensor."""
         counts = self.counts
         return not counts["clouds"] and counts["packets"] <= counts["packets_wrong_length"]

@@ -12,7 +12,7 @@ from recon4.recording.packets.family import Companion, Recognized
 
 
 def can_be_of(
-    sensor: Sensor, found: Recognized | None, head: Datagrams, companions: Sequence[Companion]
+    sensor: Sensor, found: Recognized | None, *, head: Datagrams, companions: Sequence[Companion]
 ) -> bool:
     """Whether the family of a sensor's model reads some packets; its model may be forced.
 

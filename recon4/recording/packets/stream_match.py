@@ -66,7 +66,7 @@ def match_streams(
 
 
 def _can_be(stream: PacketStream, sensor: Sensor, companions: Sequence[Companion]) -> bool:
-    return can_be_of(sensor, stream.found, stream.head, companions)
+    return can_be_of(sensor, stream.found, head=stream.head, companions=companions)
 
 
 def _is_of(stream: PacketStream, sensor: Sensor) -> bool:

@@ -204,7 +204,7 @@ def late_stream(
         found = recognized(mine, companions)
         if found is None or found.kind != "data":
             continue
-        if not can_be_of(sensor, found, mine, companions):
+        if not can_be_of(sensor, found, head=mine, companions=companions):
             continue
         return PacketStream(
             file=path,

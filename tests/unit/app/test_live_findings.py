@@ -29,7 +29,9 @@ WITH_ADDRESSES = parse_rig(
 )
 
 
-FIRST = sender(2368)
+CHECK = "check power and cables, and that it sends to port 2368, 2369 of this computer"
+PORTS = "2368, 2369", "8311, 8312"
+FIRST, SILENT = sender(2368), sender(2368, 0.0, silent_s=4.0)
 SECOND = sender(2369, source="10.0.0.2")
 IMU = sender(8309, 200.0)
 
@@ -62,15 +64,10 @@ def test_no_sensor_is_silent_in_the_first_seconds():
         ((FIRST, IMU), "vertical LiDAR silent for 60 s"),
         ((FIRST, sender(2369, 5.0, data_per_s=0.0), IMU), "vertical LiDAR silent for 60 s"),
         (
-            (sender(2368, 0.0, silent_s=4.0), sender(2369, 0.0, silent_s=200.0), IMU),
-            "No LiDAR sends anything for 4 s: check power and cables, and that it sends to "
-            "port 2368, 2369 of this computer",
+            (SILENT, sender(2369, 0.0, silent_s=200.0), IMU),
+            f"No LiDAR sends anything for 4 s: {CHECK}",
         ),
-        (
-            (IMU,),
-            "No LiDAR sends anything for 60 s: check power and cables, and that it sends to "
-            "port 2368, 2369 of this computer",
-        ),
+        ((IMU,), f"No LiDAR sends anything for 60 s: {CHECK}"),
     ],
 )
 def test_a_silent_lidar_is_named_with_how_long(senders, text):
@@ -320,11 +317,7 @@ def test_scans_are_no_data_packets_and_still_counted():
     [
         ((sender(8311, 0.0, silent_s=5.0), LINES, IMU), "2-D laser silent for 5 s"),
         ((SCANS, sender(8312, 0.0, silent_s=7.0), IMU), "Profiler silent for 7 s"),
-        (
-            (IMU,),
-            "No scanner sends anything for 60 s: check power and cables, and that it sends to "
-            "port 8311, 8312 of this computer",
-        ),
+        ((IMU,), f"No scanner sends anything for 60 s: {CHECK.replace(*PORTS)}"),
     ],
 )
 def test_a_silent_scanner_is_named_by_its_kind(senders, text):
