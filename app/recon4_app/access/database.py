@@ -23,13 +23,21 @@ from recon4_app.databases import migrate, open_engine
 from recon4_app.errors import NoRoom
 
 METADATA = sa.MetaData()
+
+
+def _texts(*names: str, nullable: bool = False) -> list[sa.Column[str]]:
+    return [sa.Column(name, sa.String, nullable=nullable) for name in names]
+
+
+def _numbers(*names: str, nullable: bool = False) -> list[sa.Column[float]]:
+    return [sa.Column(name, sa.Float, nullable=nullable) for name in names]
+
+
 PEOPLE = sa.Table(
     "people",
     METADATA,
     sa.Column("key", sa.String, primary_key=True),
-    sa.Column("name", sa.String, nullable=False),
-    sa.Column("role", sa.String, nullable=False),
-    sa.Column("password", sa.String, nullable=False),
+    *_texts("name", "role", "password"),
     sa.Column("disabled", sa.Boolean, nullable=False),
     sa.Column("created", sa.String, nullable=False),
 )
@@ -41,14 +49,9 @@ SESSIONS = sa.Table(
     sa.Column("id", sa.String, primary_key=True),
     sa.Column("token_hash", sa.String, unique=True, nullable=False),
     sa.Column("person", sa.String, nullable=False),
-    sa.Column("began_s", sa.Float, nullable=False),
-    sa.Column("proved_s", sa.Float, nullable=False),
-    sa.Column("seen_s", sa.Float, nullable=False),
-    sa.Column("address", sa.String, nullable=False),
-    sa.Column("agent", sa.String, nullable=False),
-    sa.Column("phone_role", sa.String, nullable=True),
-    sa.Column("guest_link", sa.String, nullable=True),
-    sa.Column("access_token", sa.String, nullable=True),
+    *_numbers("began_s", "proved_s", "seen_s"),
+    *_texts("address", "agent"),
+    *_texts("phone_role", "guest_link", "access_token", nullable=True),
     sa.Column("until_s", sa.Float, nullable=True),
 )
 """``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is the
@@ -61,14 +64,10 @@ GUEST_LINKS = sa.Table(
     METADATA,
     sa.Column("id", sa.String, primary_key=True),
     sa.Column("token_hash", sa.String, unique=True, nullable=False),
-    sa.Column("project", sa.String, nullable=False),
-    sa.Column("label", sa.String, nullable=False),
-    sa.Column("person", sa.String, nullable=False),
-    sa.Column("created_s", sa.Float, nullable=False),
-    sa.Column("until_s", sa.Float, nullable=False),
+    *_texts("project", "label", "person"),
+    *_numbers("created_s", "until_s"),
     sa.Column("opened", sa.Integer, nullable=False),
-    sa.Column("opened_s", sa.Float, nullable=True),
-    sa.Column("revoked_s", sa.Float, nullable=True),
+    *_numbers("opened_s", "revoked_s", nullable=True),
     sa.Column("revoked_by", sa.String, nullable=False),
 )
 """``person`` is the key of who made it; ``opened`` counts how often, ``opened_s`` is the last time;
@@ -87,13 +86,7 @@ AUDIT = sa.Table(
     "audit",
     METADATA,
     sa.Column("number", sa.Integer, primary_key=True),
-    sa.Column("time", sa.String, nullable=False),
-    sa.Column("person", sa.String, nullable=False),
-    sa.Column("address", sa.String, nullable=False),
-    sa.Column("action", sa.String, nullable=False),
-    sa.Column("object", sa.String, nullable=False),
-    sa.Column("outcome", sa.String, nullable=False),
-    sa.Column("hash", sa.String, nullable=False),
+    *_texts("time", "person", "address", "action", "object", "outcome", "hash"),
 )
 """Triggers reject changes and deletions of a row."""
 
@@ -101,9 +94,7 @@ WEBHOOKS_TABLE = sa.Table(
     "webhooks",
     METADATA,
     sa.Column("id", sa.String, primary_key=True),
-    sa.Column("url", sa.String, nullable=False),
-    sa.Column("secret", sa.String, nullable=False),
-    sa.Column("events", sa.String, nullable=False),
+    *_texts("url", "secret", "events"),
     sa.Column("created_s", sa.Float, nullable=False),
     sa.Column("by", sa.String, nullable=False),
 )
@@ -113,10 +104,7 @@ DELIVERIES = sa.Table(
     "deliveries",
     METADATA,
     sa.Column("number", sa.Integer, primary_key=True),
-    sa.Column("webhook", sa.String, nullable=False),
-    sa.Column("event", sa.String, nullable=False),
-    sa.Column("kind", sa.String, nullable=False),
-    sa.Column("body", sa.String, nullable=False),
+    *_texts("webhook", "event", "kind", "body"),
     sa.Column("created_s", sa.Float, nullable=False),
     sa.Column("attempts", sa.Integer, nullable=False),
     sa.Column("due_s", sa.Float, nullable=False),
