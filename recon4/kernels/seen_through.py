@@ -55,7 +55,7 @@ class SightRules(NamedTuple):
     """Edge of the cubes of which all points are like the first."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _vote(p: Place, own: int, v: int, views: RangeViews, rules: SightRules) -> int:
     """What a scan says of a place.
 
