@@ -35,10 +35,15 @@ class PointAccount:
         """Account for coordinates of the file (N, 3) and classes (N,)."""
         if not len(xyz):
             return
-        self.count += len(xyz)
         # Column by column: along the rows of a narrow array NumPy takes five times as long.
-        self.low_m = np.minimum(self.low_m, [column.min() for column in xyz.T])
-        self.high_m = np.maximum(self.high_m, [column.max() for column in xyz.T])
+        corners = np.array([(column.min(), column.max()) for column in xyz.T]).T
+        self.add_summary(len(xyz), corners, classification)
+
+    def add_summary(self, count: int, corners: Array, classification: NDArray[np.uint8]) -> None:
+        """Account for points by their number, lowest and highest coordinates (2, 3) and classes."""
+        self.count += count
+        self.low_m = np.minimum(self.low_m, corners[0])
+        self.high_m = np.maximum(self.high_m, corners[1])
         self.classes += np.bincount(classification, minlength=256)
 
     def add_stored(self, rows: NDArray[Any]) -> None:

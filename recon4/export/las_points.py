@@ -147,11 +147,15 @@ def las_points(block: Block, header: Any, records: NDArray[np.void]) -> Any:
 
 def add_records(account: PointAccount, records: NDArray[np.void], header: Any) -> None:
     """Account for records that were read, (N,)."""
+    if not len(records):
+        return
+    ends = np.array([(records[axis].min(), records[axis].max()) for axis in "XYZ"]).T
     points = laspy.ScaleAwarePointRecord(
         records, header.point_format, header.scales, header.offsets
     )
-    xyz = np.stack([points.x, points.y, points.z], axis=1)
-    account.add(xyz, np.asarray(points.classification))
+    # The place of a step grows with it, so the outermost steps are at the bounds.
+    corners = ends * header.scales + header.offsets
+    account.add_summary(len(records), corners, np.asarray(points.classification))
 
 
 def values_header(values: Mapping[str, str], crs: str, offset_m: NDArray[np.float64]) -> Any:

@@ -154,8 +154,10 @@ class PointSource:
                     watch.advance(len(block.xyz))
 
     def _of_tile(self, tile: Tile, fields: list[str]) -> Iterator[Block]:
-        columns = tile.read_in_space(["xyz", *fields])
-        columns["classification"] = _classification(tile)
+        stated = ["classification"] if "classification" in tile.fields else []
+        columns = tile.read_in_space(["xyz", *fields, *stated])
+        if not stated:
+            columns["classification"] = _earlier_classification(tile)
         origin_m = np.array(tile.origin_m)
         if not self.selection.is_whole:
             rows = self.selection.rows(columns, origin_m)
@@ -190,13 +192,11 @@ class PointSource:
         return int(np.count_nonzero(self.selection.in_box(xyz)))
 
 
-def _classification(tile: Tile) -> NDArray[np.uint8]:
-    """Classes of the points of a tile in spatial order, (N,).
+def _earlier_classification(tile: Tile) -> NDArray[np.uint8]:
+    """Classes of the points of a tile in spatial order, (N,), in a map from before there were any.
 
-    Maps from before there were classes have stray returns only, as low or high noise.
+    Such maps have stray returns only, as low or high noise.
     """
-    if "classification" in tile.fields:
-        return np.asarray(tile.read_in_space(["classification"])["classification"], np.uint8)
     if not tile.left_out:
         return np.zeros(len(tile), np.uint8)
     alone = ~tile.read_in_space(["normal"])["normal"].any(axis=1)
