@@ -265,7 +265,8 @@ async function updateEffect() {
   /** @type {Effect | null} */
   let effect = null;
   if (state.hasDecisions) {
-    const found = await attempt(message, () => readEffect(id));
+    // What is said of a decision stays: that it was refused, and who decided meanwhile.
+    const found = await readEffect(id).catch((error) => showError(message, error));
     if (request !== effects.requested || !found) return;
     // Decided meanwhile, or an earlier request came late.
     if ("superseded" in found) return updateEffect();

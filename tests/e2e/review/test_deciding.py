@@ -224,6 +224,26 @@ def test_decisions_of_others_appear_without_a_click(opened, root):
     expect(page.locator("#news")).to_be_empty()
 
 
+@looks("phone dark")
+def test_a_refused_decision_goes_on_saying_who_decided_meanwhile(opened, root):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    words = page.locator("#pair h2").text_content().split()
+    pair = tuple(int(word) for word in words if word.isdigit())
+
+    def too_late(route):
+        append(root, Decision(kind=DecisionKind.REJECT, who="Eva", pair=pair))
+        route.continue_()
+
+    page.route("**/review/decisions", too_late)
+    with page.expect_response("**/review/effect*"):
+        page.keyboard.press("a")
+
+    expect(page.locator("#effect")).to_contain_text("Chi-square")
+    expect(page.locator("#message")).to_contain_text("Eva")
+
+
 @looks("desktop dark")
 def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
     page = opened
