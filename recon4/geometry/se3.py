@@ -198,7 +198,7 @@ class SE3:
     def moves_more_than(self, limit_m: float) -> bool:
         """Whether `size_m` of one pose is above a limit.
 
-        Most are told by a bound without a logarithm: the norm of R - I is sqrt(8) times the sine
+        Most are decided by a bound without a logarithm: the norm of R - I is sqrt(8) times the sine
         of half the angle, which is at least a pi-th of the angle.
         """
         turn_rad = np.pi / np.sqrt(8.0) * np.linalg.norm(self.R - np.eye(3))
