@@ -7,6 +7,7 @@ from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
@@ -33,7 +34,8 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
     """
     names = [name for name in get_args(ColumnName) if FIELD_OF[name] in tiles.fields]
     sizes = sample_sizes(tiles)
-    low, high = _extent(_sample(tiles, sizes, ["xyz"])["xyz"])
+    sample = _sample(tiles, sizes, ["xyz"])["xyz"]
+    low, high = _extent(sample)
     found = _values(tiles, names)
     sampled = np.unique(found["classification"]).tolist() if "classification" in found else []
     percent = _class_percent(tiles)
@@ -43,7 +45,7 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
         points=len(tiles),
         low_m=_xyz(low),
         high_m=_xyz(high),
-        tiles=_tiles(tiles, sizes),
+        tiles=_tiles(tiles, sizes, sample),
         columns=[_column(name, found[FIELD_OF[name]], tiles) for name in names],
         classes={int(code): class_name(int(code)) for code in percent or sampled},
         class_percent=percent,
@@ -169,8 +171,33 @@ def _extent(p_map: Array) -> tuple[Array, Array]:
     return low - margin, high + margin
 
 
-def _tiles(tiles: TileSet, sizes: NDArray[np.int64]) -> list[MapTile]:
-    area_m2 = Cloud(tiles).boxes.area_m2
+def surfaces_m2(p_map: Array, sizes: NDArray[np.int64], least_m2: Array) -> Array:
+    """Surface that the points of each tile lie on [m²], (T,).
+
+    Of evenly spread points the nearest one is at half the root of the surface that each has, on
+    the average (Clark and Evans 1954, eq. 1). Tiles with few points are as the median of others.
+
+    Args:
+        p_map: Even samples of the tiles, one after the other [m], (N, 3).
+        sizes: Points of each, (T,).
+        least_m2: Smallest surface of each, that of the cells in which a map has one point, (T,).
+    """
+    ratio = np.full(len(sizes), np.nan)
+    for row in np.flatnonzero(sizes >= FIRST_VIEW.spread_points).tolist():
+        end = int(sizes[: row + 1].sum())
+        part = p_map[end - int(sizes[row]) : end]
+        away_m = cKDTree(part).query(part, k=2)[0][:, 1]
+        ratio[row] = len(part) * (2.0 * away_m.mean()) ** 2 / max(least_m2[row], 1e-9)
+    known = ratio[np.isfinite(ratio)]
+    usual = float(np.median(known)) if len(known) else 1.0
+    return np.asarray(least_m2 * np.maximum(np.where(np.isfinite(ratio), ratio, usual), 1.0))
+
+
+def _tiles(tiles: TileSet, sizes: NDArray[np.int64], sample: Array) -> list[MapTile]:
+    boxes = Cloud(tiles).boxes
+    x, y, z = (boxes.high_m - boxes.low_m).T
+    most_m2 = np.maximum(2.0 * (x * y + y * z + z * x), boxes.area_m2)
+    area_m2 = np.minimum(surfaces_m2(sample, sizes, boxes.area_m2), most_m2)
     cube = np.zeros(len(tiles.tiles), np.int64)
     for row, own in enumerate(cubes_of(tiles)):
         cube[own] = row

@@ -8,7 +8,7 @@ from msgspec import Struct
 class MapChunkTuning(Struct, frozen=True, kw_only=True):
     """Points as they are sent."""
 
-    version: int = 4
+    version: int = 5
     """Part of the names of kept files and of ETags: layout of index, sample and chunks."""
     sample_points: int = 60_000
     """Points of the coarsest sample of the whole map, which is sent first."""
@@ -44,6 +44,8 @@ class FirstViewTuning(Struct, frozen=True, kw_only=True):
 
     most_tiles: int = 128
     """Of a larger map, color scales and storeys are those of as many tiles, drawn at random."""
+    spread_points: int = 30
+    """Points of a sample of a tile that tell how far apart its points are."""
     usual_percent: tuple[float, float] = (2.0, 98.0)
     """Ends of a color scale, among the values of the sample [%]."""
     extent_percent: tuple[float, float] = (0.5, 99.5)

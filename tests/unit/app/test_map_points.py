@@ -8,12 +8,14 @@ import pytest
 from recon4.mapping.tiles import TileSet
 from recon4.store.project import read_artifacts
 from recon4_app.map_view import index, points
-from recon4_app.map_view.index import _extent, _values, storeys
+from recon4_app.map_view.index import _extent, _values, storeys, surfaces_m2
 from recon4_app.map_view.points import _shown_order, encoded, read_shown
 from recon4_app.map_view.tuning import FIRST_VIEW
 from tests.project_builder import build_project
 
 BOX = np.random.default_rng(3).uniform(0.0, (20.0, 10.0, 3.0), (50_000, 3))
+
+CELLS_M2 = np.array([4.0, 2.0, 0.01])
 
 
 @pytest.fixture(scope="module")
@@ -50,6 +52,17 @@ def test_stray_points_do_not_decide_the_extent():
     low, high = _extent(np.vstack([BOX, strays]))
 
     assert (low > -1.0).all() and (high < (21.0, 11.0, 4.0)).all()
+
+
+def test_points_that_are_far_apart_have_a_large_surface():
+    rng = np.random.default_rng(8)
+    sparse = np.column_stack([rng.uniform(0, 20, (500, 2)), np.zeros(500)])
+    dense = np.column_stack([rng.uniform(0, 1, (500, 2)), np.zeros(500)])
+
+    found = surfaces_m2(np.vstack([sparse, dense, sparse[:3]]), np.array([500, 500, 3]), CELLS_M2)
+
+    assert found[:2] == pytest.approx([400.0, 2.0], rel=0.15)  # of the dense one that of its cells
+    assert found[2] == pytest.approx(CELLS_M2[2] * np.median(found[:2] / CELLS_M2[:2]), rel=0.5)
 
 
 def test_each_storey_has_its_floor_and_stairs_are_none():
