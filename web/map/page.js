@@ -3,6 +3,7 @@
 import { decimal, t } from "../shared/texts.js";
 import { parse } from "./state.js";
 import { planesOf } from "./clip.js";
+import { usualColor } from "./colors.js";
 import { lineOf } from "./places.js";
 
 /**
@@ -98,9 +99,7 @@ export function colorShown() {
   const { color } = state;
   if (color && (["height", "plain"].includes(color) || names.includes(color))) return color;
   if (color === "class" && index && Object.keys(index.classes).length) return color;
-  return /** @type {ColorBy} */ (
-    ["normalized", "intensity"].find((name) => names.includes(name)) ?? "height"
-  );
+  return usualColor(index?.columns ?? []);
 }
 
 /** Colors that this map can be shown in. */
