@@ -75,13 +75,14 @@ const all = (name, parallel) => fitted(VIEWS[name], parallel);
  * @param {boolean} parallel
  */
 function fitted(look, parallel) {
-  const { index } = page;
+  const [{ index }, { width, height }] = [page, screen()];
   if (!index) throw new Error("the map has not been read");
-  const { width, height } = screen();
   const covered = page.panel && width > 2 * PANEL_PX ? PANEL_PX : 0;
-  const free = { width: width - covered, height };
+  const bars = Math.min(byId("bar").offsetHeight, height / 3);
+  const free = { width: width - covered, height: height - bars };
   const made = viewOf(look, { index, screen: free, heights: shown.heightsShown(), parallel });
-  return panned(made, screen(), [-covered / 2, 0]);
+  made.distance *= height / free.height; // as high as `free`, not as the image
+  return panned(made, screen(), [-covered / 2, bars / 2]);
 }
 
 /** Changes the state, the address, and what depends on them. */
@@ -132,6 +133,9 @@ function flyTo(/** @type {Camera} */ goal) {
 function draw() {
   const { index, state } = page;
   if (!index || !run.canvas) return;
+  document.body.classList.toggle("with-tool", page.tool !== "");
+  document.body.classList.toggle("with-panel", page.panel);
+  drawBar(byId("bar"), act); // the map is fitted below it
   run.canvas.drawing = {
     camera: camera(),
     color: shown.colorShown(),
@@ -142,9 +146,6 @@ function draw() {
     dark: dark.matches,
     layers: { walk: state.layers.includes("walk"), nodes: state.layers.includes("nodes") },
   };
-  document.body.classList.toggle("with-tool", page.tool !== "");
-  document.body.classList.toggle("with-panel", page.panel);
-  drawBar(byId("bar"), act);
   drawPanel(byId("panel"), act);
   drawProfile(byId("profile"), profile);
   drawDivider(byId("divider"), act);

@@ -120,7 +120,8 @@ export class MapCanvas {
   set drawing(/** @type {Drawing} */ drawing) {
     const before = this.#drawing;
     this.#drawing = drawing;
-    if (before && before.camera !== drawing.camera) this.#moved = performance.now();
+    const same = JSON.stringify(before?.camera) === JSON.stringify(drawing.camera);
+    if (before && !same) this.#moved = performance.now();
     this.#finished = false;
     this.#refining = null;
     this.#ask();
