@@ -87,7 +87,7 @@ export function endText(/** @type {number} */ value, /** @type {string} */ unit)
  * @returns {import("./state.js").ColorBy}
  */
 export function usualColor(columns) {
-  const told = columns.filter(({ low, high, scale }) => high - low > 1.5 * scale);
+  const varied = columns.filter(({ low, high, scale }) => high - low > 1.5 * scale);
   const usual = /** @type {const} */ (["normalized", "intensity"]);
-  return usual.find((name) => told.some((one) => one.name === name)) ?? "height";
+  return usual.find((name) => varied.some((one) => one.name === name)) ?? "height";
 }

@@ -7,7 +7,6 @@ from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
@@ -182,6 +181,8 @@ def surfaces_m2(p_map: Array, sizes: NDArray[np.int64], least_m2: Array) -> Arra
         sizes: Points of each, (T,).
         least_m2: Smallest surface of each, that of the cells in which a map has one point, (T,).
     """
+    from scipy.spatial import cKDTree  # only where maps are read, not where a server starts
+
     ratio = np.full(len(sizes), np.nan)
     for row in np.flatnonzero(sizes >= FIRST_VIEW.spread_points).tolist():
         end = int(sizes[: row + 1].sum())
