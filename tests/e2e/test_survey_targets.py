@@ -49,3 +49,36 @@ def test_a_person_takes_the_targets_that_the_survey_names(server, page, screensh
     page.get_by_role("button", name="Take the chosen ones (3)").click()
     expect(page.get_by_text("3 points measured at their targets.")).to_be_visible()
     expect(page.locator(".verdict")).to_contain_text("1 more not measured")
+
+
+@looks("desktop light")
+def test_a_search_goes_on_when_the_page_is_opened_again_and_can_be_cancelled(server, page):
+    waiting = {
+        "id": "0011223344556677",
+        "state": "running",
+        "person": "",
+        "created": "",
+        "note": "",
+        "step": "boards",
+        "fraction": 0.34,
+        "kept": False,
+        "of_this_map": False,
+    }
+    searches = "**/slices/control/targets"
+    page.route(searches, lambda route: route.fulfill(json=[waiting]))
+    page.route(f"{searches}/*", lambda route: route.fulfill(json=waiting))
+    cancelled = []
+
+    def cancel(route):
+        cancelled.append(route.request.url)
+        waiting["state"] = "cancelled"
+        route.fulfill(json=waiting)
+
+    page.route(f"{searches}/*/cancel", cancel)
+    opened(page, server)
+    page.get_by_text("Control and check points").click()
+
+    expect(page.locator(".targets")).to_contain_text("board: 34 %")
+    page.locator(".targets").get_by_role("button", name="Cancel").click()
+    expect(page.get_by_role("button", name="Find targets in the whole map")).to_be_enabled()
+    assert len(cancelled) == 1

@@ -21,5 +21,6 @@ export * from "./api/map.js";
 export * from "./api/comparisons.js";
 export * from "./api/annotations.js";
 export * from "./api/slices.js";
+export * from "./api/targets.js";
 export * from "./api/rigs.js";
 export * from "./api/job_stream.js";

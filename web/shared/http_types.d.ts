@@ -697,6 +697,7 @@ export interface Inputs {
   remake: boolean;
   export: ExportOrder | null;
   compare: CompareOrder | null;
+  targets: TargetOrder | null;
 }
 
 export interface InvitationView {
@@ -1830,6 +1831,10 @@ export interface TargetList {
   rmse_m: number | null;
 }
 
+export interface TargetOrder {
+  radii_m: Array<number>;
+}
+
 export interface TargetRow {
   kind: TargetKind;
   p_map: [number, number, number];
@@ -1841,6 +1846,18 @@ export interface TargetRow {
   id: string;
   off_m: number | null;
   ambiguous: boolean;
+}
+
+export interface TargetSearch {
+  id: string;
+  state: JobState;
+  person: string;
+  created: string;
+  note: string;
+  step: string;
+  fraction: number | null;
+  kept: boolean;
+  of_this_map: boolean;
 }
 
 export interface Token {
@@ -2285,6 +2302,14 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/slices/control/targets": {
     path: { project_id: string };
+    response: Array<TargetSearch>;
+  };
+  "GET /api/projects/{project_id}/slices/control/targets/{search_id}": {
+    path: { project_id: string; search_id: string };
+    response: TargetSearch;
+  };
+  "GET /api/projects/{project_id}/slices/control/targets/{search_id}/found": {
+    path: { project_id: string; search_id: string };
     query?: { crs?: string };
     response: TargetList;
   };
@@ -2631,6 +2656,14 @@ export interface Operations {
     path: { project_id: string };
     body: SiteSystem;
     response: string;
+  };
+  "POST /api/projects/{project_id}/slices/control/targets": {
+    path: { project_id: string };
+    response: TargetSearch;
+  };
+  "POST /api/projects/{project_id}/slices/control/targets/{search_id}/cancel": {
+    path: { project_id: string; search_id: string };
+    response: TargetSearch;
   };
   "POST /api/projects/{project_id}/slices/image": {
     path: { project_id: string };

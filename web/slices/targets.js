@@ -1,12 +1,18 @@
 // Survey targets found in the whole map: proposals, of which a person takes some.
 
-import { findTargets } from "../shared/api.js";
+import {
+  cancelSearch,
+  listSearches,
+  orderSearch,
+  readFound,
+  readSearch,
+} from "../shared/api.js";
 import { attempt, html, nothing, render, targetOf, within } from "../shared/dom.js";
 import { decimal, t } from "../shared/texts.js";
 import { AXES } from "./measured.js";
 
 /**
- * @import {TargetList, TargetRow} from "../shared/http_types"
+ * @import {TargetList, TargetRow, TargetSearch} from "../shared/http_types"
  * @import {Measurement} from "./measured.js"
  * @typedef {object} TargetsPage what the section needs of the panel
  * @property {string} id of the project
@@ -17,6 +23,8 @@ import { AXES } from "./measured.js";
  */
 
 const MAX_OTHERS = 100;
+const WATCH_MS = 1000;
+const waits = (/** @type {TargetSearch} */ one) => ["queued", "running"].includes(one.state);
 const KINDS = {
   plate: t("target-plate"),
   board: t("target-board"),
@@ -35,6 +43,7 @@ export function targetsSection(host, { id, crs, stored, put, go }) {
     found: /** @type {TargetList | null} */ (null),
     chosen: /** @type {Set<string>} */ (new Set()),
     searching: false,
+    search: /** @type {TargetSearch | null} */ (null),
     taken: 0,
   };
   const set = (/** @type {Partial<typeof state>} */ changes) => {
@@ -47,11 +56,35 @@ export function targetsSection(host, { id, crs, stored, put, go }) {
     set({ searching: true, taken: 0 });
     try {
       await stored(); // else its points have no names yet
-      const found = await findTargets(id, crs());
-      const sure = found.rows.filter((one) => one.id && !one.ambiguous);
-      set({ found, chosen: new Set(sure.map((one) => one.id ?? "")) });
+      await watch(await orderSearch(id));
     } finally {
-      set({ searching: false });
+      set({ searching: false, search: null });
+    }
+  }
+
+  /** Waits for the end of a search, and shows what it found. */
+  async function watch(/** @type {TargetSearch} */ one) {
+    set({ searching: true, search: one });
+    while (waits(one)) {
+      await new Promise((resolve) => setTimeout(resolve, WATCH_MS));
+      one = await readSearch(id, one.id);
+      set({ search: one });
+    }
+    if (one.state === "failed") throw new Error(one.note);
+    if (one.state !== "succeeded") return; // a person cancelled it
+    const found = await readFound(id, one.id, crs());
+    const sure = found.rows.filter((row) => row.id && !row.ambiguous);
+    set({ found, chosen: new Set(sure.map((row) => row.id ?? "")) });
+  }
+
+  /** Goes on with a search that was ordered before the page was opened. */
+  async function resume() {
+    const [newest] = await listSearches(id);
+    if (!newest || !waits(newest) || state.searching) return;
+    try {
+      await watch(newest);
+    } finally {
+      set({ searching: false, search: null });
     }
   }
 
@@ -167,8 +200,21 @@ export function targetsSection(host, { id, crs, stored, put, go }) {
     }`;
   }
 
+  function progress(/** @type {TargetSearch} */ { id: search_id, state: now, step, fraction }) {
+    const kind = KINDS[/** @type {keyof typeof KINDS} */ (step.slice(0, -1))]; // "plates"
+    const what = kind ?? t("targets-tiles");
+    return html`<p role="status">
+        ${now === "queued" ? t("targets-wait") : `${what}: ${Math.round(100 * (fraction ?? 0))} %`}
+      </p>
+      <div class="buttons">
+        <button type="button" @click=${() => run(() => cancelSearch(id, search_id))}>
+          ${t("cancel")}
+        </button>
+      </div>`;
+  }
+
   function draw() {
-    const { found, searching, taken } = state;
+    const { found, searching, search: one, taken } = state;
     render(
       html`<h2>${t("targets-of-map")}</h2>
         <p class="quiet">${t("targets-are")}</p>
@@ -177,6 +223,7 @@ export function targetsSection(host, { id, crs, stored, put, go }) {
             ${searching ? t("searching-targets") : t("find-targets")}
           </button>
         </div>
+        ${one && waits(one) ? progress(one) : nothing}
         <p class="quiet" role="status">${taken ? t("targets-taken", { count: taken }) : ""}</p>
         <p class="error" role="alert"></p>
         ${found ? outcome(found) : nothing}`,
@@ -185,4 +232,5 @@ export function targetsSection(host, { id, crs, stored, put, go }) {
   }
 
   draw();
+  run(resume);
 }

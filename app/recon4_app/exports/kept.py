@@ -53,8 +53,8 @@ class KeptExports:
         return removed
 
     def _made(self) -> list[Job]:
-        """Exports and comparisons, newest first."""
-        kinds = JobKind.EXPORT, JobKind.COMPARE
+        """What was made of maps, newest first."""
+        kinds = JobKind.EXPORT, JobKind.COMPARE, JobKind.TARGETS
         made = [job for kind in kinds for job in self._jobs.of_kind(kind)]
         return sorted(made, key=lambda job: job.created, reverse=True)
 

@@ -22,6 +22,8 @@ class JobKind(StrEnum):
     """Makes a file of a finished map; any number of them may wait."""
     COMPARE = "compare"
     """Compares a finished map with another one; any number of them may wait."""
+    TARGETS = "targets"
+    """Looks for survey targets in a finished map; any number of them may wait."""
 
 
 class JobState(StrEnum):
@@ -70,6 +72,14 @@ class CompareOrder:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TargetOrder:
+    """Survey targets that are to be found in a map."""
+
+    radii_m: tuple[float, ...] = ()
+    """Radii of spheres that the survey states [m]; empty = those that are usual."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Inputs:
     """Inputs of a job, with paths of this computer."""
 
@@ -92,6 +102,8 @@ class Inputs:
     """Only make this file of the map; the other inputs are not used."""
     compare: CompareOrder | None = None
     """Only compare the map with this one; the other inputs are not used."""
+    targets: TargetOrder | None = None
+    """Only look for survey targets in the map; the other inputs are not used."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -123,6 +135,8 @@ class Job:
         """What it does."""
         if self.inputs.compare:
             return JobKind.COMPARE
+        if self.inputs.targets:
+            return JobKind.TARGETS
         return JobKind.EXPORT if self.inputs.export else JobKind.PROCESS
 
     @property

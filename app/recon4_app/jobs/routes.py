@@ -249,7 +249,8 @@ async def stream_jobs(server: Server, language: Language) -> AsyncIterator[Serve
     """Server-sent events: a ``job`` with a `JobView` for each change of a job.
 
     The stream begins with one for each project's newest job, unless that succeeded. Those of files
-    that are made of a map are events ``export``, those of comparisons ``compare``.
+    that are made of a map are events ``export``, those of comparisons ``compare``, those of
+    searches for survey targets ``targets``.
     """
     version = server.supervisor.version
     jobs = [job for job in server.jobs.latest().values() if job.state is not JobState.SUCCEEDED]

@@ -41,6 +41,7 @@ log = logging.getLogger(__name__)
 WORKERS = {
     JobKind.EXPORT: "recon4_app.jobs.export_worker",
     JobKind.COMPARE: "recon4_app.jobs.compare_worker",
+    JobKind.TARGETS: "recon4_app.jobs.target_worker",
 }
 """Modules that do what is made of a finished map."""
 
@@ -182,11 +183,12 @@ class Supervisor:
         return changed | {job.id for job in self._next() if self._alone(self._start, job)}
 
     def _next(self) -> Iterator[Job]:
-        """Jobs to be started; an export waits for other exports only, as does a comparison."""
+        """Jobs to be started; each kind waits for others of its kind only."""
         most = {
             JobKind.PROCESS: self._settings.max_running_jobs,
             JobKind.EXPORT: self._settings.max_running_exports,
             JobKind.COMPARE: self._settings.max_running_exports,
+            JobKind.TARGETS: self._settings.max_running_exports,
         }
         for job in self._store.in_state(JobState.RUNNING):
             most[job.kind] -= 1

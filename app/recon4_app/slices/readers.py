@@ -43,7 +43,7 @@ def read_double_walls(path: Path) -> DoubleReport:
 
 
 def read_targets(path: Path) -> TargetList:
-    """Read what `search_targets` wrote.
+    """Read what a worker found (`recon4_app.jobs.target_worker`).
 
     Raises:
         StoreError: If it is damaged or too large.

@@ -51,6 +51,8 @@ class SliceRequestLimits(Struct, frozen=True, kw_only=True):
 
     max_side_px: int = 4096
     """Longest side of an image [px]."""
+    radii: int = 8
+    """Most radii of spheres of a survey that are looked for."""
 
 
 SLICE_REQUESTS = SliceRequestLimits()

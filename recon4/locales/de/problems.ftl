@@ -96,6 +96,7 @@ restore-taken = { WORDS($kind, of: "trash") } { $name } gibt es inzwischen; erst
 ## Aufträge, Exporte, Vergleiche
 
 comparison-no-map = die Karte nennen, mit der verglichen wird
+targets-gone = was diese Suche fand, wurde entfernt oder ist noch nicht da: erneut suchen
 comparison-gone = dieser Vergleich wurde entfernt oder ist noch nicht fertig: erneut anfordern
 export-not-ordered = { $file } wurde mit diesen Angaben noch nicht aus dieser Karte erstellt: mit POST /api/projects/{ $project }/exports bestellen
 export-being-made = { $file } wird gerade erstellt: nachfragen, wenn es fertig ist

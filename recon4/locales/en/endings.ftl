@@ -15,6 +15,7 @@ worker-died = the worker died { $attempts } times: last it { EXIT($how, $number)
 export-no-order = this job orders no file
 export-disk-full = no space: an export leaves { $reserve } bytes free, there are { $free }
 export-out-of-memory = out of memory: choose fewer points: some classes, a box, a storey, or thin them out
+targets-no-order = this job names no search for survey targets
 comparison-no-order = this job names no map to compare with
 comparison-map-unknown = no map { QUOTED($map) }
 

@@ -96,6 +96,7 @@ restore-taken = another { $kind } { $name } exists now; delete or rename it firs
 ## Jobs, exports, comparisons
 
 comparison-no-map = name the map to compare with
+targets-gone = what this search found was removed, or is not there yet: search again
 comparison-gone = this comparison was removed, or is not made yet: order it again
 export-not-ordered = { $file } with these options was not made of this map yet: order it with POST /api/projects/{ $project }/exports
 export-being-made = { $file } is being made: ask again when it is finished

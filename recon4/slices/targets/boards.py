@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.targets import TargetKind
+from recon4.progress import Progress, track
 from recon4.slices.black_white import black_white_at
 from recon4.slices.targets.candidate import TargetCandidate
 from recon4.slices.targets.cells import TargetCells
@@ -66,17 +67,21 @@ def border_cells(cells: TargetCells, low: Array, high: Array) -> TargetCells:
     return cells.part(at_face[np.isfinite(away)])
 
 
-def find_boards(near: PlacePoints, places: Array, score: Array) -> list[TargetCandidate]:
+def find_boards(
+    near: PlacePoints, places: Array, score: Array, *, progress: Progress
+) -> list[TargetCandidate]:
     """The boards of a map.
 
     Args:
         near: Points of the map.
         places: That may be one [m], (N, 3).
         score: How much each is like one, (N,).
+        progress: Receives every place that is looked at.
     """
     best = best_apart(places, score, BOARD_SEARCH.apart_m)[: BOARD_SEARCH.most_places]
     found = list[TargetCandidate]()
-    for place in places[near.in_order(places[best], best)]:
+    rows = near.in_order(places[best], best)
+    for place in track(places[rows], progress, what="boards", unit="places"):
         if any(np.linalg.norm(one.p_map - place) < BOARD_SEARCH.apart_m for one in found):
             continue
         points, value = near.around(place, BLACK_WHITE.reach_m + BLACK_WHITE.radius_m)

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.targets import TargetKind
+from recon4.progress import Progress, track
 from recon4.slices.targets.candidate import TargetCandidate
 from recon4.slices.targets.cells import TargetCells
 from recon4.slices.targets.groups import groups_of
@@ -30,13 +31,16 @@ def bright_cells(cells: TargetCells, usual: float) -> Array:
     return cells.xyz[cells.brightest > PLATES.bright * usual]
 
 
-def find_plates(near: PlacePoints, bright: Array, usual: float) -> list[TargetCandidate]:
+def find_plates(
+    near: PlacePoints, bright: Array, usual: float, *, progress: Progress
+) -> list[TargetCandidate]:
     """The plates of a map.
 
     Args:
         near: Points of the map.
         bright: Bright places in it [m], (N, 3).
         usual: Intensity that is still usual.
+        progress: Receives every place that is looked at.
     """
     groups = [
         rows
@@ -47,7 +51,7 @@ def find_plates(near: PlacePoints, bright: Array, usual: float) -> list[TargetCa
     middles = np.array([bright[rows].mean(axis=0) for rows in groups]).reshape(-1, 3)
     groups = [groups[row] for row in near.in_order(middles[: PLATES.most_places])]
     found = []
-    for rows in groups:
+    for rows in track(groups, progress, what="plates", unit="places"):
         low, high = bright[rows].min(axis=0), bright[rows].max(axis=0)
         extent_m = float(np.linalg.norm(high - low))
         if extent_m > PLATES.sizes_m[1]:

@@ -25,7 +25,7 @@ def find_targets(
     Args:
         tiles: The map.
         radii_m: Radii of spheres that a survey states; none = those that are usual.
-        progress: Receives every tile.
+        progress: Receives every tile, then every place that may be a target.
 
     Raises:
         StoreError: If the map cannot be read.
@@ -53,7 +53,7 @@ def find_targets(
         score.append(like)
     near = PlacePoints(tiles, value)
     return [
-        *find_plates(near, np.concatenate(bright), usual),
-        *find_boards(near, np.concatenate(places), np.concatenate(score)),
-        *find_spheres(near, SpherePlaces.joined(spheres)),
+        *find_plates(near, np.concatenate(bright), usual, progress=progress),
+        *find_boards(near, np.concatenate(places), np.concatenate(score), progress=progress),
+        *find_spheres(near, SpherePlaces.joined(spheres), progress=progress),
     ]

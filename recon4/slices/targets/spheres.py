@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.targets import TargetKind
+from recon4.progress import Progress, track
 from recon4.slices.targets.candidate import TargetCandidate
 from recon4.slices.targets.cells import TargetCells
 from recon4.slices.targets.groups import best_apart
@@ -66,8 +67,10 @@ def _normals(cells: TargetCells, rows: NDArray[np.intp]) -> Array:
     return np.asarray(np.where(length > 0.3, normal / np.maximum(length, 1e-9), 0.0))
 
 
-def find_spheres(near: PlacePoints, places: SpherePlaces) -> list[TargetCandidate]:
-    """The spheres of a map."""
+def find_spheres(
+    near: PlacePoints, places: SpherePlaces, *, progress: Progress
+) -> list[TargetCandidate]:
+    """The spheres of a map; the progress receives every place that is looked at."""
     chosen = [np.zeros(0, np.intp)]
     for radius in np.unique(places.radius_m):
         rows = np.flatnonzero(places.radius_m == radius)
@@ -75,7 +78,8 @@ def find_spheres(near: PlacePoints, places: SpherePlaces) -> list[TargetCandidat
         chosen.append(rows[apart[: SPHERES.most_places]])
     best = np.concatenate(chosen)
     found = list[TargetCandidate]()
-    for row in near.in_order(places.xyz[best], best).tolist():
+    rows = near.in_order(places.xyz[best], best).tolist()
+    for row in track(rows, progress, what="spheres", unit="places"):
         place, radius_m = places.xyz[row], float(places.radius_m[row])
         if any(np.linalg.norm(one.p_map - place) < one.size_m for one in found):
             continue

@@ -142,15 +142,6 @@ export const controlFileUrl = (id, ending, draft = false) =>
  * @param {string} project_id
  * @param {string} crs
  */
-export const findTargets = (project_id, crs) =>
-  request("GET /api/projects/{project_id}/slices/control/targets", {
-    path: { project_id },
-    query: { crs },
-  });
-/**
- * @param {string} project_id
- * @param {string} crs
- */
 export const trySite = (project_id, crs) =>
   request("GET /api/projects/{project_id}/slices/control/site", {
     path: { project_id },
