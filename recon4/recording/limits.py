@@ -36,6 +36,8 @@ class InputLimits:
     """Of a line of a table of samples."""
     time_file_bytes: int = 64 << 20
     """Of the file with the times of frames."""
+    ptx_skew: float = 0.01
+    """Largest error of the rotation of a PTX scan: some makers write three digits."""
     cloud_file_bytes: int = 20 << 30
     """Of a cloud of points that is compared with a map."""
     coordinate_m: float = 1e8

@@ -14,13 +14,12 @@ import numpy as np
 from recon4.errors import CorruptFile, RecordingError
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.las_records import CHUNK, MAX_POINTS
+from recon4.recording.limits import LIMITS
 from recon4.untrusted.bounded import open_regular
 
 _LINE_BYTES = 512
 _WIDTHS = (3, 3, 3, 3, 4, 4, 4, 4)
 """Numbers in each line of a head behind columns and rows: position, axes, transformation."""
-_SKEW = 0.01
-"""Largest error of a rotation: some makers write three digits."""
 _COUNT = re.compile(rb"\s*([1-9]\d{0,9})\s*")
 
 
@@ -40,7 +39,7 @@ class _TextScan:
             raise CorruptFile(f"{self.where}: its transformation has numbers that are not finite")
         turn = matrix[:3, :3]
         skew = turn @ turn.T - np.eye(3) if np.abs(turn).max() < 2.0 else turn
-        if np.abs(skew).max() > _SKEW or np.linalg.det(turn) < 0.0:
+        if np.abs(skew).max() > LIMITS.ptx_skew or np.linalg.det(turn) < 0.0:
             raise CorruptFile(f"{self.where}: its transformation is no rotation")
         return matrix
 
