@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.number_rows import read_number_rows
 from recon4.calibration.tuning_methods import RESTS
-from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.frames import RecordedFrames
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
-from recon4.untrusted.bounded import read_text_limited
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,23 +49,7 @@ def read_inclinations(path: Path) -> Inclinations:
     Raises:
         CorruptFile: If a line has another number of values.
     """
-    rows = []
-    text = read_text_limited(path, RESTS.max_bytes, failure=CorruptFile)
-    for number, line in enumerate(text.splitlines(), 1):
-        words = line.partition("#")[0].replace(",", " ").split()
-        if not words:
-            continue
-        try:
-            values = [float(word) for word in words]
-        except ValueError:
-            values = []
-        if len(values) != 6 or not np.isfinite(values).all():
-            raise CorruptFile(
-                f"{path.name}: line {number}: expected 6 finite numbers (gx gy gz nx ny nz), "
-                f"got {line[:60]!r}"
-            )
-        rows.append(values)
-    table = np.array(rows).reshape(-1, 6)
+    table = read_number_rows(path, "gx gy gz nx ny nz", most_bytes=RESTS.max_bytes)
     return Inclinations(table[:, 3:], table[:, :3])
 
 

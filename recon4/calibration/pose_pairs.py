@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
+from recon4.calibration.number_rows import read_number_rows
 from recon4.calibration.tuning_methods import POSE_PAIRS
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, Array, so3_log
-from recon4.untrusted.bounded import read_text_limited
 
-_COLUMNS = 14
+_COLUMNS = "x y z qx qy qz qw x y z qx qy qz qw"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,25 +62,9 @@ def read_pose_pairs(path: Path) -> MarkerPosePairs:
     Raises:
         CorruptFile: If a line has another number of values, or a quaternion has not length 1.
     """
-    text = read_text_limited(path, POSE_PAIRS.max_bytes, failure=CorruptFile)
-    rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        words = line.partition("#")[0].replace(",", " ").split()
-        if not words:
-            continue
-        try:
-            values = [float(word) for word in words]
-        except ValueError:
-            raise CorruptFile(f"{path.name}: line {number}: expected numbers, got {line[:60]!r}")\
-                from None  # fmt: skip
-        if len(values) != _COLUMNS or not np.isfinite(values).all():
-            raise CorruptFile(
-                f"{path.name}: line {number}: expected {_COLUMNS} finite numbers, got {len(values)}"
-            )
-        rows.append(values)
-    if not rows:
+    table = read_number_rows(path, _COLUMNS, most_bytes=POSE_PAIRS.max_bytes)
+    if not len(table):
         raise CorruptFile(f"{path.name}: expected a pair of poses a line, got none")
-    table = np.array(rows)
     for first in (3, 10):
         length = np.linalg.norm(table[:, first : first + 4], axis=1)
         wrong = np.flatnonzero(np.abs(length - 1.0) > POSE_PAIRS.unit_tolerance)

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import ARM_M, Array
-from recon4.kernels.selected_inverse import entries, selected_inverse
 from recon4.model.pose_graph import PoseGraph, Relations
+from recon4.pose_graph.inverses import inverted
 from recon4.pose_graph.relations import adjoint
 from recon4.review.tuning import INFLUENCE
 
@@ -70,30 +70,12 @@ def _size(change: Array) -> Array:
 
 def _relative_covariance(of: Relations, A: Array, rows: NDArray[np.intp], *, nodes: int) -> Array:
     """``S`` of some edges, (M, 6, 6), from the entries of ``H^-1`` at their nodes."""
-    from scipy.sparse.linalg import splu  # slow to import, and most of the review needs none
-
-    factor = splu(
-        _hessian(of, A, rows, nodes=nodes),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    lower = factor.L.tocsc()
-    lower.sort_indices()
-    start, row = lower.indptr.astype(np.int64), lower.indices.astype(np.int64)
-    inverse = selected_inverse(start, row, lower.data, factor.U.diagonal())
-    axes = factor.perm_c.astype(np.int64).reshape(nodes, 6)
-
-    def blocks(a: NDArray[np.intp], b: NDArray[np.intp]) -> Array:
-        at_a, at_b = np.broadcast_arrays(axes[a][:, :, None], axes[b][:, None, :])
-        found: Array = entries(start, row, inverse, at_a.ravel(), at_b.ravel())
-        return found.reshape(-1, 6, 6)
-
+    inverse = inverted(_hessian(of, A, rows, nodes=nodes), axes=6)
     i, j = of.i[rows], of.j[rows]
     A = A[rows]
-    cross = A @ blocks(i, j)
-    both: Array = blocks(j, j) + cross + np.swapaxes(cross, 1, 2)
-    return both + A @ blocks(i, i) @ np.swapaxes(A, 1, 2)
+    cross = A @ inverse.blocks(i, j)
+    both: Array = inverse.blocks(j, j) + cross + np.swapaxes(cross, 1, 2)
+    return both + A @ inverse.blocks(i, i) @ np.swapaxes(A, 1, 2)
 
 
 def _hessian(of: Relations, A: Array, asked: NDArray[np.intp], *, nodes: int) -> Any:

@@ -6,12 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
-from recon4.kernels.selected_inverse import entries, selected_inverse
 from recon4.model.pose_graph import PoseGraph, Rows
+from recon4.pose_graph.inverses import inverted
 from recon4.slam2d.edges import plane_information
 from recon4.slam2d.tuning_graph import COVARIANCE_2D
 
@@ -41,20 +40,7 @@ def node_covariances(graph: PoseGraph) -> Array:
         ),
         (first, first, COVARIANCE_2D.gauge * np.eye(3)[None]),
     ]
-    factor = splu(
-        _assembled(blocks, nodes),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    lower = factor.L.tocsc()
-    lower.sort_indices()
-    start, row = lower.indptr.astype(np.int64), lower.indices.astype(np.int64)
-    inverse = selected_inverse(start, row, lower.data, factor.U.diagonal())
-    axes = factor.perm_c.astype(np.int64).reshape(nodes, 3)
-    a, b = np.broadcast_arrays(axes[:, :, None], axes[:, None, :])
-    found: Array = entries(start, row, inverse, a.ravel(), b.ravel())
-    return found.reshape(nodes, 3, 3)
+    return inverted(_assembled(blocks, nodes), axes=3).blocks(every, every)
 
 
 def _assembled(blocks: Sequence[tuple[Rows, Rows, Array]], nodes: int) -> csc_array:

@@ -26,6 +26,7 @@ BASE = {
 MODEL = BASE | {"recon4.geometry", "recon4.model"}
 STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 WORDED = STAGE | {"recon4.recording", "recon4.findings.derived", "recon4.findings.wording"}
+SOLVED = ("files", "inverses", "solve", "verification")
 ORDERING = STAGE | {"recon4.orders.order", "recon4.orders.parts"}
 
 MAY_IMPORT = {
@@ -78,9 +79,7 @@ MAY_IMPORT = {
     "recon4/registration/stage.py": MODEL
     | {"recon4.registration", "recon4.store.arrays", "recon4.store.tried_hypotheses"},
     "recon4/pose_graph": ORDERING | {"recon4.registration", "recon4.pose_graph"},
-    "recon4/slam2d": STAGE
-    | {"recon4.slam2d"}
-    | {f"recon4.pose_graph.{name}" for name in ("files", "solve", "verification")},
+    "recon4/slam2d": STAGE | {"recon4.slam2d", *(f"recon4.pose_graph.{name}" for name in SOLVED)},
     "recon4/slam2d/stage.py": STAGE
     | {"recon4.slam2d", "recon4.pose_graph.files"}
     | {"recon4.recording.laser2d", "recon4.recording.laser_mount", "recon4.recording.report"},
