@@ -1,5 +1,4 @@
 from dataclasses import replace
-from threading import Event
 
 import numpy as np
 import pytest
@@ -13,9 +12,8 @@ from recon4.registration.line_odometry import LineOdometry, averaged
 from recon4.registration.make_odometry import make_odometry
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import Registration, StopReason
-from recon4.registration.segments import sample_segments
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs, _views
+from recon4.registration.walk import WalkInputs
 from recon4.registration.walk_steps import dense_trajectory
 from recon4.settings import Settings, preset
 from recon4.store.arrays import load_arrays, load_trajectory
@@ -395,27 +393,3 @@ def test_a_gap_in_the_recording_is_bridged(stroll):
     assert worst_from_start(poses(steps), T_true) < 0.03
     middle = dense.at(np.array([frames[5].t_mid_ns])).t[0]
     np.testing.assert_allclose(middle, poses(steps).t[5], atol=1e-3)
-
-
-def test_one_multiframe_is_read_and_sampled_while_the_one_before_is_fitted(frames):
-    read, second_is_read = [], Event()
-
-    class Watched:
-        rig = frames.rig
-
-        def __iter__(self):
-            for k in range(4):
-                read.append(k)
-                if k == 1:
-                    second_is_read.set()
-                yield frames[k]
-
-    views = _views(Watched())
-
-    first = next(views)
-    assert second_is_read.wait(60.0)
-    assert read == [0, 1]
-    later = list(views)
-    assert [view.frame.frame_id for view in (first, *later)] == [frames[k].frame_id for k in read]
-    segments = sample_segments(frames[3], frames.rig)
-    assert np.array_equal(later[-1].segments.a_body, segments.a_body)
