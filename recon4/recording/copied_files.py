@@ -36,14 +36,24 @@ def without_copies(files: Sequence[Path], report: ImportReport) -> list[Path]:
     """
     kept: list[Path] = []
     for file in files:
-        original = original_of(file, kept)
-        if original is None:
-            kept.append(file)
-        else:
-            say_copy(file, original, report)
+        is_new(file, kept, report)
     return kept
 
 
-def say_copy(file: Path, original: Path, report: ImportReport) -> None:
-    """State that a file is not read, because another one has the same bytes."""
+def is_new(file: Path, known: list[Path], report: ImportReport) -> bool:
+    """Whether no file that is known has the same bytes; then it is known from now on.
+
+    Args:
+        file: Another one.
+        known: Receives it.
+        report: Receives which file it is a copy of.
+
+    Raises:
+        OSError: If one of them cannot be read.
+    """
+    original = original_of(file, known)
+    if original is None:
+        known.append(file)
+        return True
     report.derive(DerivedKind.FILE_COPY, name=file.name, original=original.name)
+    return False

@@ -114,6 +114,8 @@ class StampTuning(Struct, frozen=True, kw_only=True):
     """Jumps of two topics that differ by less are one: messages travel for different times [ns]."""
     strays_ratio: float = 0.05
     """A larger ratio of stamps that are far from their neighbors is no set of wrong ones."""
+    head: int = 120
+    """Messages at the begin of a bag whose stamps tell whether it was recorded backward."""
     ahead: int = 6
     """Messages that are held back: one that is recorded after this many later ones is too late."""
     set_back: int = 3

@@ -27,6 +27,9 @@ FOLDERS-PASSED-OVER =
 POSES-KEPT =
     .text1 = Posen der Aufzeichnung werden in poses.tum zum Vergleich behalten, nicht verwendet.
 
+RECORDED-BACKWARD =
+    .text1 = Rückwärts aufgezeichnet: die Zeitstempel aller Topics fallen. Die { $messages } Nachrichten werden von der letzten zur ersten gelesen.
+
 WALK-LIDAR =
     .text1 = LiDAR: Scans von Punkten im Raum, von { $sensors }
 

@@ -27,6 +27,9 @@ FOLDERS-PASSED-OVER =
 POSES-KEPT =
     .text1 = Poses of the recording are kept in poses.tum for comparison, not used.
 
+RECORDED-BACKWARD =
+    .text1 = Recorded backward: the stamps of all topics fall. Its { $messages } messages are read from the last to the first.
+
 WALK-LIDAR =
     .text1 = LiDAR: frames of points in space, of { $sensors }
 

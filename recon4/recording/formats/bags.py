@@ -18,8 +18,9 @@ from recon4.errors import CorruptFile, EmptyRecording
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
-from recon4.recording.copied_files import original_of, say_copy
+from recon4.recording.copied_files import is_new
 from recon4.recording.formats import db3
+from recon4.recording.formats.backward import turn_round
 from recon4.recording.formats.bag1 import Bag1, is_bag1
 from recon4.recording.formats.bag_folder import (
     BagMetadata,
@@ -46,7 +47,7 @@ from recon4.recording.formats.scratch import scratch_folder
 from recon4.recording.formats.shared_topics import SharedTopics, TopicSource
 from recon4.recording.formats.typestore import MessageTypes
 from recon4.recording.formats.zstd_file import decompress_file
-from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
+from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES, SCANS_WITH_HEADER
 from recon4.recording.packets.senders import parts_of
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
@@ -59,6 +60,7 @@ ODOMETRY = "nav_msgs/msg/Odometry"
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 TEXT = "std_msgs/msg/String"
 JOINT_STATES = "sensor_msgs/msg/JointState"
+_HEADED = frozenset({CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN, *SCANS_WITH_HEADER})
 _MEASURED = frozenset({*DATA_MESSAGES, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
 """Types whose messages come when something is measured. With simulated time, messages that are sent
 once, such as static transforms, may be recorded at time 0."""
@@ -123,10 +125,8 @@ class Bag:
         self._sources: list[StorageFile] = []
         self._origins: list[Path] = []
         """Of each source: its file, or the folder whose description names it."""
-        self._files: list[Path] = []
-        """Storage files that were opened, or tried."""
-        self._copies = 0
-        """Storage files that are copies of others, not opened."""
+        self._files: list[Path] = []  # opened, or tried
+        self._copies = 0  # files that have the bytes of another one: not opened
         self._points: dict[str, PointReader] = {}
         self._types = MessageTypes()
         """Of the types of points other than ``PointCloud2``."""
@@ -288,11 +288,9 @@ class Bag:
         return tuple(decompress_file(file, folder, budget) for file in files)
 
     def _open_file(self, path: Path) -> None:
-        if original := original_of(path, self._files):
-            say_copy(path, original, self.report)
+        if not is_new(path, self._files, self.report):
             self._copies += 1
             return
-        self._files.append(path)
         if is_bag1(path):
             self.ros1 = True
             file = self._stack.enter_context(RecordFile(path))
@@ -362,6 +360,7 @@ class Bag:
             raise EmptyRecording(f"{names}: a bag without messages")
         self.t_first_ns = min(index.start_time for index in filled)
         self.t_last_ns = max(index.end_time for index in filled) - 1
+        turn_round(self._sources, {t.name for t in self.topics if t.type in _HEADED}, self.report)
         first = self._first_measured()
         self.t_first_ns = first.t_ns if first is not None else self.t_first_ns
 

@@ -102,13 +102,19 @@ class ChunkMessages:
     def bytes_held(self) -> int:
         return len(self.data) + MESSAGE_BYTES * len(self.t_ns)
 
-    def in_order(self, wanted: set[int]) -> Iterator[Message]:
-        """Time, connection and bytes of the messages of some connections, by time."""
+    def in_order(self, wanted: set[int], mirror_ns: int = 0) -> Iterator[Message]:
+        """Time, connection and bytes of the messages of some connections, by time.
+
+        Args:
+            wanted: The connections.
+            mirror_ns: See `BagIndex`.
+        """
         order = np.argsort(np.frombuffer(self.t_ns, np.int64), kind="stable")
-        for k in array("q", order.tobytes()):
+        for k in array("q", (order[::-1] if mirror_ns else order).tobytes()):
             if self.connection[k] in wanted:
                 data = self.data[self.start[k] : self.stop[k]]
-                yield self.t_ns[k], self.connection[k], data
+                t_ns = mirror_ns - self.t_ns[k] if mirror_ns else self.t_ns[k]
+                yield t_ns, self.connection[k], data
 
 
 Load = Callable[[ChunkRef], ChunkMessages]
@@ -126,6 +132,9 @@ class BagIndex:
     """Time of the first message [ns]."""
     end_time: int = 0
     """End of the last message [ns]."""
+    mirror_ns: int = 0
+    """Messages are given from the last to the first, at this time less their own [ns]; 0 = in their
+    order."""
 
     @classmethod
     def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> BagIndex:
@@ -239,14 +248,16 @@ class ChunkStream:
     def _merged(self, chunks: list[ChunkRef], wanted: set[int]) -> Iterator[Message]:
         """Messages of all chunks by time; a chunk is open from its first to its last message."""
         heap: list[_Head] = []
-        held = 0
-        for place, chunk in enumerate(sorted(chunks, key=_by_time)):
-            while heap and (heap[0][0] < chunk.t_first_ns or held > MAX_OPEN_BYTES):
+        held, mirror_ns = 0, self._index.mirror_ns
+        ordered = sorted(chunks, key=_from_end if mirror_ns else _by_time)
+        for place, chunk in enumerate(ordered):
+            first_ns = mirror_ns - chunk.t_last_ns if mirror_ns else chunk.t_first_ns
+            while heap and (heap[0][0] < first_ns or held > MAX_OPEN_BYTES):
                 yield heap[0][2]
                 held -= _advance(heap)
             messages = self._read(chunk)
             if messages is not None:
-                stream = messages.in_order(wanted)
+                stream = messages.in_order(wanted, mirror_ns)
                 first = next(stream, None)
                 if first is not None:
                     held += messages.bytes_held
@@ -280,6 +291,10 @@ class ChunkStream:
 
 def _by_time(chunk: ChunkRef) -> tuple[int, int]:
     return chunk.t_first_ns, chunk.offset
+
+
+def _from_end(chunk: ChunkRef) -> tuple[int, int]:
+    return -chunk.t_last_ns, -chunk.offset
 
 
 def _advance(heap: list[_Head]) -> int:

@@ -106,11 +106,14 @@ class Db3:
         wanted = [k for k, topic in known.items() if topic.topic in topics]
         kept = np.flatnonzero(np.isin(number, wanted))
         kept = kept[np.argsort(t_ns[kept], kind="stable")]
+        mirror_ns = self.index.mirror_ns
+        kept = kept[::-1] if mirror_ns else kept
         for k in array("q", kept.astype(np.int64).tobytes()):
             data = self._data(int(row_id[k]))
             if data is not None:
                 topic = known[int(number[k])]
-                yield topic.topic, topic.msgtype, int(t_ns[k]), data
+                at_ns = int(mirror_ns - t_ns[k]) if mirror_ns else int(t_ns[k])
+                yield topic.topic, topic.msgtype, at_ns, data
 
     # -- opening
 

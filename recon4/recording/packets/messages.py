@@ -22,6 +22,15 @@ PACKET_MESSAGES: dict[str, MessagePackets] = {
 """Type of the message -> how to get its packets."""
 DATA_MESSAGES = frozenset(kind for kind, row in PACKET_MESSAGES.items() if not row.samples)
 """Types that carry data packets."""
+SCANS_WITH_HEADER = frozenset(
+    kind
+    for kind, row in PACKET_MESSAGES.items()
+    if all(
+        texts[kind].startswith("std_msgs/Header header")
+        for texts in (row.definitions, *row.versions)
+    )
+)
+"""Types whose messages begin with a header in all versions."""
 DEFINITIONS: dict[str, str] = {
     kind: text for row in PACKET_MESSAGES.values() for kind, text in row.definitions.items()
 }

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from recon4.errors import UnknownFormat
 from recon4.model.clock_jump import ClockJump
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import ImuSamples
@@ -16,9 +15,9 @@ from recon4.recording.stamps import StampClock, StampJumps
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameStore
 from recon4.units import SECOND_NS
-from tests.builders import T0_NS, Bag, noisy, room_cloud
+from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud
 from tests.unit.recording.ingested import frame_folder
-from tests.warned import K, kinds, warned
+from tests.warned import K, derivations, kinds, warned
 
 STEP_NS = 100_000_000
 SET_NS = 37 * SECOND_NS
@@ -124,14 +123,28 @@ def test_stamps_that_go_on_while_the_recorder_pauses_are_right():
     assert clock.shift_ns == 0
 
 
-def test_a_bag_that_was_recorded_backward_is_refused(tmp_path):
-    with Bag(tmp_path / "bag", "mcap") as bag:
-        for k in range(12):
-            bag.recorded_ns = T0_NS + k * STEP_NS
-            bag.cloud("/points", T0_NS - k * STEP_NS, room_cloud())
+@pytest.mark.parametrize("kind", ["bag1", "mcap", "db3"])
+def test_a_bag_that_was_recorded_backward_is_read_from_its_end(tmp_path, kind):
+    paths = [bag_path(tmp_path / name, kind) for name in ("on", "back")]
+    for path, sign in zip(paths, (1, -1), strict=True):
+        path.parent.mkdir()
+        with Bag(path, kind) as bag:
+            for k in range(12)[::sign]:
+                bag.recorded_ns = T0_NS + STEP_NS * (k if sign > 0 else 11 - k)
+                bag.cloud("/points", T0_NS + k * STEP_NS, room_cloud(start_turn=0.01 * k))
+                for part in range(3)[::sign]:
+                    stamp = T0_NS + k * STEP_NS + part * STEP_NS // 4
+                    bag.imu("/imu", stamp, (0.01 * k, 0.0, part), (0.0, 0.0, 9.8 + 0.01 * k))
 
-    with pytest.raises(UnknownFormat, match="/points: the recording runs backward"):
-        read(tmp_path / "bag", tmp_path / "o")
+    on, back = (read(path, tmp_path / name) for path, name in zip(paths, "ab", strict=True))
+
+    assert "Its 48 messages are read from the last to the first" in " ".join(
+        derivations(back.report)
+    )
+    assert back.index["t_ns"].tolist() == on.index["t_ns"].tolist()
+    assert back.report["counts"] == on.report["counts"]
+    assert all(np.array_equal(a.xyz, b.xyz) for a, b in zip(on, back, strict=True))
+    assert np.array_equal(on.imu.t_ns, back.imu.t_ns)
 
 
 def test_a_message_on_its_way_when_all_clocks_are_set_changes_nothing():
