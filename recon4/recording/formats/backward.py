@@ -22,7 +22,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import STAMPS
 
 
-class Source(Protocol):
+class HeadedFile(Protocol):
     """One storage file of a bag."""
 
     ros1: bool
@@ -34,7 +34,7 @@ class Source(Protocol):
         ...
 
 
-def turn_round(sources: Sequence[Source], headed: set[str], report: ImportReport) -> None:
+def turn_round(sources: Sequence[HeadedFile], headed: set[str], report: ImportReport) -> None:
     """Read a bag from its end if the stamps of all topics fall from message to message.
 
     Args:
@@ -54,7 +54,7 @@ def turn_round(sources: Sequence[Source], headed: set[str], report: ImportReport
     report.derive(DerivedKind.RECORDED_BACKWARD, messages=messages)
 
 
-def _steps(source: Source, headed: set[str]) -> list[NDArray[np.int64]]:
+def _steps(source: HeadedFile, headed: set[str]) -> list[NDArray[np.int64]]:
     """Steps of the first stamps of each topic of a file that has enough of them [ns]."""
     stamps: dict[str, list[int]] = {}
     before, source.report = source.report, ImportReport()  # damage is said when it is read
