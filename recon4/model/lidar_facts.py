@@ -33,6 +33,8 @@ class LidarFacts:
     """Standard deviation of a range [m]; half of the accuracy where only that is stated."""
     divergence_rad: float
     """Full angle of a beam in its wider direction [rad]."""
+    alike: str = ""
+    """Models that are not read and send packets of the same form; nothing tells them apart."""
     port: int = 2368
     """UDP port of its data packets, unless it was set to another."""
     sample_ports: tuple[int, ...] = ()

@@ -158,6 +158,7 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
     replace(
         _AVIA,
         name="Mid-360",
+        alike="Avia 2, Mid-360L",
         beams=4,
         p_sensor_imu_m=(0.011, 0.02329, -0.04412),
         elevation_deg=(-7.0, 52.0),
@@ -269,6 +270,7 @@ _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0,
     replace(
         _HELIOS,
         name="Ruby Plus",
+        alike="Ruby",
         beams=128,
         elevation_deg=(-25.0, 15.0),
         min_range_m=0.4,

@@ -65,6 +65,9 @@ SENSOR-ELSEWHERE =
     .text1 = { $sensor }: von { $sender } genommen, das Rig erwartet { $address } an Port { $port }.
     .text2-if-anywhere = { $sensor }: von { $sender } genommen, das Rig erwartet eine beliebige Adresse an Port { $port }.
 
+MODEL-ALIKE =
+    .text1 = { $sensor }: als { $model } gelesen. Pakete von { $alike } haben dieselbe Form, und nichts darin sagt, welcher es ist: mit einem von diesen ist die Karte falsch.
+
 LASER-BY-SENDER =
     .text1 = Der 2-D-Laser ist, was Scans von { $address } an Port { $port } sendet.
 

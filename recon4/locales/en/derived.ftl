@@ -65,6 +65,9 @@ SENSOR-ELSEWHERE =
     .text1 = { $sensor }: taken from { $sender }, the rig expects { $address } to port { $port }.
     .text2-if-anywhere = { $sensor }: taken from { $sender }, the rig expects any address to port { $port }.
 
+MODEL-ALIKE =
+    .text1 = { $sensor }: read as a { $model }. Packets of { $alike } have the same form, and nothing in them tells which it is: of one of these the map is wrong.
+
 LASER-BY-SENDER =
     .text1 = The 2-D laser is what sends scans from { $address } to port { $port }.
 

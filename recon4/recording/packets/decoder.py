@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import LIDARS, lidar_model
 from recon4.model.rig import Sensor
@@ -35,7 +36,11 @@ def open_decoder(
         ConfigError: If its packets cannot be decoded: which file or model is missing, or whether
             they are of two sensors.
     """
-    maker = lidar_model(of.sensor.model).maker
+    facts = lidar_model(of.sensor.model)
+    maker = facts.maker
+    if facts.alike:
+        about = {"sensor": of.sensor.name, "model": facts.name, "alike": facts.alike}
+        of.report.derive(DerivedKind.MODEL_ALIKE, **about)
     family = next((family for family in FAMILIES if family.name == maker), None)
     if family is None:
         known = ", ".join(name for name, facts in LIDARS.items() if facts.maker)

@@ -70,3 +70,16 @@ def test_a_clock_that_is_years_off_is_no_quarter_of_an_hour_off(tmp_path):
     assert any(
         "-882.480 s and whole hours off the recorder" in text for text in derivations(report)
     )
+
+
+def test_a_model_whose_packets_are_those_of_another_one_is_said(tmp_path):
+    t_ns, payloads = spin(MODELS["Ruby Plus"], 100)
+    device = device_of(MODELS["Ruby Plus"])
+    with PcapWriter(tmp_path / "walk.pcap") as file:
+        file.write(t_ns[:1], device, source="192.168.1.200", port=7788)
+        file.write(t_ns, payloads, source="192.168.1.200", port=6699)
+    report = ImportReport()
+
+    PacketCapture([tmp_path / "walk.pcap"], rig_to_complete, settings=WIDE, report=report)
+
+    assert any("Packets of Ruby have the same form" in text for text in derivations(report))
