@@ -29,6 +29,8 @@ Vector = tuple[float, float, float]
 STATUSES = {"open": "Open", "done": "Closed"}
 """Status of a note -> topic status."""
 TOPIC_TYPE = "Remark"
+UNKNOWN = "unknown"
+"""Author of a note that names none."""
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -104,7 +106,7 @@ def _extensions(notes: Sequence[BcfNote]) -> ET.Element:
         ("TopicStatuses", "TopicStatus"): list(STATUSES.values()),
         ("Priorities", "Priority"): [],
         ("TopicLabels", "TopicLabel"): [],
-        ("Users", "User"): sorted({one for note in notes for one in (note.who, note.changed_by)}),
+        ("Users", "User"): _users(notes),
         ("SnippetTypes", "SnippetType"): [],
         ("Stages", "Stage"): [],
     }
@@ -114,6 +116,12 @@ def _extensions(notes: Sequence[BcfNote]) -> ET.Element:
         for value in values:
             _text(parent, single, value)
     return root
+
+
+def _users(notes: Sequence[BcfNote]) -> list[str]:
+    """Who wrote or changed notes, by name; the schema has no empty names."""
+    names = {name for note in notes for name in (note.who, note.changed_by) if name.strip()}
+    return sorted(names | ({UNKNOWN} if any(not note.who.strip() for note in notes) else set()))
 
 
 def _project(guid: str, name: str) -> ET.Element:
@@ -135,11 +143,13 @@ def _markup(note: BcfNote, topic_guid: str, view_guid: str, *, index: int) -> ET
     _text(topic, "Title", first[: BCF.max_title] or "Note")
     _text(topic, "Index", str(index))
     _text(topic, "CreationDate", note.time)
-    _text(topic, "CreationAuthor", note.who)
+    _text(topic, "CreationAuthor", note.who if note.who.strip() else UNKNOWN)
     if note.changed != note.time:
         _text(topic, "ModifiedDate", note.changed)
-        _text(topic, "ModifiedAuthor", note.changed_by)
-    _text(topic, "Description", note.text)
+        if note.changed_by.strip():
+            _text(topic, "ModifiedAuthor", note.changed_by)
+    if note.text.strip():
+        _text(topic, "Description", note.text)
     views = ET.SubElement(topic, "Viewpoints")
     view = ET.SubElement(views, "ViewPoint", Guid=view_guid)
     _text(view, "Viewpoint", "viewpoint.bcfv")

@@ -125,3 +125,15 @@ def test_any_text_is_well_formed_and_the_same_notes_are_the_same_bytes(written):
     assert topic.findtext("Description").startswith("a <b> & \N{REPLACEMENT CHARACTER} ]]>")
     assert len(topic.findtext("Title")) == 80
     assert files == written(note(text=text))
+
+
+def test_no_text_is_blank_as_the_schemas_forbid(written):
+    files = written(note(text=" \n", who=" ", changed_by="", changed="2026-11-27T11:00:00Z"))
+
+    (topic,) = xml_of(files, "markup.bcf")
+    users = [one.text for one in xml_of(files, "extensions.xml").find("Users")]
+    assert topic.findtext("CreationAuthor") == "unknown" and users == ["unknown"]
+    assert topic.findtext("Title") == "Note"
+    leaves = [one for name in files for one in ET.fromstring(files[name]).iter() if not len(one)]
+    assert [one.tag for one in leaves if one.text is not None and not one.text.strip()] == []
+    assert {"Description", "ModifiedAuthor"}.isdisjoint(one.tag for one in topic)
