@@ -175,6 +175,7 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
       update(server);
     } catch (error) {
       selected.decided = false;
+      drawSelected();
       throw error;
     }
   });

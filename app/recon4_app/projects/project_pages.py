@@ -23,7 +23,7 @@ def map_page_response(
         request: Its server may have a prefix.
         server: Its projects and jobs.
         project_id: Name of the project's folder, which a waiting job has not made yet.
-        head: HTML at the end of the page's head.
+        head: HTML in front of the title of the page.
 
     Raises:
         NotFound: If there is neither such a project nor a job that will make it.
