@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.export.reread import account_of_rows, check_size
 from recon4.export.selection import DELIVERED, PointSelection
-from recon4.export.tuning import REREAD
+from recon4.export.tuning import PCD, REREAD
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
@@ -36,9 +37,10 @@ def export_pcd(
 ) -> int:
     """Write a map as binary PCD 0.7, streaming.
 
-    PCL reads coordinates in single precision only: they are relative to whole meters near the
-    middle of the map (``# offset`` in the head), exact to 0.03 mm within 500 m of it. Intensity is
-    the normalized one if the map has it; normals stay in the map's frame.
+    PCL reads coordinates in single precision only: far from the origin they are relative to whole
+    meters near the middle of the map (``# offset`` in the head), exact to 0.03 mm within 500 m of
+    it; those of a map near its origin are as in other files. Intensity is the normalized one if
+    the map has it; normals stay in the map's frame.
 
     Args:
         map_: Artifact of the stage ``map``, or what is open of it.
@@ -55,7 +57,7 @@ def export_pcd(
         StoreError: If the file cannot be written (`NoSpace`: disk full) or reads back wrong.
     """
     check_name(path, ".pcd")
-    source = PointSource.of(map_, output, selection)
+    source = _lying(PointSource.of(map_, output, selection))
     names = [source.intensity, "normal", "ring", "frame_id", "t_ns"]
     row, absolute = np.dtype(list(_FIELDS)), is_absolute(source.tiles.first_ns)
     meant = PointAccount(crs=source.crs_line)
@@ -75,6 +77,19 @@ def export_pcd(
         again = account_of_rows(temporary, row, offset=source.offset)
         meant.compare(again, path.name, within_m=_rounded_m(meant, source.offset))
     return meant.count
+
+
+def _lying(source: PointSource) -> PointSource:
+    """The points with the offset that a PCD file needs."""
+    return replace(source, offset=needed_offset(source.offset))
+
+
+def needed_offset(middle: Array) -> Array:
+    """What is subtracted [m], (3,), by the middle of the points: nothing if it is near.
+
+    Other programs do not read the offset: a map in its own frame lies where its other files do.
+    """
+    return middle if np.abs(middle).max() > PCD.near_m else np.zeros(3)
 
 
 def _rounded_m(meant: PointAccount, offset: Array) -> float:

@@ -14,7 +14,7 @@ import pytest
 from recon4.errors import ConfigError, GeoreferenceError, StoreError
 from recon4.export import laz
 from recon4.export.laz import export_laz
-from recon4.export.pcd import export_pcd
+from recon4.export.pcd import export_pcd, needed_offset
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
 from recon4.export.selection import EVERY_CLASS, PointSelection
@@ -168,6 +168,11 @@ def test_pcd_holds_every_point_relative_to_its_offset(folder, tmp_path):
     normalized = column(tiles, "intensity_normalized")
     np.testing.assert_array_equal(cloud["intensity"].numpy()[:, 0], normalized)
     np.testing.assert_allclose(cloud["normals"].numpy(), column(tiles, "normal"), atol=1e-6)
+
+
+def test_pcd_of_a_map_near_its_origin_lies_where_its_other_files_do():
+    assert needed_offset(np.array([12.0, -240.0, 1.0])).tolist() == [0.0, 0.0, 0.0]
+    assert needed_offset(np.array([12.0, -260.0, 1.0])).tolist() == [12.0, -260.0, 1.0]
 
 
 def test_xyz_has_a_line_for_every_point(folder, tmp_path):
