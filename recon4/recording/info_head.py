@@ -46,6 +46,13 @@ class RecordingHead:
     jumps: list[TimeGap] = field(default_factory=list)
     """Where a clock goes back."""
 
+    @property
+    def set_back_ns(self) -> int:
+        """By how much the clock of a sensor was set back in all, at most [ns]."""
+        names = {jump.sensor for jump in self.jumps}
+        sums_s = [sum(-j.seconds for j in self.jumps if j.sensor == name) for name in names]
+        return round(max(sums_s, default=0.0) * 1e9)
+
     def note_jump(self, shots: Shots, rig: Rig, gap_s: float) -> None:
         """Find out whether the clock of a sensor goes back by more than a gap."""
         newest = int(shots.t_ns.max())

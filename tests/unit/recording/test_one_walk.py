@@ -89,3 +89,16 @@ def test_a_part_that_is_there_twice_is_read_once(tmp_path, kind):
     assert said in derivations(twice.report)
     assert twice.report["counts"] == once.report["counts"]
     assert twice.index["t_ns"].tolist() == once.index["t_ns"].tolist()
+
+
+def test_a_capture_whose_clocks_were_set_back_is_not_reversed(tmp_path):
+    first, then = (
+        write_room_pcap(tmp_path / name, seconds=0.4, t0_ns=T0_NS - back_ns)
+        for name, back_ns in (("a.pcap", 0), ("b.pcap", 20_000_000_000))
+    )
+    first.write_bytes(first.read_bytes() + then.read_bytes()[24:])
+
+    info = describe(first)
+
+    assert info.seconds == pytest.approx(0.8, abs=0.01)
+    assert [round(gap.seconds, 1) for gap in info.gaps] == [-20.4]
