@@ -38,6 +38,8 @@ class PlateTuning(Struct, frozen=True, kw_only=True):
     """Bright spots of walls that are no plates have up to 38."""
     least_around: int = 30
     """With fewer points around it, a plate stands free: its middle is that of its outline."""
+    around_part: float = 0.15
+    """Or with fewer than this part of its own: on a wall there are several times as many."""
     edge_m: float = 0.008
     """Half width of the blur at an edge: a beam at 5 m."""
     halves_m: tuple[float, float] = (0.02, 0.35)
@@ -81,6 +83,8 @@ class BoardSearchTuning(Struct, frozen=True, kw_only=True):
     """Least difference of the darker white and the brighter black sector, in the white one."""
     rough_m: float = 0.015
     """Deviation of the cells from a plane."""
+    behind_m: float = 0.05
+    """Cells farther from the plane of all are of another surface: the other face of a thin wall."""
     apart_m: float = 0.12
     """Places closer to a better one are the same."""
     reach_m: float = 0.04

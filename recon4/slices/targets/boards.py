@@ -127,12 +127,12 @@ def _surroundings(
 ) -> _Surroundings:
     """What is around places on a plane; the others are left out."""
     d = cells.xyz[near] - cells.xyz[rows][:, None]
-    weight = there * np.minimum(cells.count[near], BOARD_SEARCH.counted)
-    total = weight.sum(axis=1)
-    mean = np.einsum("nki,nk->ni", d, weight) / total[:, None]
-    off = (d - mean[:, None]) * np.sqrt(weight)[..., None]
-    values, axes = np.linalg.eigh(np.einsum("nki,nkj->nij", off, off))
-    flat = values[:, 0] <= total * BOARD_SEARCH.rough_m**2
+    counted = np.minimum(cells.count[near], BOARD_SEARCH.counted)
+    weight = np.where(there, counted, 0.0)
+    _, _, across = _planes(d, weight)
+    there = there & (across <= BOARD_SEARCH.behind_m)  # without the other face of a thin wall
+    weight = np.where(there, weight, 0.0)
+    flat, axes, _ = _planes(d, weight)
     u, v = (np.einsum("nki,ni->nk", d, axes[:, :, k]) for k in (2, 1))
     ring = there & (np.hypot(u, v) > BOARD_SEARCH.inner_m)
     flat &= ring.sum(axis=1) >= BOARD_SEARCH.least_neighbors
@@ -142,6 +142,15 @@ def _surroundings(
         np.arctan2(v[flat], u[flat]),
         (weight * ring)[flat],
     )
+
+
+def _planes(d: Array, weight: Array) -> tuple[NDArray[np.bool_], Array, Array]:
+    """Which of N surroundings are flat, their axes (N, 3, 3), cells off the planes [m], (N, K)."""
+    total = np.maximum(weight.sum(axis=1), 1e-9)
+    off = d - (np.einsum("nki,nk->ni", d, weight) / total[:, None])[:, None]
+    values, axes = np.linalg.eigh(np.einsum("nki,nkj,nk->nij", off, off, weight))
+    across = np.abs(np.einsum("nki,ni->nk", off, axes[:, :, 0]))
+    return values[:, 0] <= total * BOARD_SEARCH.rough_m**2, axes, across
 
 
 def _four_sectors(around: _Surroundings) -> tuple[NDArray[np.intp], Array]:

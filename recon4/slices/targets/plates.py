@@ -84,7 +84,7 @@ def plate_at(points: Array, intensity: Array, usual: float) -> TargetCandidate |
     bright = bright[on_it]
     # Between a plate and what is around it: a beam at its edge sees both.
     around = _outside(uv, bright) & ~bright
-    if around.sum() < PLATES.least_around:
+    if around.sum() < max(PLATES.least_around, PLATES.around_part * bright.sum()):
         found = _outline(uv[bright])
     else:
         found = _fitted(uv, value, bright)

@@ -10,6 +10,7 @@ from recon4.slices.control_points import ControlPoint
 from recon4.slices.targets.candidate import TargetCandidate
 from recon4.slices.targets.matching import SurveyedPlace, match_targets
 from recon4.slices.targets.named import listed, named
+from recon4.slices.targets.plates import plate_at
 from recon4.slices.targets.search import find_targets
 from tests.unit.slices.room_map import write_map
 
@@ -39,6 +40,13 @@ def wall(rng):
     return p, value * rng.normal(1.0, 0.06, len(p)), np.tile([1.0, 0.0, 0.0], (len(p), 1))
 
 
+def other_face():
+    """A part of the other face of the thin wall behind the board, as seen from the next room."""
+    y, z = (part.ravel() for part in np.meshgrid(*[np.arange(-0.05, 0.051, 0.01)] * 2))
+    p = BOARD + np.column_stack([np.full(len(y), -0.085), y, z])
+    return p, np.full(len(p), 50.0), np.tile([-1.0, 0.0, 0.0], (len(p), 1))
+
+
 def round_thing(rng, middle, *, cylinder=False):
     """Half of a sphere, or of a pole, as seen from the side of the path."""
     n = rng.normal(size=(1200, 3))
@@ -56,7 +64,7 @@ def round_thing(rng, middle, *, cylinder=False):
 def found(tmp_path_factory):
     rng = np.random.default_rng(5)
     pole = round_thing(rng, np.array([1.0, 6.0, 1.0]), cylinder=True)
-    parts = [wall(rng), round_thing(rng, SPHERE), pole]
+    parts = [wall(rng), other_face(), round_thing(rng, SPHERE), pole]
     p, value, normal = (np.concatenate([one[k] for one in parts]) for k in range(3))
     out = tmp_path_factory.mktemp("map")
     tiles = write_map(out, p, intensity_normalized=value.astype(np.float32), normal=normal)
@@ -74,6 +82,19 @@ def test_one_target_of_each_kind_is_found_where_it_is_and_nothing_else(found, ki
     off = mine[0].p_map - true
     assert np.linalg.norm(off) < 0.004
     assert off @ np.linalg.solve(mine[0].cov, off) < 16.0
+
+
+def test_a_plate_with_hardly_a_point_around_it_is_that_of_its_outline():
+    rng = np.random.default_rng(3)
+    plate, far = rng.uniform(-0.075, 0.075, (1000, 2)), rng.uniform(-0.2, 0.2, (200, 2))
+    far = far[np.abs(far).max(axis=1) > 0.18][:50]
+    far[:, 0] = np.abs(far[:, 0])
+    uv = np.concatenate([plate, far])
+    points = np.column_stack([rng.normal(0.0, 0.004, len(uv)), uv])
+    one = plate_at(points, np.r_[np.full(1000, 170.0), np.full(len(far), 165.0 / 2.0)], 60.0)
+
+    assert one is not None
+    assert np.linalg.norm(one.p_map[1:]) < 0.003
 
 
 def test_the_radius_of_a_sphere_and_the_edge_of_a_plate_are_found(found):
