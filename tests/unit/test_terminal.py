@@ -84,6 +84,7 @@ def test_stages_and_damage_are_printed_but_not_every_edge():
     missing = warning(FindingKind.SENSOR_NOT_RECORDED, sensor="vertical")
     assert describe_event(Remarked(finding=missing)) == (
         "warning: Sensor vertical of the rig is not in the recording."
+        " Correct its topic in the rig file."
     )
     assert describe_event(damaged) == (
         "an artifact of the stage map was damaged and is made again; "
