@@ -1,12 +1,6 @@
 // Survey targets found in the whole map: proposals, of which a person takes some.
 
-import {
-  cancelSearch,
-  listSearches,
-  orderSearch,
-  readFound,
-  readSearch,
-} from "../shared/api.js";
+import { cancelSearch, listSearches, orderSearch, readFound, readSearch } from "../shared/api.js";
 import { attempt, html, nothing, render, targetOf, within } from "../shared/dom.js";
 import { decimal, t } from "../shared/texts.js";
 import { AXES } from "./measured.js";
