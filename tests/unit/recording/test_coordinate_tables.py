@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.errors import ConfigError, CorruptFile
+from recon4.errors import ConfigError, CorruptFile, UnknownFormat
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.tables.clouds import preview_cloud
 from recon4.recording.tables.column_names import column_name, parse_meanings
@@ -180,12 +180,16 @@ def test_thousands_separators_are_refused_by_line(tmp_path, cell):
         ("id;x;y;z\n1;1.5;2.5;3.5\n2;1.5;two;3.5\n", "line 3: expected a number, got 'two'"),
         ("5\n1.5 2.5 3.5 4\n1.5 2.5 3.5 4\n", "cut: 5 points promised, got 2"),
         ("dear all,\nno numbers here\n", "three numbers or more, got 'dear all,'"),
-        ("", "three numbers or more"),
     ],
 )
 def test_rows_that_do_not_fit_are_named_not_moved(tmp_path, text, words):
     with pytest.raises(CorruptFile, match=words):
         read(written(tmp_path, text))
+
+
+def test_an_empty_file_is_called_empty(tmp_path):
+    with pytest.raises(UnknownFormat, match="empty"):
+        read(written(tmp_path, ""))
 
 
 def test_rows_may_differ_behind_the_coordinates(tmp_path):
