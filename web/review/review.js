@@ -352,15 +352,17 @@ async function begin() {
   update(server);
 }
 
+async function beginTeam() {
+  only("page-head").name = (await readProject(id)).name;
+  queue.me = (await readCurrentUser()).name;
+  await team.begin(state.server?.may_review ?? false);
+}
+
 drawSelected();
 listenToActions(actions, view, reasonField(), () => Boolean(state.selected?.drawn));
 await attempt(message, begin);
 if (message.textContent) view.clear(t("nothing-to-review"));
-await attempt(message, async () => {
-  only("page-head").name = (await readProject(id)).name;
-  queue.me = (await readCurrentUser()).name;
-  await team.begin(state.server?.may_review ?? false);
-});
+await beginTeam().catch((error) => message.textContent || showError(message, error));
 watchProject(id, () => {
   poll();
   team.look();

@@ -63,3 +63,14 @@ def test_slices_and_project_say_that_a_map_is_unusable(running, unusable, page, 
     page.goto(f"{running.url}/projects/{unusable.name}/")
     expect(page.locator("#state")).to_contain_text("Do not use this map")
     expect(page.locator("#verdict")).to_contain_text("2 s to 10 s: a horizontal direction")
+
+
+@looks("phone dark")
+def test_an_error_while_the_pairs_are_read_stays_on_the_page(running, root, page):
+    page.route("**/api/projects/*/review", lambda route: route.abort())
+
+    name = page.request.get(f"{running.url}/api/projects/{root.name}").json()["name"]
+    page.goto(f"{running.url}/projects/{root.name}/review/")
+
+    expect(page.locator("page-head")).to_contain_text(name)  # it is read after the pairs
+    expect(page.locator("#message")).to_contain_text("does not answer")
