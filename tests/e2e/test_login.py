@@ -37,6 +37,7 @@ def sign_in(page, server: Secure, name: str, path: str = "/"):
     page.get_by_label("Name").fill(name)
     page.get_by_label("Password", exact=True).fill(PASSWORD)
     page.get_by_role("button", name="Sign in").click()
+    expect(page.locator("#login")).to_have_count(0)  # else the failure quotes what it says
     page.wait_for_url(server.url + path)
 
 
