@@ -17,7 +17,6 @@ import {
   sheetOf,
 } from "./materials.js";
 import { placeCamera } from "./projection.js";
-import { nodesOf } from "./nodes.js";
 import { layersOf } from "./walk_layers.js";
 import { MapTiles } from "./tiles.js";
 import { Color, PerspectiveCamera, Scene } from "../shared/vendor/three/three.module.min.js";
@@ -50,7 +49,6 @@ export class MapCanvas {
   #canvas;
   #renderer;
   #index;
-  #nodes;
   #scene = new Scene();
   #lines = new Scene();
   #screenScene = new Scene();
@@ -96,7 +94,6 @@ export class MapCanvas {
     for (const scene of [this.#scene, this.#lines, this.#screenScene])
       scene.matrixWorldAutoUpdate = false;
     this.#screenScene.add(sheetOf(this.#screen));
-    this.#nodes = nodesOf(index.tiles);
     this.tiles = new MapTiles(index, {
       scene: this.#scene,
       material: this.#material,
@@ -258,7 +255,7 @@ export class MapCanvas {
 
   /** This map, and the other one. */
   #sides() {
-    const own = { tiles: this.tiles, nodes: this.#nodes };
+    const own = { tiles: this.tiles, nodes: this.tiles.nodes };
     return this.#beside ? [own, this.#beside] : [own];
   }
 

@@ -13,7 +13,8 @@
  * @property {number} sample points that are always drawn if it is seen
  * @property {number} spacing_m of neighbors if all are drawn
  * @property {number} cube row of the node that has the coarse points of a tile; -1 = it is a cube
- * @property {number[]} tiles rows of the tiles of a cube, in their order
+ * @property {number[]} tiles the nodes of the tiles of a cube, in their order
+ * @property {number} row of the cube or of the tile in the index
  */
 
 /**
@@ -27,9 +28,13 @@ export function nodesOf(tiles) {
   const rows = Array.from({ length: count }, () => []);
   tiles.forEach(({ cube }, row) => rows[cube].push(row));
   return [
-    ...rows.map((own) => cubeOf(own, tiles)),
-    ...tiles.map(({ low_m, high_m, points, coarse, spacing_m, cube }) => ({
-      ...{ low_m, high_m, spacing_m, cube },
+    ...rows.map((own, row) => ({
+      ...cubeOf(own.map((one) => tiles[one])),
+      tiles: own.map((one) => count + one),
+      row,
+    })),
+    ...tiles.map(({ low_m, high_m, points, coarse, spacing_m, cube }, row) => ({
+      ...{ low_m, high_m, spacing_m, cube, row },
       points: points - coarse,
       before: coarse,
       whole: points,
@@ -39,13 +44,8 @@ export function nodesOf(tiles) {
   ];
 }
 
-/**
- * @param {number[]} own
- * @param {Tile[]} tiles
- * @returns {MapNode}
- */
-function cubeOf(own, tiles) {
-  const some = own.map((row) => tiles[row]);
+/** What a cube is by its tiles. */
+function cubeOf(/** @type {Tile[]} */ some) {
   const sum = (/** @type {(tile: Tile) => number} */ of) =>
     some.reduce((all, tile) => all + of(tile), 0);
   const whole = sum(({ points }) => points);
@@ -59,7 +59,6 @@ function cubeOf(own, tiles) {
     sample: sum(({ sample }) => sample),
     spacing_m: Math.sqrt(area_m2 / Math.max(whole, 1)),
     cube: -1,
-    tiles: own,
   };
 }
 
@@ -74,16 +73,9 @@ export function thinnedOf(nodes, k, shown) {
   const node = nodes[k];
   const cube = nodes[node.cube < 0 ? k : node.cube];
   const part = shown(node.cube < 0 ? k : node.cube) / Math.max(cube.points, 1);
-  const first = firstTile(nodes);
-  const at = (/** @type {number} */ row) => {
-    const { whole, before } = nodes[row];
-    return Math.sqrt(whole / Math.max(part * before + shown(row), 1));
+  const at = (/** @type {number} */ tile) => {
+    const { whole, before } = nodes[tile];
+    return Math.sqrt(whole / Math.max(part * before + shown(tile), 1));
   };
-  return node.cube < 0 ? node.tiles.map((tile) => at(first + tile)) : [at(k)];
-}
-
-/** Row of the first tile. */
-export function firstTile(/** @type {MapNode[]} */ nodes) {
-  const first = nodes.findIndex(({ cube }) => cube >= 0);
-  return first < 0 ? nodes.length : first;
+  return node.cube < 0 ? node.tiles.map(at) : [at(k)];
 }

@@ -3,7 +3,7 @@
 import { dot, minus } from "./camera.js";
 import { apartOf } from "./density.js";
 import { isOutside, nextPart, readingOrder, takeParts } from "./lod.js";
-import { firstTile, nodesOf, thinnedOf } from "./nodes.js";
+import { nodesOf, thinnedOf } from "./nodes.js";
 import {
   BufferAttribute,
   BufferGeometry,
@@ -40,7 +40,7 @@ const MOST_POINTS = 6_000_000; // kept; of more, those that are not shown go
 const AT_ONCE = 3;
 
 export class MapTiles {
-  #nodes;
+  nodes;
   #scene;
   #material;
   #reader;
@@ -70,12 +70,12 @@ export class MapTiles {
    */
   constructor(index, { scene, material, reader, onLook, move }) {
     this.#move = move;
-    this.#nodes = nodesOf(index.tiles);
+    this.nodes = nodesOf(index.tiles);
     this.#scene = scene;
     this.#material = material;
     this.#reader = reader;
     this.#onLook = onLook;
-    this.#chunks = this.#nodes.map(() => []);
+    this.#chunks = this.nodes.map(() => []);
   }
 
   /** Points that have been read of each node. */
@@ -98,7 +98,7 @@ export class MapTiles {
         values ? this.#reader.sample(values) : null,
       ]);
       let [at, from] = [0, 0];
-      this.#nodes.forEach(({ sample }, k) => {
+      this.nodes.forEach(({ sample }, k) => {
         if (!sample) return;
         this.#add(k, { start: 0, stop: sample }, places.slice(at, (at += bytesOf(true) * sample)));
         if (steps) this.#fill(this.#chunks[k][0], values, steps.slice(from, (from += 2 * sample)));
@@ -129,7 +129,7 @@ export class MapTiles {
     const steps = await this.#reader.sample(values);
     if (this.#values !== values) return;
     let from = 0;
-    this.#nodes.forEach(({ sample }, k) => {
+    this.nodes.forEach(({ sample }, k) => {
       if (!sample) return;
       const [first] = this.#chunks[k];
       if (first?.stop === sample) this.#fill(first, values, steps.slice(from, from + 2 * sample));
@@ -149,7 +149,7 @@ export class MapTiles {
     const drawn = [];
     const have = this.have.map((points, k) => Math.min(counts[k], points));
     this.#chunks.forEach((chunks, k) => {
-      const thinned = have[k] ? thinnedOf(this.#nodes, k, (node) => have[node]) : [];
+      const thinned = have[k] ? thinnedOf(this.nodes, k, (node) => have[node]) : [];
       for (const { start, stop, object, valuesOf } of chunks) {
         const shown = Math.min(stop, have[k]) - start;
         object.visible = shown > 0;
@@ -170,7 +170,7 @@ export class MapTiles {
    */
   along({ origin, direction }, { tan, least, planes }) {
     let nearest = Infinity;
-    this.#nodes.forEach((node, k) => {
+    this.nodes.forEach((node, k) => {
       if (isOutside(node, planes) || !this.#chunks[k].length) return;
       const middle = node.low_m.map((low, axis) => (low + node.high_m[axis]) / 2);
       const radius = Math.hypot(...minus(node.high_m, node.low_m)) / 2;
@@ -214,11 +214,11 @@ export class MapTiles {
     if (!this.#wanted || !this.begun) return;
     const { counts, camera } = this.#wanted;
     const have = this.have;
-    const order = readingOrder(this.#nodes, { counts, have }, camera);
+    const order = readingOrder(this.nodes, { counts, have }, camera);
     const queue = order
       .filter((k) => !this.#reading.has(k))
       .flatMap((k) => {
-        const part = nextPart(have[k], counts[k], this.#nodes[k].points);
+        const part = nextPart(have[k], counts[k], this.nodes[k].points);
         return part ? [this.#wantedOf(k, part)] : [];
       });
     while (queue.length && this.#requests < AT_ONCE) this.#readParts(takeParts(queue));
@@ -231,14 +231,14 @@ export class MapTiles {
    * @returns {Wanted}
    */
   #wantedOf(node, { start, stop }) {
-    const ofCube = this.#nodes[node].cube < 0;
-    return { start, stop, node, ofCube, row: ofCube ? node : node - firstTile(this.#nodes) };
+    const { cube, row } = this.nodes[node];
+    return { start, stop, node, ofCube: cube < 0, row };
   }
 
   /** Parts as they are requested. */
   #rowsOf(/** @type {Wanted[]} */ parts) {
     return parts.map((part) => {
-      const { before } = this.#nodes[part.node];
+      const { before } = this.nodes[part.node];
       return { ...part, start: part.start + before, stop: part.stop + before };
     });
   }
@@ -323,7 +323,7 @@ export class MapTiles {
     const geometry = new BufferGeometry();
     geometry.setAttribute("place", new BufferAttribute(places, 3, true));
     geometry.setAttribute("about", new BufferAttribute(about, 4, true));
-    const node = this.#nodes[k];
+    const node = this.nodes[k];
     const apart = apartOf(places, { ...node, points: node.whole });
     geometry.setAttribute("apart", new BufferAttribute(apart, 1, true));
     if (node.cube < 0) {
@@ -363,7 +363,7 @@ export class MapTiles {
   #dropUnseen() {
     const counts = this.#wanted?.counts;
     for (const [k, chunks] of this.#chunks.entries())
-      while (this.total > MOST_POINTS && chunks.length > Math.sign(this.#nodes[k].sample)) {
+      while (this.total > MOST_POINTS && chunks.length > Math.sign(this.nodes[k].sample)) {
         const last = /** @type {Chunk} */ (chunks.at(-1));
         if (counts && last.start < counts[k]) break;
         chunks.pop();
