@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-import recon4
 from recon4.delivery.kinds import ExportedFile, ExportKind, kind_named
 from recon4.errors import StoreError
 from recon4.export.findings import export_findings
@@ -18,7 +17,6 @@ from recon4.progress import Progress
 from recon4.review.approval_state import WRITTEN_AS_DRAFT, approval_state
 from recon4.review.approved import approval_of
 from recon4.review.evidence import Evidence
-from recon4.store.hashing import FileDigest
 from recon4.store.project import read_artifacts
 
 
@@ -45,18 +43,7 @@ def export_file(
     state = WRITTEN_AS_DRAFT if options.draft else approval_state(project, keys)
     path = folder / f"{project.name}-{kind.name}"
     points, text = write_kind(project, kind, path, wanted=wanted, progress=progress)
-    digest = FileDigest.of(path)
-    return ExportedFile(
-        name=path.name,
-        bytes=digest.size,
-        sha256=digest.sha256,
-        text=text,
-        approval=state.text,
-        approval_line=state.line,
-        map_key=keys["map"],
-        recon4=recon4.__version__,
-        points=points,
-    )
+    return ExportedFile.of(path, text, state, map_key=keys["map"], points=points)
 
 
 def write_layers_file(

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+import recon4
 from recon4.errors import ConfigError
 from recon4.export.options import ExportOptions
 from recon4.locales.coded import StoredText
+from recon4.store.hashing import FileDigest
 from recon4.untrusted.names import visible
+
+if TYPE_CHECKING:
+    from recon4.review.approval_state import ApprovalState
 
 _ALWAYS = ("draft",)
 _POINTS = ("crs", "raw", "classes", "box_m", "storey", "thin_m", *_ALWAYS)
@@ -58,6 +64,32 @@ class ExportedFile:
     """Version of the program."""
     points: int = 0
     """Points in it; 0 = it has none."""
+
+    @classmethod
+    def of(
+        cls, path: Path, text: str, state: ApprovalState, *, map_key: str, points: int = 0
+    ) -> ExportedFile:
+        """The record of a file that was just written.
+
+        Args:
+            path: The file.
+            text: What is in it, in words.
+            state: Approval of the map.
+            map_key: Artifact of the map.
+            points: Points in it; 0 = it has none.
+        """
+        digest = FileDigest.of(path)
+        return cls(
+            name=path.name,
+            bytes=digest.size,
+            sha256=digest.sha256,
+            text=text,
+            approval=state.text,
+            approval_line=state.line,
+            map_key=map_key,
+            recon4=recon4.__version__,
+            points=points,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -9,7 +9,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import recon4
 from recon4.delivery.kinds import ExportedFile
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
@@ -17,7 +16,6 @@ from recon4.progress import Progress
 from recon4.review.approval_state import latest_state
 from recon4.sandbox import Policy
 from recon4.store.atomic import make_folders
-from recon4.store.hashing import FileDigest
 from recon4.system.stopping import end_process
 from recon4_app.jobs.export_worker import policy as export_policy
 from recon4_app.jobs.folder import JobFolder
@@ -43,16 +41,13 @@ def compare(folder: JobFolder, progress: Progress) -> ExportedFile:
     path = folder.made / f"{project.name}-differences.laz"
     pair = MapPair.of(open_side(project), open_side(_other_map(project, order)), align=order.align)
     found = write_comparison(pair, path, core_spacing_m=order.core_spacing_m, progress=progress)
-    digest = FileDigest.of(path)
-    return ExportedFile(
-        name=path.name,
-        bytes=digest.size,
-        sha256=digest.sha256,
-        text=f"{found.counts.core_points} core points",
-        approval=latest_state(project).text,
+    points = found.counts.core_points
+    return ExportedFile.of(
+        path,
+        f"{points} core points",
+        latest_state(project),
         map_key=found.first.key,
-        recon4=recon4.__version__,
-        points=found.counts.core_points,
+        points=points,
     )
 
 

@@ -8,14 +8,12 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import recon4
 from recon4.delivery.kinds import ExportedFile
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 from recon4.review.approval_state import latest_state
 from recon4.store.atomic import make_folders
-from recon4.store.hashing import FileDigest
 from recon4.system.stopping import end_process
 from recon4_app.jobs.export_worker import policy
 from recon4_app.jobs.folder import JobFolder
@@ -46,16 +44,8 @@ def search(folder: JobFolder, progress: Progress) -> ExportedFile:
     found = listed(find_targets(tiles, radii_m=inputs.targets.radii_m, progress=progress))
     path = folder.made / "targets.json"
     write_json(path, to_plain(found))
-    digest = FileDigest.of(path)
-    return ExportedFile(
-        name=path.name,
-        bytes=digest.size,
-        sha256=digest.sha256,
-        text=f"{len(found.rows)} places like survey targets",
-        approval=latest_state(project).text,
-        map_key=map_folder.name,
-        recon4=recon4.__version__,
-    )
+    text = f"{len(found.rows)} places like survey targets"
+    return ExportedFile.of(path, text, latest_state(project), map_key=map_folder.name)
 
 
 if __name__ == "__main__":
