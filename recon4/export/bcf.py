@@ -120,8 +120,12 @@ def _extensions(notes: Sequence[BcfNote]) -> ET.Element:
 
 def _users(notes: Sequence[BcfNote]) -> list[str]:
     """Who wrote or changed notes, by name; the schema has no empty names."""
-    names = {name for note in notes for name in (note.who, note.changed_by) if name.strip()}
-    return sorted(names | ({UNKNOWN} if any(not note.who.strip() for note in notes) else set()))
+    changed = {note.changed_by for note in notes if note.changed_by.strip()}
+    return sorted(changed | {_author(note) for note in notes})
+
+
+def _author(note: BcfNote) -> str:
+    return note.who if note.who.strip() else UNKNOWN
 
 
 def _project(guid: str, name: str) -> ET.Element:
@@ -143,7 +147,7 @@ def _markup(note: BcfNote, topic_guid: str, view_guid: str, *, index: int) -> ET
     _text(topic, "Title", first[: BCF.max_title] or "Note")
     _text(topic, "Index", str(index))
     _text(topic, "CreationDate", note.time)
-    _text(topic, "CreationAuthor", note.who if note.who.strip() else UNKNOWN)
+    _text(topic, "CreationAuthor", _author(note))
     if note.changed != note.time:
         _text(topic, "ModifiedDate", note.changed)
         if note.changed_by.strip():
