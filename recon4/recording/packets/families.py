@@ -1,19 +1,30 @@
-"""The families of LiDARs whose packets are read, one row each."""
+"""The families of LiDARs whose packets are read: one of each maker in the table of models.
+
+The family of a maker is ``FAMILY`` of the module here that is named after it in small letters, or
+of ``family.py`` in such a folder. A maker without one sends clouds only.
+"""
 
 from __future__ import annotations
 
-from recon4.recording.packets.family import PacketFamily
-from recon4.recording.packets.hesai.family import HESAI
-from recon4.recording.packets.livox.family import LIVOX
-from recon4.recording.packets.ouster.family import OUSTER
-from recon4.recording.packets.robosense.family import ROBOSENSE
-from recon4.recording.packets.velodyne.family import VELODYNE
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 
-FAMILIES: tuple[PacketFamily, ...] = (
-    HESAI,
-    LIVOX,
-    ROBOSENSE,
-    OUSTER,
-    VELODYNE,
-)
-"""In the order in which they are asked whether a sender is theirs."""
+from recon4.model.lidars import LIDARS
+from recon4.recording.packets.family import PacketFamily
+
+
+def _families() -> tuple[PacketFamily, ...]:
+    makers = dict.fromkeys(facts.maker for facts in LIDARS.values() if facts.maker)
+    found = [find_spec(f"{__package__}.{maker.lower()}") for maker in makers]
+    return tuple(_family(spec) for spec in found if spec is not None)
+
+
+def _family(spec: ModuleSpec) -> PacketFamily:
+    is_folder = spec.submodule_search_locations is not None
+    family: PacketFamily = import_module(f"{spec.name}.family" if is_folder else spec.name).FAMILY
+    return family
+
+
+FAMILIES = _families()
+"""In the order of `recon4.model.lidars.LIDARS`."""

@@ -7,7 +7,9 @@ import re
 import struct
 from collections.abc import Callable, Iterator, Sized
 from functools import cache, partial
+from importlib import import_module
 from pathlib import Path
+from pkgutil import iter_modules
 
 import numpy as np
 
@@ -32,20 +34,11 @@ from recon4.store.frames import FrameStore
 from recon4.store.ledger import Ledger
 from recon4.store.project import read_description
 from recon4.store.stage import damage_of, read_manifest
+from tests.security import fuzz
 from tests.security.fuzz import seeds_clouds as clouds
 from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
-from tests.security.fuzz.kinds_gnss import GNSS_KINDS
-from tests.security.fuzz.kinds_hesai import HESAI_KINDS
-from tests.security.fuzz.kinds_live import LIVE_KINDS
-from tests.security.fuzz.kinds_livox import LIVOX_KINDS
-from tests.security.fuzz.kinds_mandeye import MANDEYE_KINDS
-from tests.security.fuzz.kinds_ouster import OUSTER_KINDS
-from tests.security.fuzz.kinds_planar import PLANAR_KINDS
-from tests.security.fuzz.kinds_recipes import RECIPE_KINDS
-from tests.security.fuzz.kinds_robosense import ROBOSENSE_KINDS
-from tests.security.fuzz.kinds_wide import WIDE_KINDS
 
 
 def _info(path: Path) -> None:
@@ -351,13 +344,12 @@ def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
     return tuple(make() for make in makers)
 
 
-KINDS: dict[str, Kind] = {
-    kind.name: kind
-    for kind in (
-        *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
-        *GNSS_KINDS,
-        *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS, *WIDE_KINDS),
-        *(*RECIPE_KINDS, *MANDEYE_KINDS),
-    )
-}
+def _beside() -> Iterator[Kind]:
+    """``KINDS`` of each module of this folder whose name begins with ``kinds_``."""
+    for found in iter_modules(fuzz.__path__):
+        if found.name.startswith("kinds_"):
+            yield from import_module(f"{fuzz.__name__}.{found.name}").KINDS
+
+
+KINDS: dict[str, Kind] = {kind.name: kind for kind in (*_ALL, *_recordings(), *_beside())}
 """By name."""

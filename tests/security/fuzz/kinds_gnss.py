@@ -51,7 +51,7 @@ def _logs() -> tuple[bytes, ...]:
     )
 
 
-GNSS_KINDS = (
+KINDS = (
     Kind(name="gnss-pos", file_name="a.pos", seeds=_solutions, read=_read, knows_end=False),
     Kind(name="gnss-text", file_name="a.txt", seeds=_exports, read=_read, knows_end=False),
     Kind(name="gnss-log", file_name="a.ubx", seeds=_logs, read=_read, knows_end=False),

@@ -11,7 +11,7 @@ from recon4.errors import ConfigError
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.hesai import checksums
 from recon4.recording.packets.hesai.angles import NotAngles, read_angles
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.mirrors import read_mirrors
 from recon4.recording.packets.hesai.models import MODELS
 from recon4.recording.packets.sensor_clock import SensorClock
@@ -82,7 +82,7 @@ def _read_table(path: Path) -> Reading:
     return Reading(0 if angles is None else len(angles.azimuth_rad), salvaged=angles is None)
 
 
-HESAI_KINDS = (
+KINDS = (
     *(
         Kind(
             name=f"hesai-{name}",

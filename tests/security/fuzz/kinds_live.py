@@ -294,7 +294,7 @@ def _folder(name: str, folder: Path) -> None:
     (folder / name).mkdir(exist_ok=True)
 
 
-LIVE_KINDS = (
+KINDS = (
     Kind(
         name="live-capture",
         file_name="a.pcap",

@@ -89,7 +89,7 @@ def _bag_seeds() -> tuple[bytes, ...]:
 
 
 _FILES = {"lvx1.0": (1, 0), "lvx1.1": (1, 1), "lvx2": (2, 0)}
-LIVOX_KINDS = tuple(
+KINDS = tuple(
     Kind(
         name=f"livox-sdk{layout.sdk}-{layout.data_type}",
         file_name="packets.bin",
@@ -110,7 +110,7 @@ LIVOX_KINDS = tuple(
     )
     for name, version in _FILES.items()
 )
-LIVOX_KINDS += (
+KINDS += (
     Kind(
         name="bag1-livox",
         file_name="a.bag",

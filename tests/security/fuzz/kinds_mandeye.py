@@ -73,7 +73,7 @@ def _read_positions(path: Path) -> Reading:
     return Reading(len(read_positions(path, report)), salvaged=bool(report.lost()))
 
 
-MANDEYE_KINDS = (
+KINDS = (
     Kind(
         name="laz-mandeye",
         file_name="walk/lidar0000.laz",

@@ -16,7 +16,7 @@ from recon4.recording.packets.ouster.encode import (
     encode_packets,
     metadata_json,
 )
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.packets.ouster.metadata import OusterMetadata
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
@@ -153,7 +153,7 @@ def _metadata_seeds() -> tuple[bytes, ...]:
     return (metadata_json(metadata_of("RNG19_RFL8_SIG16_NIR16")),)
 
 
-OUSTER_KINDS = (
+KINDS = (
     *(
         Kind(
             name=f"ouster-{profile.split('_')[0].lower()}",

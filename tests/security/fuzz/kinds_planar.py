@@ -194,7 +194,7 @@ def _read_urdf(path: Path) -> Reading:
     return Reading(len(joints))
 
 
-PLANAR_KINDS = (
+KINDS = (
     Kind(name="urdf", file_name="robot.urdf", seeds=_urdf, read=_read_urdf),
     *_table_kinds(),
     Kind(

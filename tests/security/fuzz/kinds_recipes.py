@@ -38,7 +38,5 @@ def _read(path: Path) -> Reading:
     return Reading(items, salvaged=report.outcome != "complete" or bool(report.findings))
 
 
-RECIPE_KINDS = (
-    Kind(name="bag1-recipe", file_name="a.bag", seeds=_seeds, read=_read, header_bytes=4096),
-)
+KINDS = (Kind(name="bag1-recipe", file_name="a.bag", seeds=_seeds, read=_read, header_bytes=4096),)
 """Structures, arrays, angles."""

@@ -16,7 +16,7 @@ from recon4.recording.packets.robosense.encode import (
     encode_solid,
     encode_spinning,
 )
-from recon4.recording.packets.robosense.family import ROBOSENSE
+from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
 from recon4.recording.packets.robosense.models import MODELS
 from recon4.recording.packets.robosense.packets import packet_s
 from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
@@ -79,7 +79,7 @@ def _read(name: str, path: Path) -> Reading:
     return Reading(len(shots), salvaged=len(sound) < _PACKETS or len(data) % size > 0)
 
 
-ROBOSENSE_KINDS = tuple(
+KINDS = tuple(
     Kind(
         name=f"robosense-{name.lower().replace(' ', '-')}",
         file_name="packets.bin",

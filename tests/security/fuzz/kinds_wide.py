@@ -10,7 +10,7 @@ import numpy as np
 from recon4.model.rig import Sensor
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.packets.family import Companion, PacketSensor
-from recon4.recording.packets.velodyne.family import VELODYNE
+from recon4.recording.packets.velodyne.family import FAMILY as VELODYNE
 from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
 from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.packets.velodyne.wide_encode import encode_wide
@@ -79,7 +79,7 @@ def _calibration(path: Path) -> Reading:
     return Reading(0 if found is None else len(found.far_m), salvaged=found is None)
 
 
-WIDE_KINDS = (
+KINDS = (
     *(
         Kind(
             name=f"velodyne-{name.lower()}",

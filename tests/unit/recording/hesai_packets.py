@@ -14,7 +14,7 @@ from recon4.recording.formats.datagrams import NO_DATAGRAMS, Datagrams, datagram
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.hesai.angles import Angles
 from recon4.recording.packets.hesai.data_packets import HesaiFormat, HesaiPackets
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 

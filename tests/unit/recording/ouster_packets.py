@@ -9,7 +9,7 @@ import numpy as np
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.packets.family import Companion, PacketSensor
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import sensor

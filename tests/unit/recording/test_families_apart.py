@@ -5,7 +5,6 @@ from itertools import islice
 import numpy as np
 import pytest
 
-from recon4.model.lidars import LIDARS
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of
 from recon4.recording.formats.pcap import read_pcap
@@ -15,6 +14,7 @@ from recon4.recording.packets.streams import recognized
 from recon4.recording.report import ImportReport
 from tools.structure import ROOT
 
+PACKETS = ROOT / "recon4/recording/packets"
 MAKERS = {
     "packets/mrpt": "Velodyne",
     "packets/veloview": "Velodyne",
@@ -60,13 +60,18 @@ def heads(folder) -> list[Datagrams]:
     return found
 
 
-def test_each_family_has_models_and_its_row_in_the_documentation():
-    makers = {facts.maker for facts in LIDARS.values()}
+def test_each_family_is_found_by_its_maker_and_has_its_row_in_the_documentation():
+    modules = [
+        file
+        for file in PACKETS.rglob("*.py")
+        if "\nFAMILY: PacketFamily" in file.read_text("utf-8")
+    ]
     page = (ROOT / "docs/reference/packets.md").read_text("utf-8")
 
-    assert [
-        f.name for f in FAMILIES if f.name not in makers or f"\n| [{f.name}](" not in page
-    ] == []
+    named = {(file.parent if file.name == "family.py" else file).stem for file in modules}
+    assert named == {family.name.lower() for family in FAMILIES}
+    missing = [f"| [{f.name}](" for f in FAMILIES if f"\n| [{f.name}](" not in page]
+    assert not missing, f"docs/reference/packets.md has no row that begins with {missing}"
 
 
 @pytest.mark.parametrize(("folder", "maker"), MAKERS.items())

@@ -9,7 +9,7 @@ from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.hesai.angles import Angles
 from recon4.recording.packets.hesai.encode import encode_jt16_inertial, write_inertial
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.models import MODELS
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport

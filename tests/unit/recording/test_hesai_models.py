@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.models import MODELS, model_of
 from tests.unit.recording.hesai_packets import datagrams
 from tests.unit.recording.test_hesai_packets import spin

@@ -7,7 +7,7 @@ from recon4.errors import ConfigError
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.packets.hesai import checksums, stamps
 from recon4.recording.packets.hesai.encode import HesaiBlocks, HesaiMode, encode_packets
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.firing import firing_mode, shot_times_us
 from recon4.recording.packets.hesai.models import MODELS, RETURNS
 from recon4.settings import IngestSettings

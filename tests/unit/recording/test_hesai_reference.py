@@ -13,7 +13,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from recon4.recording.packets.hesai.angles import read_angles
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from tests.unit.recording.hesai_packets import (
     datagrams,
     decoded,

@@ -13,7 +13,7 @@ from recon4.errors import ConfigError
 from recon4.recording.formats.pcap import Datagrams, read_pcap
 from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.livox.encode import ShotReturns, encode_imu, encode_points
-from recon4.recording.packets.livox.family import LIVOX
+from recon4.recording.packets.livox.family import FAMILY as LIVOX
 from recon4.recording.packets.livox.models import LAYOUTS, MODELS
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.recognition import livox_of_points

@@ -11,7 +11,7 @@ from recon4.recording.kinds import RecordingKind
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.livox.encode import encode_imu
-from recon4.recording.packets.livox.family import LIVOX
+from recon4.recording.packets.livox.family import FAMILY as LIVOX
 from recon4.recording.packets.livox.lvx import is_lvx, read_lvx, read_lvx_head
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport

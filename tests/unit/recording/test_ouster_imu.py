@@ -8,7 +8,7 @@ import pytest
 from recon4.recording.formats.datagrams import NO_DATAGRAMS
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.ouster.encode import encode_imu, metadata_json
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from tests.ouster_models import nominal_metadata

@@ -10,7 +10,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.ouster.data_packets import ring_of_beams
 from recon4.recording.packets.ouster.encode import encode_packets, metadata_json
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.packets.ouster.metadata import read_metadata
 from recon4.recording.packets.ouster.metadata_choice import choose, find_metadata
 from tests.ouster_models import nominal_metadata

@@ -13,7 +13,7 @@ from recon4.recording.packets.ouster.encode import (
     encode_packets,
     metadata_json,
 )
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.packets.ouster.layouts import PROFILES, PacketLayout
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings

@@ -9,7 +9,7 @@ import json
 import numpy as np
 import pytest
 
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from tests.unit.recording.ouster_packets import companion, data_of, of_port, opened
 
 _OS0, _OS1, _OS2 = (

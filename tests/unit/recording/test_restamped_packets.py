@@ -8,25 +8,25 @@ from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.packet_replay import Restamping
 from recon4.recording.packets.hesai.encode import encode_jt16_inertial
-from recon4.recording.packets.hesai.family import HESAI
+from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.inertial import Jt16Inertial
 from recon4.recording.packets.hesai.models import MODELS as HESAI_MODELS
 from recon4.recording.packets.hesai.stamps import date_of, time_ns
-from recon4.recording.packets.livox.family import LIVOX
+from recon4.recording.packets.livox.family import FAMILY as LIVOX
 from recon4.recording.packets.livox.models import LAYOUTS
 from recon4.recording.packets.livox.sound import has_crc, stamps_ns
 from recon4.recording.packets.ouster.encode import encode_imu, metadata_json
-from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.packets.ouster.imu_packets import sound_imu
 from recon4.recording.packets.ouster.layouts import LEGACY_IMU, PROFILES
 from recon4.recording.packets.robosense.encode import encode_imu as encode_airy_imu
-from recon4.recording.packets.robosense.family import ROBOSENSE
+from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
 from recon4.recording.packets.robosense.imu_packets import is_imu
 from recon4.recording.packets.robosense.models import IMU_PACKET
 from recon4.recording.packets.robosense.models import MODELS as ROBOSENSE_MODELS
 from recon4.recording.packets.robosense.packets import stamps_of
 from recon4.recording.packets.streams import recognized
-from recon4.recording.packets.velodyne.family import VELODYNE
+from recon4.recording.packets.velodyne.family import FAMILY as VELODYNE
 from recon4.recording.report import ImportReport
 from tests.security.fuzz.kinds_livox import packets_of as livox_packets
 from tests.security.fuzz.kinds_ouster import metadata_of

@@ -14,7 +14,7 @@ from recon4.recording.packets.robosense.encode import (
     encode_device,
     encode_spinning,
 )
-from recon4.recording.packets.robosense.family import ROBOSENSE
+from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
 from recon4.recording.packets.robosense.imu_packets import IMU_ID
 from recon4.recording.packets.robosense.models import (
     AIRY_INSTALLED,

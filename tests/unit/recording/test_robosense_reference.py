@@ -16,7 +16,7 @@ import pytest
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.robosense.angles import device_data
-from recon4.recording.packets.robosense.family import ROBOSENSE
+from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
 from recon4.recording.packets.robosense.models import MODELS
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.recording.packets.robosense.encode import encode_solid
-from recon4.recording.packets.robosense.family import ROBOSENSE
+from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
 from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
 from tests.unit.recording.packet_builders import T0_NS
 from tests.unit.recording.test_robosense_packets import datagrams, decoded, opened

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from recon4.errors import ConfigError
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.packets.family import Companion, PacketSensor
-from recon4.recording.packets.velodyne.family import VELODYNE
+from recon4.recording.packets.velodyne.family import FAMILY as VELODYNE
 from recon4.recording.packets.velodyne.laser_calibration import (
     calibration_in_status,
     calibration_of_file,

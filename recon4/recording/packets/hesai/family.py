@@ -17,6 +17,7 @@ from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
     MessagePackets,
+    PacketFamily,
     PacketFormat,
     PacketSensor,
     Payloads,
@@ -195,7 +196,7 @@ class Hesai:
         return Recognized(family=self.name, kind="other", refused=reason) if name else None
 
 
-HESAI = Hesai()
+FAMILY: PacketFamily = Hesai()
 
 
 def _most_frequent(head: Datagrams) -> Payloads | None:

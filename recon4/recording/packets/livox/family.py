@@ -18,6 +18,7 @@ from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
     MessagePackets,
+    PacketFamily,
     PacketSamples,
     PacketSensor,
     Payloads,
@@ -240,4 +241,4 @@ def _are_imu(head: Datagrams) -> bool:
     return 2 * max(found) > len(head)
 
 
-LIVOX = LivoxFamily()
+FAMILY: PacketFamily = LivoxFamily()

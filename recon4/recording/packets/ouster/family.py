@@ -18,6 +18,7 @@ from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
     MessagePackets,
+    PacketFamily,
     PacketFormat,
     PacketSensor,
     Payloads,
@@ -228,4 +229,4 @@ def _say(sensor: PacketSensor, fit: ChosenMetadata, found: MetadataFiles, *, col
         )
 
 
-OUSTER = OusterFamily()
+FAMILY: PacketFamily = OusterFamily()

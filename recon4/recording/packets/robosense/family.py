@@ -18,6 +18,7 @@ from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
     MessagePackets,
+    PacketFamily,
     PacketFormat,
     PacketSamples,
     PacketSensor,
@@ -270,7 +271,7 @@ class RoboSenseFamily:
         return restamped(payloads, shift_ns=shift_ns)
 
 
-ROBOSENSE = RoboSenseFamily()
+FAMILY: PacketFamily = RoboSenseFamily()
 
 
 def _of_size(head: Datagrams, size: int) -> Payloads:

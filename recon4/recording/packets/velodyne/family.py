@@ -19,6 +19,7 @@ from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
     MessagePackets,
+    PacketFamily,
     PacketFormat,
     PacketSamples,
     PacketSensor,
@@ -112,7 +113,7 @@ class VelodyneFamily:
         return restamped(payloads, shift_ns=shift_ns)
 
 
-VELODYNE = VelodyneFamily()
+FAMILY: PacketFamily = VelodyneFamily()
 
 
 def senders(payloads: Payloads) -> list[str]:
