@@ -27,8 +27,8 @@ from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.cloud_files import (
     CLOUD_SUFFIXES,
     Table,
-    is_cloud_file,
     is_mesh,
+    is_plausible_cloud,
     read_cloud,
 )
 from recon4.recording.formats.point_messages import POINTS
@@ -257,5 +257,5 @@ def _pose_at(t_ns: int, path: Path) -> Trajectory:
 def _cloud_files(folder: Path) -> list[Path]:
     found = [f for f in folder.iterdir() if f.suffix.lower() in CLOUD_SUFFIXES and f.is_file()]
     found = [f for f in found if not is_mesh(f)]
-    # A damaged file among good ones must be counted: only BIN is detected by content.
-    return [f for f in found if f.suffix.lower() != ".bin" or is_cloud_file(f)]
+    # A damaged file among good ones must be counted: few endings need the content.
+    return [f for f in found if is_plausible_cloud(f)]

@@ -19,6 +19,7 @@ from recon4.recording.formats.cloud_files import (
     CLOUD_SUFFIXES,
     is_cloud_file,
     is_mesh,
+    is_plausible_cloud,
 )
 from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
@@ -345,6 +346,8 @@ def _kinds_in(path: Path) -> tuple[dict[RecordingKind, list[str]], list[str]]:
         elif kind is RecordingKind.FRAMES and is_mesh(path / name):
             meshes.append(name)
             continue
+        elif kind is RecordingKind.FRAMES and not is_plausible_cloud(path / name):
+            kind = None
         elif kind is None and _is_pcap_file(path / name):
             kind = RecordingKind.PCAP
         if kind is not None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from recon4.recording.formats.cloud_files import ENDING_FORMATS
 from recon4.recording.formats.cloud_headers import HEADER_FORMATS
 from recon4.recording.packets.families import FAMILIES
 from tests.security.fuzz.broken import BROKEN
@@ -59,10 +60,12 @@ def test_a_reader_in_order_is_not_accused(readers: Readers) -> None:
     assert tally.mutants == 40
 
 
-def test_every_format_of_clouds_with_a_header_is_fuzzed() -> None:
+def test_every_format_of_clouds_is_fuzzed() -> None:
     fuzzed = {Path(kind.file_name).suffix for kind in KINDS.values()}
+    formats = (*HEADER_FORMATS, *ENDING_FORMATS)
 
-    assert [one.name for one in HEADER_FORMATS if one.suffix not in fuzzed] == []
+    missing = [one.suffix for one in formats if one.suffix not in fuzzed]
+    assert not missing, f"no Kind of tests/security/fuzz/ has a file_name with the ending {missing}"
 
 
 def test_every_family_of_lidars_is_fuzzed() -> None:

@@ -1,4 +1,4 @@
-"""Point cloud files, with a header (`cloud_headers`) or KITTI BIN, as tables of named columns.
+"""Point cloud files as tables of named columns: with a header (`cloud_headers`), or by ending.
 
 Every length is checked against the size of the file before anything is allocated: a cut file is
 refused, never padded, and a large one is read piece by piece.
@@ -9,7 +9,8 @@ from __future__ import annotations
 import io
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -33,10 +34,6 @@ from recon4.untrusted.limits import LIMITS
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
 
-CLOUD_SUFFIXES = (*(one.suffix for one in HEADER_FORMATS), ".bin", SCAN_SUFFIX)
-"""Of files that are frames of a folder."""
-CLOUD_FORMATS = f"{', '.join(one.name for one in HEADER_FORMATS)}, KITTI BIN or 3DTK"
-"""Their formats, for messages."""
 MAX_FRAME_BYTES = 256 << 20
 """The points of a file that is read as a whole (one revolution, or a compressed block)."""
 _CHUNK_BYTES = 32 << 20
@@ -47,12 +44,18 @@ _LZF_MOST = 100
 
 
 def is_cloud_file(path: Path) -> bool:
-    """Whether the content is that of a format with a header, or plausibly of a KITTI BIN file."""
+    """Whether the content is that of a format with a header, or plausibly of one by its ending."""
     with path.open("rb") as file:
         head = file.read(HEADER_BYTES)
-    if header_format(head) is not None or path.suffix.lower() == SCAN_SUFFIX:
+    if header_format(head) is not None:
         return True
-    return path.suffix.lower() == ".bin" and is_bin(head, path.stat().st_size)
+    by_ending = ending_format(path)
+    return by_ending is not None and by_ending.is_of(path)
+
+
+def is_plausible_cloud(path: Path) -> bool:
+    """Whether a file with an ending of clouds is one: what others use, too, needs the content."""
+    return path.is_file() and (ending_format(path) is None or is_cloud_file(path))
 
 
 def is_mesh(path: Path) -> bool:
@@ -69,14 +72,17 @@ def is_mesh(path: Path) -> bool:
 
 
 def read_cloud(path: Path) -> Table:
-    """Read a cloud file of at most `MAX_FRAME_BYTES`, or a scan of 3DTK, as a whole.
+    """Read a cloud file of at most `MAX_FRAME_BYTES`, or a format by its ending, as a whole.
 
     Raises:
         CorruptFile: If the bytes do not match what the header promises, or there are too many.
         UnknownFormat: If it is none of `CLOUD_FORMATS`.
     """
-    if path.suffix.lower() == SCAN_SUFFIX:
-        return read_scan(path)
+    by_ending = ending_format(path)
+    return _read_rows(path) if by_ending is None else by_ending.read(path)
+
+
+def _read_rows(path: Path) -> Table:
     with open_regular(path) as file:
         layout = _layout(file, path)
         _check_size(file, layout, path.name)
@@ -120,10 +126,54 @@ def cloud_fields(path: Path) -> list[str]:
     Raises:
         CorruptFile, UnknownFormat: As `read_cloud`.
     """
-    if path.suffix.lower() == SCAN_SUFFIX:
-        return list(scan_fields(path))
+    by_ending = ending_format(path)
+    return list(_fields(path) if by_ending is None else by_ending.fields(path))
+
+
+def _fields(path: Path) -> Iterable[str]:
     with open_regular(path) as file:
-        return list(_layout(file, path).named())
+        return _layout(file, path).named()
+
+
+def _is_bin(path: Path) -> bool:
+    with path.open("rb") as file:
+        return is_bin(file.read(HEADER_BYTES), _size(file))
+
+
+@dataclass(frozen=True, slots=True)
+class EndingFormat:
+    """A format of frames whose files have no header: their ending says it."""
+
+    name: str
+    """For messages."""
+    suffix: str
+    """Of its files, in small letters."""
+    is_of: Callable[[Path], bool]
+    """Whether the content of a file with this ending is plausible."""
+    fields: Callable[[Path], Iterable[str]]
+    """Names of its columns, without reading all of it."""
+    read: Callable[[Path], Table]
+    """All of it. It raises `CorruptFile` if it is damaged or has more bytes than one frame may."""
+
+
+ENDING_FORMATS = (
+    EndingFormat("KITTI BIN", ".bin", _is_bin, _fields, _read_rows),
+    EndingFormat("3DTK", SCAN_SUFFIX, Path.is_file, scan_fields, read_scan),
+)
+CLOUD_SUFFIXES = tuple(one.suffix for one in (*HEADER_FORMATS, *ENDING_FORMATS))
+"""Of files that are frames of a folder."""
+CLOUD_FORMATS = " or ".join(
+    [
+        ", ".join(one.name for one in (*HEADER_FORMATS, *ENDING_FORMATS[:-1])),
+        ENDING_FORMATS[-1].name,
+    ]
+)
+"""Their formats, for messages."""
+
+
+def ending_format(path: Path) -> EndingFormat | None:
+    """The format of an ending; None = one with a header, or none."""
+    return next((one for one in ENDING_FORMATS if one.suffix == path.suffix.lower()), None)
 
 
 def _layout(file: BinaryIO, path: Path) -> CloudLayout:

@@ -36,6 +36,14 @@ def test_a_folder_with_recordings_of_two_kinds_is_refused_and_both_are_named(tmp
     assert "recording.pcap (packets of LiDARs (pcap))" in str(caught.value)
 
 
+def test_a_file_that_only_has_the_ending_of_frames_leaves_the_kind_of_its_folder(tmp_path, pcap):
+    (tmp_path / "recording.pcap").write_bytes(pcap.read_bytes())
+    (tmp_path / "firmware.bin").write_bytes(b"\xff" * 37)
+    (tmp_path / "drawings.3d").mkdir()
+
+    assert recognize(tmp_path) is RecordingKind.PCAP
+
+
 def test_a_mesh_beside_a_recording_is_passed_over_and_said(tmp_path, pcap):
     folder = walk_with_model(tmp_path, pcap)
     report = ImportReport()
