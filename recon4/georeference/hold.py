@@ -19,7 +19,7 @@ import numpy as np
 from recon4.errors import StoreError
 from recon4.georeference.stage import LeveledMap
 from recon4.georeference.tuning import HOLD
-from recon4.model.figures import HeldFigures, LevelFigures, MirrorFigures
+from recon4.model.figures import LevelFigures, MirrorFigures, MovedFigures
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
@@ -53,14 +53,12 @@ def hold(leveled: LeveledMap, undecided: Path, out: Path) -> LevelFigures | None
         StoreError: If the artifact is damaged.
     """
     before = load_trajectory(undecided / "trajectory.npz")
-    moved = _moved(before, leveled.trajectory)
-    if moved is None or not _within(moved) or not _has_same_place(leveled, undecided):
+    moved = moved_by_decisions(leveled, undecided)
+    if moved is None or not _within(moved):
         return None
     if not _is_known_as_well(leveled.uncertainty, load_uncertainty(undecided)):
         return None
     figures = read_figures(undecided, LevelFigures)
-    if not _are_same(figures.mirrors, tuple(mirror.figures for mirror in leveled.mirrors)):
-        return None
     for name in KEPT:
         if (undecided / name).is_file():
             copy_file(undecided / name, out / name)
@@ -69,16 +67,37 @@ def hold(leveled: LeveledMap, undecided: Path, out: Path) -> LevelFigures | None
     return msgspec.structs.replace(figures, held=moved)
 
 
-def _moved(before: Trajectory, after: Trajectory) -> HeldFigures | None:
+def moved_by_decisions(leveled: LeveledMap, undecided: Path) -> MovedFigures | None:
+    """How far decisions move a map that is at the same place on the earth, with the same mirrors.
+
+    Args:
+        leveled: The map with the decisions.
+        undecided: Artifact of the stage ``level`` without decisions.
+
+    Returns:
+        None if it is another place, other mirrors or another walk.
+
+    Raises:
+        StoreError: If the artifact is damaged.
+    """
+    moved = _moved(load_trajectory(undecided / "trajectory.npz"), leveled.trajectory)
+    if moved is None or not _has_same_place(leveled, undecided):
+        return None
+    mirrors = read_figures(undecided, LevelFigures).mirrors
+    now = tuple(mirror.figures for mirror in leveled.mirrors)
+    return moved if _are_same(mirrors, now) else None
+
+
+def _moved(before: Trajectory, after: Trajectory) -> MovedFigures | None:
     """How far poses move at most; None = they are not of the same times."""
     if not np.array_equal(before.t_ns, after.t_ns):
         return None
     moved_m = np.linalg.norm(after.T_a_b.t - before.T_a_b.t, axis=1)
     turned_rad = (before.T_a_b.inverse() @ after.T_a_b).angle()
-    return HeldFigures(moved_m=float(moved_m.max()), turned_rad=float(turned_rad.max()))
+    return MovedFigures(moved_m=float(moved_m.max()), turned_rad=float(turned_rad.max()))
 
 
-def _within(moved: HeldFigures) -> bool:
+def _within(moved: MovedFigures) -> bool:
     return moved.moved_m <= HOLD.moved_m and moved.turned_rad <= HOLD.turned_rad
 
 

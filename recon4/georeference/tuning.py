@@ -118,6 +118,10 @@ class HoldTuning(Struct, frozen=True, kw_only=True):
     """… and as far at ten meters [rad]."""
     mirror_m: float = 0.5
     """Of the middle of a mirror, whose rim is found by cells [m]."""
+    seen_m: float = 0.05
+    """Of a position [m], if what the scans see is to stay: a third of what scans see through …"""
+    seen_rad: float = 5e-3
+    """… and of a direction [rad]: as far at ten meters."""
 
 
 HOLD = HoldTuning()

@@ -153,8 +153,8 @@ class MirrorFigures(msgspec.Struct, frozen=True, kw_only=True):
     """Ratio of all points that lie behind it."""
 
 
-class HeldFigures(msgspec.Struct, frozen=True, kw_only=True):
-    """How far decisions would have moved a map that stays where it was without them."""
+class MovedFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """How far decisions move a map from where it is without them."""
 
     moved_m: float
     """Largest of all positions [m]."""
@@ -181,8 +181,10 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     """None = not stated: line scans, or fewer than two nodes."""
     mirrors: tuple[MirrorFigures, ...] = ()
     """Walls that show the room before them."""
-    held: HeldFigures | None = None
+    held: MovedFigures | None = None
     """None = the map follows the decisions, or there are none."""
+    moved: MovedFigures | None = None
+    """Of a map that follows them; None = it is held, or not compared with the one before."""
 
 
 class PlaceThickness(msgspec.Struct, frozen=True):

@@ -48,7 +48,7 @@ def to_trajectory(run: Run) -> None:
 def from_review(run: Run) -> None:
     """Trajectory and map."""
     to_trajectory(run)
-    make_map(run, **run.measurements)
+    make_map(run, to_trajectory, **run.measurements)
 
 
 LIDAR = Workflow(

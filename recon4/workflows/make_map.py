@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+from recon4.store.contents import files_of
 from recon4.workflows.stages import CLASSES, INTENSITY, MAP
 from recon4.workflows.workflow import Run
 
@@ -13,15 +16,17 @@ PLACE = (*POSES, "uncertainty.npz", "georeference.json")
 """What `MAP` reads of it."""
 
 
-def make_map(run: Run, **measurements: str) -> None:
+def make_map(run: Run, to_trajectory: Callable[[Run], None], **measurements: str) -> None:
     """Intensities, classes and map; verdicts that leave the trajectory alone change none of them.
 
     Args:
         run: Its stage ``level`` is there.
+        to_trajectory: Ran the stages up to it.
         measurements: Inputs of a stage that places points, but for the odometry.
     """
     points = measurements | {"odometry": "odometry"}
-    run.stage(INTENSITY, **points, level=run.files("level", POSES))
-    run.stage(CLASSES, **points, level=run.files("level", SIGHT))
+    seen = run.seen(to_trajectory)
+    run.stage(INTENSITY, **points, level=files_of(seen, POSES))
+    run.stage(CLASSES, **points, level=files_of(seen, SIGHT))
     made = {"intensity": "intensity", "classes": "classes"}
     run.stage(MAP, **points, **run.corrections, **made, level=run.files("level", PLACE))

@@ -30,7 +30,7 @@ def before_review(run: Run) -> None:
 def from_review(run: Run) -> None:
     """Trajectory and map, as of LiDARs."""
     to_trajectory(run)
-    make_map(run, frames="frames")
+    make_map(run, to_trajectory, frames="frames")
 
 
 def to_trajectory(run: Run) -> None:

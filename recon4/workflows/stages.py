@@ -9,6 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 from shutil import rmtree
 
+import msgspec
+
 from recon4.errors import UnknownFormat
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
@@ -217,7 +219,7 @@ def _level(
     calibration: Path | None = None,
     **others: Path | SiteControl | None,
 ) -> LevelFigures:
-    from recon4.georeference.hold import hold
+    from recon4.georeference.hold import hold, moved_by_decisions
     from recon4.georeference.stage import RefinedWalk, level_and_georeference
     from recon4.pose_graph.files import load_graph
     from recon4.pose_graph.known_errors import load_known_errors
@@ -238,8 +240,13 @@ def _level(
         settings=context.settings,
         progress=context.progress,
     )
-    held = hold(leveled, undecided, context.out) if isinstance(undecided, Path) else None
-    return held or leveled.save(context.out)
+    if not isinstance(undecided, Path):
+        return leveled.save(context.out)
+    held = hold(leveled, undecided, context.out)
+    if held is not None:
+        return held
+    moved = moved_by_decisions(leveled, undecided)
+    return msgspec.structs.replace(leveled.save(context.out), moved=moved)
 
 
 def _intensity(

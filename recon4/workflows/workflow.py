@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from recon4.georeference.tuning import HOLD
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.pose_graph.files import load_nodes
 from recon4.review.decisions import NOTHING_DECIDED, Decided
@@ -13,7 +14,7 @@ from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.semi_rigid.graph_nodes import GraphNodes, Undecided
 from recon4.store.contents import arrays_of, files_of
 from recon4.store.hashing import hash_json
-from recon4.store.stage import Input, Stage, StageRunner
+from recon4.store.stage import Artifact, Input, Stage, StageRunner
 from recon4.workflows.publish import Results
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
 
@@ -99,6 +100,23 @@ class Run:
         from_review(aside)
         level = aside.runner.runs["level"].artifact
         return {"undecided": Input(level.key, level.folder)}
+
+    def seen(self, to_trajectory: Callable[[Run], None]) -> Artifact:
+        """The stage ``level`` whose poses say what scans see: of a point, and through it.
+
+        What they see stays as it was without decisions if these move the map by less than a scan
+        can tell; the map itself always follows the decided poses.
+
+        Args:
+            to_trajectory: Runs the stages up to the final trajectory.
+        """
+        level = self.runner.runs["level"]
+        moved = level.figures.moved
+        if moved is None or moved.moved_m > HOLD.seen_m or moved.turned_rad > HOLD.seen_rad:
+            return level.artifact
+        aside = Run(self.runner.aside())
+        to_trajectory(aside)
+        return aside.runner.runs["level"].artifact
 
     def files(self, stage: str, names: tuple[str, ...]) -> Input:
         """Some files of a stage's artifact: a stage that is given them reads no others of it."""

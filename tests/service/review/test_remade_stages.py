@@ -4,8 +4,10 @@ import shutil
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from recon4.geometry.se3 import SE3
 from recon4.georeference.tuning import HOLD
 from recon4.model.figures import LevelFigures, RefineFigures
 from recon4.model.pose_graph import Verdict
@@ -13,6 +15,7 @@ from recon4.pipeline import remake
 from recon4.pose_graph.files import load_graph
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
+from recon4.review.row_contents import Measurement, numbers_of
 from recon4.store.contents import files_of
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Artifact, read_figures, read_manifest
@@ -53,6 +56,26 @@ class Watch:
 def decided(root: Path, kind, pair, **more):
     append(root, Decision(kind=kind, who="Eva", pair=pair))
     return remake(root, **more)
+
+
+def moved_by(root: Path, off_m: float):
+    """Remake a map with another measurement of a loop, off by some centimeters."""
+    graph = load_graph(read_artifacts(root)["verification"])
+    edge = next(e for e in graph.edges if (e.i, e.j) == CONFIRMED)
+    T = SE3(edge.T_i_j.R, edge.T_i_j.t + np.array([0.0, off_m, 0.0]))
+    measured = Measurement(
+        T_i_j=numbers_of(T),
+        information=tuple((100.0 * np.asarray(edge.information)).ravel().tolist()),
+        overlap=0.9,
+        error_m=0.01,
+        limit_m=0.1,
+        degeneracy=0.3,
+        iterations=5,
+    )
+    pair = int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j])
+    one = Decision(kind=DecisionKind.REPLACE, who="Eva", pair=pair, measurement=measured)
+    append(root, one)
+    return remake(root)
 
 
 def ran(summary):
@@ -97,6 +120,22 @@ def test_a_map_that_a_decision_hardly_moves_stays_where_it_was(office):
     assert 1e-5 < carried(office).moved_m < HOLD.moved_m
     edge = next(e for e in load_graph(after["level"]).edges if (e.i, e.j) == CONFIRMED)
     assert (edge.verdict, edge.decided_by) == (Verdict.REJECTED, "Eva")
+
+
+def test_what_scans_see_stays_where_a_decision_moves_the_map_by_centimeters(office):
+    before = read_artifacts(office)
+
+    summary = moved_by(office, 0.03)
+
+    assert ran(summary) == {"review", "refine", "level", "map", "audit"}
+    moved = read_figures(read_artifacts(office)["level"], LevelFigures).moved
+    assert HOLD.moved_m < moved.moved_m < HOLD.seen_m
+    after = read_artifacts(office)
+    undecided = Artifact("level", before["level"].name, before["level"])
+    for name, given in (("classes", SIGHT), ("map", PLACE)):
+        recipe = read_manifest(after[name])["recipe"]["inputs"]
+        is_seen = recipe["level"] == files_of(undecided, given).key
+        assert is_seen == (name == "classes")
 
 
 @pytest.mark.study

@@ -3,7 +3,7 @@
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.loops import Decisions
 from recon4.findings.wording import text_of
-from recon4.model.figures import HeldFigures, LevelFigures
+from recon4.model.figures import LevelFigures, MovedFigures
 from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind
 
@@ -14,7 +14,7 @@ def found(held):
 
 
 def test_a_move_that_the_map_does_not_follow_is_noted():
-    (note,) = found(HeldFigures(moved_m=0.0031, turned_rad=1e-4))
+    (note,) = found(MovedFigures(moved_m=0.0031, turned_rad=1e-4))
 
     assert (note.kind, note.level) == (FindingKind.REVIEW_HELD, Level.NOTE)
     assert "0.3 cm" in text_of(note).replace("\u202f", " ").replace("\xa0", " ")
@@ -22,5 +22,5 @@ def test_a_move_that_the_map_does_not_follow_is_noted():
 
 def test_a_map_that_follows_or_does_not_move_says_nothing():
     assert found(None) == []
-    assert found(HeldFigures(moved_m=2e-16, turned_rad=0.0)) == []
+    assert found(MovedFigures(moved_m=2e-16, turned_rad=0.0)) == []
     assert list(Decisions().check(WalkRecord())) == []
