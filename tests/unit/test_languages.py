@@ -64,7 +64,9 @@ def test_every_message_is_translated_and_quotes_the_same_values(language, file):
     english = messages_of(ROOT / ENGLISH / f"{file}.ftl")
     own = messages_of(ROOT / language / f"{file}.ftl")
 
-    assert own.keys() == english.keys()
+    missing, unknown = english.keys() - own.keys(), own.keys() - english.keys()
+    assert not missing, f"{language}/{file}.ftl lacks {missing}: English words will do for a start"
+    assert not unknown, f"{language}/{file}.ftl has {unknown}, which English has not"
     assert {name: parts(own[name]) for name in own} == {
         name: parts(english[name]) for name in english
     }
