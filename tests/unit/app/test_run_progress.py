@@ -3,9 +3,14 @@
 import pytest
 
 from recon4.locales.coded import CodedText
+from recon4.workflows.lidar import LIDAR
+from recon4.workflows.planar import PLANAR
+from recon4.workflows.profiler import PROFILER
 from recon4_app.jobs.events import event_of
 from recon4_app.jobs.exit_reasons import exit_reason
-from recon4_app.jobs.run_progress import RunProgress, after, stage_weight
+from recon4_app.jobs.run_progress import STAGE_PERCENT, RunProgress, after, stage_weight
+from recon4_app.projects.model import STAGE_ORDER
+from tools.structure import ROOT
 
 
 def fold(*events):
@@ -83,3 +88,16 @@ def test_exit_reasons(code, words):
     how, number = exit_reason(code)
 
     assert words in CodedText("worker-continues", how=how, number=number, stage="", what="")
+
+
+@pytest.mark.parametrize("workflow", [LIDAR, PROFILER, PLANAR], ids=lambda one: one.name)
+def test_pages_know_every_stage_of_a_walk(workflow):
+    names = [one.name for one in (*workflow.kept, *workflow.remade, workflow.audit)]
+    texts = (ROOT / "recon4/locales/en/projects.ftl").read_text("utf-8")
+
+    shown = [name for name in STAGE_ORDER if name in names]
+    assert shown == names, "STAGE_ORDER of recon4_app/projects/model.py has another order"
+    wordless = [name for name in names if f"\nstage-{name.replace('_', '-')} = " not in texts]
+    assert not wordless, f"projects.ftl has no words, stage-NAME, of {wordless}"
+    timeless = set(names) - {"review"} - set(STAGE_PERCENT)
+    assert workflow is not LIDAR or not timeless, f"STAGE_PERCENT of run_progress.py: {timeless}"
