@@ -10,7 +10,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import pytest
 
@@ -27,6 +27,12 @@ os.environ["PYTHONPATH"] = str(ROOT)  # children do not look into the working fo
 DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
 
 CAPTURE = "recording.pcap"
+
+
+class HasFileno(Protocol):
+    """An open file, for calls that take one or its descriptor."""
+
+    def fileno(self) -> int: ...
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
@@ -71,6 +77,22 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def _no_keys_of_this_person(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Commands trust no key that the person who runs the tests trusts."""
     os.environ["XDG_CONFIG_HOME"] = str(tmp_path_factory.mktemp("config"))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _nothing_waits_for_the_disk() -> Iterator[None]:
+    """This process waits for no disk, which would leave processors idle.
+
+    Only a power cut would show it, and what survives one is tested on a model of the disk
+    (`tests/power_cut`). Programs that tests start sync as ever; a descriptor has to be open.
+    """
+
+    def looked_at(file: int | HasFileno) -> None:
+        os.fstat(file if isinstance(file, int) else file.fileno())
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "fsync", looked_at)
+        yield
 
 
 @pytest.fixture(scope="session")
