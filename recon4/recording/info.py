@@ -374,10 +374,11 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         missing.append(missing_samples(path, RecordingKind.GNSS_FILE))
     sensors = _with_rotation(info.sensors, rig, head)
     report.count("clock_jumps_back", len(head.jumps))
-    back_ns = head.set_back_ns if info.seconds < 0.0 else 0
+    is_capture = info.kind in {kind.text for kind in CAPTURES}  # on the recorder's clock
+    set_ns = head.set_back_ns - sum(report.recorder_set_ns) if is_capture else 0
     return replace(
         info,
-        t_last_ns=info.t_last_ns + back_ns,
+        t_last_ns=info.t_last_ns + set_ns,
         sensors=sensors,
         walk=kind_of_walk(rig) if rig is not None else None,
         gaps=(*info.gaps, *head.jumps),

@@ -12,7 +12,7 @@ from recon4.model.finding import Value
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
-from recon4.recording.assembly.assembler import TimeGap
+from recon4.recording.assembly.assembler import TimeGap, runs
 from recon4.recording.assembly.range_limits import drop_invalid
 from recon4.recording.assembly.rotation_rate import rotation_rate
 from recon4.recording.assembly.shots import Shots
@@ -55,14 +55,16 @@ class RecordingHead:
 
     def note_jump(self, shots: Shots, rig: Rig, gap_s: float) -> None:
         """Find out whether the clock of a sensor goes back by more than a gap."""
-        newest = int(shots.t_ns.max())
-        last = self.last_ns.get(shots.sensor, newest)
-        if newest < last - gap_s * 1e9:
-            back_s = 1e-9 * (int(shots.t_ns[0]) - last)
-            self.jumps.append(TimeGap(rig.sensors[shots.sensor].name, last, back_s))
-        else:
-            newest = max(newest, last)
-        self.last_ns[shots.sensor] = newest
+        for number, part in enumerate(runs(shots, round(gap_s * 1e9))):
+            newest = int(part.t_ns.max())
+            last = self.last_ns.get(shots.sensor, newest)
+            set_back = number > 0 or shots.set_back
+            if (int(part.t_ns[0]) if set_back else newest) < last - gap_s * 1e9:
+                back_s = 1e-9 * (int(part.t_ns[0]) - last)
+                self.jumps.append(TimeGap(rig.sensors[shots.sensor].name, last, back_s))
+            else:
+                newest = max(newest, last)
+            self.last_ns[shots.sensor] = newest
 
 
 def read_head(

@@ -287,7 +287,7 @@ def _imu(
     clean = clean_imu(
         samples,
         offset_s=offset_s,
-        jumps_ns=written.jumps_ns,
+        jumps_ns=[*written.jumps_ns, *(-jump for jump in report.recorder_set_ns)],
         report=report,
         gyro_unit=given.gyro_unit,
     )

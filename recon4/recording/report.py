@@ -55,6 +55,8 @@ class ImportReport:
     the sensors, and the recorder's clock be wrong."""
     utc_ahead_ns: int = 0
     """UTC minus the recorder's clock [ns] if GPS drives a sensor, else 0."""
+    recorder_jumps_ns: dict[str, list[int]] = field(default_factory=dict)
+    """LiDAR -> jumps of the recorder's clock that its stamps show [ns], positive = ahead."""
     lags_ns: dict[str, list[int]] = field(default_factory=dict)
     """Kind of sensor -> time of recording minus stamp of its first messages [ns]."""
     outcome: str = "complete"
@@ -101,6 +103,11 @@ class ImportReport:
             self.findings.append(found)
         else:
             self.count("remarks_more")
+
+    @property
+    def recorder_set_ns(self) -> tuple[int, ...]:
+        """Jumps of the recorder's clock [ns]: as by the LiDAR that shows most of them."""
+        return tuple(max(self.recorder_jumps_ns.values(), key=lambda jumps: len(jumps), default=[]))
 
     def warn_of_losses(self) -> None:
         """Warn of each large loss that no reader warned of; call once, at the end."""

@@ -120,8 +120,8 @@ class Assembler:
             report=self._report,
             blind_m=self._blind_m[shots.sensor],
         )
-        for part in _runs(kept, round(self._settings.gap_s * 1e9)):
-            self._take(part)
+        for number, part in enumerate(runs(kept, round(self._settings.gap_s * 1e9))):
+            self._take(part, set_back=number > 0 or shots.set_back)
         if self._start_ns is None and not self._head_complete():
             return []
         return self._cut(final=False)
@@ -145,13 +145,14 @@ class Assembler:
         self._report.count("points_of_beams_without_correction", unknown)
         return replace(shots, xyz=xyz)
 
-    def _take(self, shots: Shots) -> None:
+    def _take(self, shots: Shots, *, set_back: bool) -> None:
         stream = self._streams[shots.sensor]
         first, last = int(shots.t_ns[0]) + stream.shift_ns, int(shots.t_ns.max()) + stream.shift_ns
         gap_ns = int(self._settings.gap_s * 1e9)
         if stream.last_ns is not None and first - stream.last_ns > gap_ns:
             self._note_gap(stream, first - stream.last_ns)
-        if stream.last_ns is not None and last < stream.last_ns - gap_ns:
+        newest = first if set_back else last  # clouds may overlap
+        if stream.last_ns is not None and newest < stream.last_ns - gap_ns:
             step = self._shift_for(stream, stream.last_ns - first)
             stream.shift_ns += step
             last += step
@@ -311,7 +312,7 @@ class Assembler:
         return taken
 
 
-def _runs(shots: Shots, gap_ns: int) -> list[Shots]:
+def runs(shots: Shots, gap_ns: int) -> list[Shots]:
     """The shots, cut where the clock goes back."""
     if not len(shots):
         return []

@@ -27,6 +27,8 @@ class Shots:
     """Beam, 0 = lowest elevation, (N,)."""
     echo: NDArray[np.uint8]
     """0 = only or strongest return, 1 = further return of the same shot, (N,)."""
+    set_back: bool = False
+    """Whether its clock was set back since the shots before: what is earlier does not overlap."""
 
     def __len__(self) -> int:
         return len(self.t_ns)

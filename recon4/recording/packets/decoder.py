@@ -131,8 +131,9 @@ class PacketDecoder:
         self._order.step_ns = round(self._layout.packet_s * SECOND_NS)
         t_ns, trusted = self.clock.push_ns(t_arrival_ns, self._layout.stamps_ns(payloads))
         if not trusted.all():
-            t_ns, payloads = t_ns[trusted], payloads[trusted]
-        return self._shots(*self._order.push(t_ns, payloads))
+            t_arrival_ns, t_ns = t_arrival_ns[trusted], t_ns[trusted]
+            payloads = payloads[trusted]
+        return self._shots(*self._order.push_arrived(t_ns, payloads, t_arrival_ns))
 
     @property
     def sample_sizes(self) -> frozenset[int]:
@@ -157,7 +158,11 @@ class PacketDecoder:
             self._check_interval(t_ns, payloads)
         else:
             payloads = np.zeros((0, self.size), np.uint8)
-        return self._layout.decode(t_ns + self._offset_ns, payloads)
+        shots = self._layout.decode(t_ns + self._offset_ns, payloads)
+        if not self._order.is_set_back or not len(shots):
+            return shots
+        self._order.is_set_back = False
+        return replace(shots, set_back=True)
 
     def _check_interval(self, t_ns: Times, payloads: Payloads) -> None:
         """Count missing packets, measure rotation, and see whether the model can be true."""

@@ -29,6 +29,45 @@ class PacketOrder:
     _behind: int = 0
     step_ns: int = 0
     """Usual time from one packet to the next [ns]; 0 = not known, then all wait."""
+    is_set_back: bool = False
+    """Whether the clocks were set back since a reader put this to False."""
+    _arrived_ns: int | None = None
+
+    def push_arrived(
+        self, t_ns: Times, payloads: Payloads, t_arrival_ns: Times
+    ) -> tuple[Times, Payloads]:
+        """As `push`, of packets whose arrival tells whether the clocks were set back together.
+
+        Packets then arrive earlier than those before, as their stamps are: no network does that.
+
+        Args:
+            t_ns: Times of the packets [ns], (N,).
+            payloads: Their bytes, N rows.
+            t_arrival_ns: When they arrived [ns], (N,).
+        """
+        row = self._set_together(t_ns, t_arrival_ns)
+        if row is not None:
+            self.is_set_back = True
+            return self._over_a_jump(t_ns, payloads, row)
+        return self.push(t_ns, payloads)
+
+    def _set_together(self, t_ns: Times, t_arrival_ns: Times) -> int | None:
+        """The row from which times and arrivals are earlier, of packets that are no copies."""
+        if not len(t_ns):
+            return None
+        known = [t for t in (self._given, self._t_ns) if len(t)]
+        newest = max((int(t[-1]) for t in known), default=int(t_ns[0]))
+        arrived = int(t_arrival_ns[0]) if self._arrived_ns is None else self._arrived_ns
+        self._arrived_ns = int(t_arrival_ns[-1])
+        earlier = np.ones(len(t_ns), np.bool_)
+        for times, last in ((t_ns, newest), (t_arrival_ns, arrived)):
+            latest = np.maximum.accumulate(np.append(last, times[:-1]))
+            earlier &= times < latest - PACKET_ORDER.together_ns
+        rows = np.flatnonzero(earlier)[: PACKET_ORDER.stragglers]
+        in_a_row = len(rows) == PACKET_ORDER.stragglers and rows[-1] - rows[0] == len(rows) - 1
+        if not in_a_row or np.isin(t_ns[rows], np.concatenate([*known, t_ns[: rows[0]]])).any():
+            return None
+        return int(rows[0])
 
     def push(self, t_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
         """Take packets, give those that are older than the window or whose place is sure.

@@ -38,6 +38,9 @@ class SensorClock:
 
     A jump of either clock (GPS lock won, recorder's clock set) leaves the output continuous, is
     counted (``clock_jumps``) and warned of. Single packets off by more than a second are dropped.
+    Below a second the sensor's clock jumped where its stamps step while packets arrive evenly, and
+    the recorder's where they arrive earlier or later by one amount for seconds; packets that were
+    held up arrive in a burst.
     """
 
     def __init__(
@@ -83,6 +86,10 @@ class SensorClock:
         self._free_running = False
         self._last = (0, 0)
         self._run, self._run_ns = 0, 0
+        self._apart: list[tuple[int, int]] = []
+        """Time and deviation [ns] of the last blocks that arrived too early or late."""
+        self._went_back = False
+        """Whether packets arrived before those ahead of them, since the last jump."""
         if utc_offset_ns is not None:
             report.utc_ahead_ns = utc_offset_ns
 
@@ -165,10 +172,14 @@ class SensorClock:
         raw, t_us = t_us, self._continued(t_us, expected)
         self._turned_us = int(t_us[-1]) - int(raw[-1])
         t_sensor = nearest_hour(t_us, expected)
-        if np.any(self._odd(t_us, t_sensor, t_sensor - expected)):
+        deviation = t_sensor - expected
+        steps = np.flatnonzero(self._stepped(t_arrival_ns, t_sensor, deviation))
+        # Packets that come late are few: after them the others go on.
+        stepped = len(steps) and 2 * _far(deviation[steps[0] :]) > len(deviation) - steps[0]
+        if stepped or np.any(self._odd(t_us, t_sensor, deviation)):
             return self._push_one_by_one(t_arrival_ns, t_us)
         t_ns = t_sensor + self._shift(t_sensor)
-        self._follow(t_arrival_ns, t_sensor, t_sensor - expected)
+        self._follow(t_arrival_ns, t_sensor, deviation)
         return t_ns, np.ones(len(t_us), dtype=np.bool_)
 
     def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> tuple[Times, NDArray[np.bool_]]:
@@ -181,7 +192,11 @@ class SensorClock:
         offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
         expected = t_arrival_ns + offset
         t_sensor = nearest_hour(self._continued(t_us, expected), expected)
-        return t_sensor + self._shift(t_sensor), np.abs(t_sensor - expected) <= CLOCKS.jump_ns
+        deviation = t_sensor - expected
+        valid = np.abs(deviation) <= CLOCKS.jump_ns
+        if self._run:  # until the jump of its clock is confirmed
+            valid &= np.abs(deviation) <= CLOCKS.step_ns
+        return t_sensor + self._shift(t_sensor), valid
 
     def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
         t_arrival_ns, t_us = t_arrival_ns[: CLOCKS.first], t_us[: CLOCKS.first]
@@ -230,8 +245,18 @@ class SensorClock:
         by_hours = (going_on != t_sensor) & (np.abs(going_on - self._last[1]) < CLOCKS.pause_ns)
         return (np.abs(deviation) > CLOCKS.jump_ns) | by_hours
 
+    def _stepped(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> NDArray[np.bool_]:
+        """Packets that arrive evenly, with stamps that step by less than `CLOCKS.jump_ns`."""
+        arrived = np.diff(t_arrival_ns, prepend=self._last[0])
+        stamped = np.diff(t_sensor, prepend=self._last[1])
+        even = np.abs(arrived) <= CLOCKS.step_ns
+        far = np.abs(deviation) > CLOCKS.step_ns
+        return even & far & (np.abs(stamped - arrived) > CLOCKS.step_ns)
+
     def _follow(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> None:
         """Update the offset, and the shift of a free-running sensor, with the clock drift."""
+        steps_ns = np.diff(t_arrival_ns, prepend=self._last[0])
+        self._went_back |= bool(np.any(steps_ns < -CLOCKS.step_ns))
         self._last = (int(t_arrival_ns[-1]), int(t_sensor[-1]))
         self._block.append(np.stack([deviation, t_arrival_ns - t_sensor]))
         self._filled += len(t_sensor)
@@ -240,7 +265,12 @@ class SensorClock:
         block = np.concatenate(self._block, axis=1)
         self._block, self._filled = [], 0
         assert self._offset_ns is not None
-        self._offset_ns += int(0.1 * np.median(block[0]))
+        usual = int(np.median(block[0]))
+        if abs(usual) <= CLOCKS.step_ns:
+            self._offset_ns += int(0.1 * usual)
+            self._apart, self._went_back = [], False
+        else:
+            self._confirm_apart(int(t_sensor[-1]), block[0])
         self._report_ahead()
         if not self._free_running:
             return
@@ -252,6 +282,25 @@ class SensorClock:
             error = usual - self._shift_ns
             self._rate = float(np.clip(error / CLOCKS.track_ns, -CLOCKS.max_rate, CLOCKS.max_rate))
             self._since_ns, self._window = now, []
+
+    def _confirm_apart(self, now_ns: int, deviation: Times) -> None:
+        """Take a block that is early or late, as all for seconds, for one after a jump.
+
+        Packets that a busy recorder reads late are late by amounts that differ; none arrives before
+        the one that was sent before.
+        """
+        usual = int(np.median(deviation))
+        spread = np.abs(np.array([one for _, one in self._apart] + [usual]) - usual)
+        if np.ptp(deviation) > CLOCKS.even_ns or spread.max() > CLOCKS.even_ns:
+            self._apart = []
+        self._apart.append((now_ns, usual))
+        if now_ns - self._apart[0][0] < (CLOCKS.back_ns if self._went_back else CLOCKS.late_ns):
+            return
+        assert self._offset_ns is not None
+        self._offset_ns += usual
+        self._host_jump_ns -= usual
+        self._window, self._apart, self._went_back = [], [], False
+        self._report_jump("recorder", -usual)
 
     def _shift(self, t_sensor: Times | int) -> Times:
         drift = self._rate * (np.asarray(t_sensor) - self._since_ns)
@@ -277,11 +326,13 @@ class SensorClock:
         assert self._offset_ns is not None
         t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
         deviation = t_sensor - (arrival + self._offset_ns)
-        if not self._odd(stamp, t_sensor, deviation)[0]:
+        stepped = self._stepped(np.array([arrival]), t_sensor, deviation)
+        if not (stepped | self._odd(stamp, t_sensor, deviation))[0]:
             self._run = 0
             return True
         off = int(deviation[0])
-        self._run = self._run + 1 if self._run and abs(off - self._run_ns) < CLOCKS.jump_ns else 1
+        near = CLOCKS.jump_ns if abs(off) > CLOCKS.jump_ns else CLOCKS.step_ns
+        self._run = self._run + 1 if self._run and abs(off - self._run_ns) < near else 1
         self._run_ns = off
         if self._run < CLOCKS.confirm:
             return False
@@ -292,8 +343,10 @@ class SensorClock:
         """Adopt the new offset of the clocks; the one that continued evenly counts as correct."""
         assert self._offset_ns is not None
         going_on = int(nearest_hour(stamp, self._last[1])[0])
-        if abs(going_on - self._last[1]) < CLOCKS.jump_ns:
-            jump_ns = (arrival - self._last[0]) - (going_on - self._last[1])
+        arrived, stamped = arrival - self._last[0], going_on - self._last[1]
+        stepped = abs(arrived) < CLOCKS.step_ns < abs(stamped)
+        if abs(stamped) < CLOCKS.jump_ns and not stepped:
+            jump_ns = arrived - stamped
             self._offset_ns = going_on - arrival
             self._host_jump_ns += jump_ns
             self._report_jump("recorder", jump_ns)
@@ -303,7 +356,7 @@ class SensorClock:
             self._rate = 0.0
             self._report_jump("sensor", off_ns)
         self._since_ns, self._window, self._run = going_on, [], 0
-        self._block, self._filled = [], 0
+        self._block, self._filled, self._apart = [], 0, []
         self._report_ahead()
 
     def _report_ahead(self) -> None:
@@ -311,6 +364,8 @@ class SensorClock:
         self._report.ahead_ns[self._name] = self._offset_ns + self._shift_ns
 
     def _report_jump(self, whose: str, jump_ns: int) -> None:
+        if whose == "recorder":
+            self._report.recorder_jumps_ns.setdefault(self._name, []).append(jump_ns)
         self._report.count("clock_jumps")
         self._report.warn(
             FindingKind.CLOCK_JUMP,
@@ -319,3 +374,8 @@ class SensorClock:
             jump_s=jump_ns / SECOND_NS,
             times="without-it",
         )
+
+
+def _far(deviation: Times) -> int:
+    """How many packets are farther from where they are expected than a step."""
+    return int(np.count_nonzero(np.abs(deviation) > CLOCKS.step_ns))

@@ -47,6 +47,15 @@ class ClockTuning(Struct, frozen=True, kw_only=True):
     """A sensor that is this near to the recorder's clock is synchronized with it."""
     jump_ns: int = SECOND_NS
     """Clocks that move against each other by more than this have jumped."""
+    step_ns: int = 100_000_000
+    """Stamps that step by more than this while packets arrive evenly are a jump, too [ns]; a
+    network delivers packets with less delay, a receiver that finds its PPS sets any time."""
+    even_ns: int = 20_000_000
+    late_ns: int = 3 * SECOND_NS
+    back_ns: int = 200_000_000
+    """Packets that are early or late by one amount, within the first, for the second show a jump
+    of the recorder's clock by more than a step; for the third if they arrived before earlier ones
+    [ns]."""
     first: int = 500
     """Packets of the first batch from which the offset of the clocks is measured."""
     confirm: int = 8
@@ -73,6 +82,9 @@ class PacketOrderTuning(Struct, frozen=True, kw_only=True):
     """Packets so far behind the ones before are not late: the clocks were set back together."""
     stragglers: int = 8
     """Fewer packets in a row are late all the same."""
+    together_ns: int = 250_000_000
+    """That many which arrive this much earlier than the one before, as their times say, are not
+    late: it is beyond the window in which late ones are sorted [ns]."""
 
 
 PACKET_ORDER = PacketOrderTuning()

@@ -16,7 +16,7 @@ from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
-from recon4.recording.samples.tuning import REPEATED
+from recon4.recording.samples.tuning import CARRIED_ON, REPEATED
 from recon4.recording.samples.units import GyroUnit, in_degrees, in_m_s2, in_rad_s
 from recon4.recording.stamps import strays
 
@@ -56,8 +56,9 @@ def clean_imu(
     Args:
         imu: Samples in order of arrival.
         offset_s: Added to their times [s].
-        jumps_ns: How far the clock went back in the LiDARs' times: a jump of the IMU like one of
-            these is the same jump, and is carried on by the same amount.
+        jumps_ns: How far the LiDARs' clock, or that of the recorder, went back [ns]; negative =
+            ahead. A jump of the IMU like one of these is the same jump, and is carried on by the
+            same amount.
         report: Gets the counts ``imu_wrong_time``, ``imu_nan``, ``imu_duplicate``, ``imu_copies``,
             ``imu_unsorted``, ``imu_repeated``, those of `with_forces`, and what was not measured
             (`imu_channels`) or in which unit (`in_rad_s`, `in_m_s2`).
@@ -173,11 +174,13 @@ def _equal_to_last(samples: Samples, order: NDArray[np.int64]) -> NDArray[np.boo
 def _carried_on(imu: ImuSamples, jumps_ns: Sequence[int], report: ImportReport) -> ImuSamples:
     steps = np.diff(imu.t_ns)
     shift: Times = np.zeros(len(imu), np.int64)
-    for row in np.flatnonzero(steps < -200_000_000):
-        like = [j for j in jumps_ns if abs(j + steps[row]) < 1_000_000_000]
+    for row in np.flatnonzero(np.abs(steps) > CARRIED_ON.least_ns):
+        step = int(steps[row])
+        near_ns = CARRIED_ON.ahead_ns if step > 0 else CARRIED_ON.back_ns
+        like = [j for j in jumps_ns if abs(j + step) < near_ns]
         if like:
             shift[row + 1 :] += like[0]
-            report.count("imu_jumps_back")
+            report.count("imu_jumps_back" if step < 0 else "imu_jumps_ahead")
     return ImuSamples(imu.t_ns + shift, imu.gyro_rad_s, imu.accel_m_s2)
 
 

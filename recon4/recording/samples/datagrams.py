@@ -24,7 +24,7 @@ from recon4.recording.packets.velodyne.position_packets import is_on_earth, pars
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
-from recon4.recording.samples.tuning import NMEA
+from recon4.recording.samples.tuning import CARRIED_ON, NMEA
 from recon4.recording.stamps import StampClock
 
 _GNSS_KEYS = (*GNSS_HEADER, *STATED_COLUMNS)
@@ -49,6 +49,8 @@ class SampleDecoder:
     report: ImportReport
     _last_ns: dict[str, int] = field(default_factory=dict)
     _stamps: dict[str, StampClock] = field(default_factory=dict)
+    _arrived_ns: dict[str, int] = field(default_factory=dict)
+    """Kind -> arrival of its last sample [ns]."""
     _sd: tuple[int, list[float]] = (0, [math.nan] * 3)
     """Time of arrival [ns] of the last GST sentence, and its standard deviations e, n, u [m]."""
 
@@ -75,6 +77,7 @@ class SampleDecoder:
         ]
         self._learn_clocks(samples)
         for sample in samples:
+            self._find_set_back(sample)
             if not self._is_of_the_clock(sample):
                 self.report.count("samples_damaged")
             elif sample.t_ns <= self._last_ns.get(sample.kind, -1):
@@ -97,6 +100,14 @@ class SampleDecoder:
             ]
             if head:
                 self._stamps[kind] = StampClock(head[:3] if len(head) >= 3 else head[:1])
+
+    def _find_set_back(self, sample: _Sample) -> None:
+        """Begin again where the recorder's clock was set back: a sample arrives before the last."""
+        arrival_ns = sample.t_ns + (sample.lag_ns or 0)
+        last_ns = self._arrived_ns.get(sample.kind, arrival_ns)
+        self._arrived_ns[sample.kind] = arrival_ns
+        if arrival_ns < last_ns - CARRIED_ON.least_ns:
+            self._last_ns.pop(sample.kind, None)
 
     def _is_of_the_clock(self, sample: _Sample) -> bool:
         """Whether the stamp of a sample is in its place among the others."""

@@ -100,3 +100,17 @@ class HeightTuning(Struct, frozen=True, kw_only=True):
 
 
 HEIGHTS = HeightTuning()
+
+
+class CarriedOnTuning(Struct, frozen=True, kw_only=True):
+    """Jumps of the IMU's times with those of another clock (`clean.py`)."""
+
+    least_ns: int = 200_000_000
+    """Larger steps are looked at [ns]."""
+    back_ns: int = 1_000_000_000
+    """A step back this near to a known jump is that one [ns]: nothing else makes it."""
+    ahead_ns: int = 200_000_000
+    """As much for a step ahead, which may be a pause [ns]."""
+
+
+CARRIED_ON = CarriedOnTuning()

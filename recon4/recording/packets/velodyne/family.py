@@ -29,6 +29,7 @@ from recon4.recording.packets.family import (
 )
 from recon4.recording.packets.rotation_rate import Rotation
 from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.tuning import CLOCKS
 from recon4.recording.packets.velodyne.data_packets import PacketSource, decode_packets
 from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
 from recon4.recording.packets.velodyne.models import (
@@ -227,6 +228,7 @@ def _recognized_data(payloads: Payloads) -> Recognized | None:
     if len(rows) < len(payloads) // 2 or not len(rows):
         return replace(found, kind="other", refused="; ".join(report.lost()))
     packets = as_packets(payloads[rows])
+    packets = packets[_longest_run(packets["time_us"].astype(np.int64) * 1000)]
     product = int(np.bincount(packets["product"]).argmax())
     return_mode = int(np.bincount(packets["return_mode"]).argmax())
     stamp_ns = packets["time_us"].astype(np.int64) * 1000
@@ -263,6 +265,14 @@ def _recognized_wide(payloads: Payloads) -> Recognized | None:
         mode=RETURN_MODES.get(int(sound[0, -2]), ""),
         packet_s=VLS128.packet_s(dual=dual),
     )
+
+
+def _longest_run(stamp_ns: Times) -> slice:
+    """The most packets in a row whose clock was not set back: later ones have the same stamps."""
+    back = np.flatnonzero(np.diff(stamp_ns) < -CLOCKS.step_ns) + 1
+    ends = [0, *back.tolist(), len(stamp_ns)]
+    longest = int(np.argmax(np.diff(ends)))
+    return slice(ends[longest], ends[longest + 1])
 
 
 def _usual_step_s(stamp_ns: Times) -> float:
