@@ -53,13 +53,14 @@ const checked = (bad, text) => (bad ? html`<span class="bad">✕ ${text}</span>`
 /**
  * The selected pair: figures of the program, and of a registration made on this page.
  * @param {HTMLElement} panel
- * @param {{row?: Row, facts?: PairFacts | null, found?: AlignmentView | null}} pair
+ * @param {{row?: Row, facts?: PairFacts | null, found?: AlignmentView | null, hint?: string}} pair
+ *   or what leads to one
  * @param {number} path_limit_m
  */
-export function showPair(panel, { row, facts, found }, path_limit_m) {
+export function showPair(panel, { row, facts, found, hint }, path_limit_m) {
   if (!row) {
     const none = html`<h2>${t("no-pair")}</h2>
-      <p class="quiet">${t("press-j-first")}</p>`;
+      <p class="quiet">${hint}</p>`;
     return render(none, panel);
   }
   const figures = found ?? row;

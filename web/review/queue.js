@@ -112,6 +112,7 @@ export class ReviewQueue extends HTMLElement {
       (row) => matches(row, state.me) && (!state.reason || row.reason === state.reason),
     );
     this.#draw();
+    this.dispatchEvent(new Event("filtered"));
   }
 
   #draw() {

@@ -85,9 +85,16 @@ async function select(/** @type {[number, number]} */ pair) {
   }
 }
 
+/** What leads on while no pair is selected, as the name of a text. */
+function firstStep() {
+  if (queue.length) return "press-j";
+  if (state.rows.length) return "no-pairs-listed";
+  return state.graph ? "no-pairs" : "nothing-yet";
+}
+
 function drawSelected() {
   const { selected } = state;
-  showPair(byId("pair"), selected ?? {}, state.path_limit_m);
+  showPair(byId("pair"), selected ?? { hint: t(firstStep()) }, state.path_limit_m);
   const enabled = state.enabled(queue.length);
   drawTools(byId("decision"), queue.tools, actions, { enabled, refineText: state.refineText });
   byId("said").textContent = state.hint;
@@ -331,6 +338,10 @@ queue.addEventListener("chosen", (event) => {
   const row = queue.get(detailOf(event));
   if (row) select([row.frame_i, row.frame_j]);
 });
+queue.addEventListener("filtered", () => {
+  if (!state.selected && state.server) view.clear(t(firstStep()));
+  drawSelected();
+});
 view.addEventListener("laid", () => {
   if (state.selected) state.selected.moved = true;
   drawSelected();
@@ -347,8 +358,7 @@ async function begin() {
   const empty = { rows: [], columns: [], began_ns: 0, limit_m: state.path_limit_m };
   state.reset(server, server.graph ? await readQueue(id) : empty);
   queue.rows = state.rows;
-  const searched = server.graph ? t("no-pairs") : t("nothing-yet");
-  view.clear(state.rows.length ? t("press-j") : searched);
+  view.clear(t(firstStep()));
   update(server);
 }
 

@@ -14,6 +14,7 @@ no-points = Keine Punkte anzuzeigen
 not-registered-yet = Dieses Paar ist nicht registriert: zuerst ausrichten und verfeinern
 sorting = Schleifenschlüsse werden sortiert…
 no-pairs = Diese Begehung hat kein Paar, über das zu entscheiden ist
+no-pairs-listed = Kein Paar passt zu den Filtern der Liste
 nothing-yet = Es gibt erst etwas zu prüfen, wenn Schleifenschlüsse gesucht und verifiziert sind
 press-j = Weiter (J) zeigt das erste Paar
 nothing-to-review = Nichts zu prüfen
@@ -178,7 +179,6 @@ no-alternative-path = kein alternativer Weg
 ## Felder
 
 no-pair = Kein Paar gewählt
-press-j-first = Weiter (J) zeigt das erste
 influence = Einfluss auf die Karte
 influence-hint = Wie weit sich die Karte bewegt, wenn diese Kante verworfen statt angenommen wird, oder umgekehrt
 overlap = Überlappung

@@ -14,6 +14,7 @@ no-points = No points to show
 not-registered-yet = This pair is not registered: align it and refine it first
 sorting = Sorting the loop closures…
 no-pairs = This walk has no pair to decide about
+no-pairs-listed = No pair matches the filters of the list
 nothing-yet = Nothing to review until loop closures have been searched and verified
 press-j = Next (J) shows the first pair
 nothing-to-review = Nothing to review
@@ -178,7 +179,6 @@ no-alternative-path = no alternative path
 ## Panels
 
 no-pair = No pair selected
-press-j-first = Next (J) shows the first one
 influence = Influence on the map
 influence-hint = How far the map moves if this edge is rejected instead of accepted, or the reverse
 overlap = Overlap

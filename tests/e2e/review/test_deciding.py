@@ -202,6 +202,22 @@ def test_the_page_shows_who_judged_a_pair_in_order(opened, screenshot):
 
 
 @looks("desktop light")
+def test_what_leads_on_fits_what_the_filters_list(opened):
+    page, next_pair = opened, opened.locator("#decision").get_by_role("button", name="Next")
+    pair, empty = page.locator("#pair"), page.locator(".view-empty")
+
+    page.get_by_label("Which pairs").select_option("later")
+
+    for place in (pair, empty):
+        expect(place).to_contain_text("No pair matches the filters of the list")
+    expect(next_pair).to_be_disabled()
+    page.get_by_label("Which pairs").select_option("loops")
+    for place in (pair, empty):
+        expect(place).to_contain_text("Next (J) shows the first pair")
+    expect(next_pair).to_be_enabled()
+
+
+@looks("desktop light")
 def test_the_help_sheet_lists_the_keys(opened, screenshot):
     opened.keyboard.press("?")
 
