@@ -4,15 +4,12 @@ import { idHere } from "../shared/address.js";
 import {
   isGuest,
   pointReader,
-  projectUrl,
   readCurrentUser,
   readMapIndex,
   readMapWalk,
   readProject,
-  slicesUrl,
-  stretchUrl,
 } from "../shared/api.js";
-import { attempt, byId, html, only, render, say, showError, svg } from "../shared/dom.js";
+import { attempt, byId, only, render, say, showError, svg } from "../shared/dom.js";
 import { decimal, t } from "../shared/texts.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
@@ -40,6 +37,7 @@ import { format, parse } from "./state.js";
 import { canceled, choose, clicked, dragged, face, finish, target } from "./tools.js";
 import { togglesOf } from "./toggles.js";
 import { VIEWS, viewOf } from "./views.js";
+import { withoutPoints } from "./without_points.js";
 import { downloadMeasurements } from "./measured_panel.js";
 import { askVolumes, volumeOf } from "./volumes.js";
 
@@ -353,18 +351,6 @@ function listen() {
   only("map-verdict").addEventListener("click", marking.followLinks);
 }
 
-/** A project without points in 3-D shows what it has on its own page, also where a link leads. */
-function passOn() {
-  const { span, place } = Object.fromEntries(new URLSearchParams(location.search));
-  const stretch = [span && `span=${span}`, place && `place=${place}`].filter(Boolean).join("&");
-  if (page.guest) return location.replace(slicesUrl(id));
-  if (stretch) return location.replace(stretchUrl(id, stretch));
-  say(
-    byId("message"),
-    html`${t("no-points-3d")} <a href=${projectUrl(id)}>${t("its-page")}</a> ${t("shows-what-is")}`,
-  );
-}
-
 async function begin() {
   drawHelp(byId("help"));
   const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
@@ -372,7 +358,8 @@ async function begin() {
   only("page-head").name = project.name;
   only("map-verdict").facts = factsIn(project.summary);
   document.title = t("title-of", { project: project.name });
-  if (!project.stages.some(({ stage: name }) => name === "map")) return passOn();
+  const stages = project.stages.map(({ stage: name }) => name);
+  if (!stages.includes("map")) return withoutPoints(stages);
   const index = (page.index = await readMapIndex(id));
   if (page.state.cutCeiling) page.state.clip.heights = shown.usualHeights(index);
   run.canvas = new MapCanvas(place(), index, pointReader(id, index));

@@ -1,4 +1,4 @@
-// The page while its map is made again: it says so, and shows the new one when it is there.
+// The page while its map is made, or made again: it says so, and shows the map when it is there.
 
 import { idHere } from "../shared/address.js";
 import { readMapIndex, watchJobs } from "../shared/api.js";
@@ -33,10 +33,11 @@ export function reload() {
  * @param {HTMLElement} element where the page says what happens
  */
 export function followJobs(element) {
-  const followed = { running: "", ended: "" };
+  const followed = { open: "" };
 
   async function look() {
     const { key, version } = await readMapIndex(id);
+    if (!page.index) return location.reload();
     if (key === page.index?.key && version === page.index.version) return render("", element);
     if (!isBusy()) return reload();
     render(
@@ -48,10 +49,10 @@ export function followJobs(element) {
   const onJob = (/** @type {JobView} */ { job }) => {
     if (job.project !== id) return;
     if (!job.finished) {
-      followed.running = job.id;
-      render(t("being-remade"), element);
-    } else if (followed.running === job.id && followed.ended !== job.id) {
-      followed.ended = job.id;
+      followed.open = job.id;
+      render(t(page.index ? "being-remade" : "being-made"), element);
+    } else if (followed.open === job.id) {
+      followed.open = ""; // a job that failed has the same id when it is resumed
       look().catch(() => render("", element)); // it has no map now: what is shown stays
     }
   };

@@ -390,4 +390,5 @@ async function begin() {
 }
 
 addEventListener("popstate", () => change(parse(location.search)));
-begin();
+await begin();
+document.body.classList.toggle("no-slices", byId("message").textContent !== "" && !page.facts);

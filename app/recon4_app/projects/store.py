@@ -157,7 +157,9 @@ class ProjectStore:
         if found is None:
             if self.artifact(project_id, "map_2d") is not None:
                 raise NotFound(CodedText("project-planar-map", project=project_id))
-            raise NotFound(CodedText("project-no-map", project=project_id))
+            raise NotFound(
+                CodedText("project-no-map", project=project_id), remedy=project_page(project_id)
+            )
         return found
 
     def map_of_any_kind(self, project_id: str) -> Path:

@@ -18,6 +18,7 @@ mark-of-operator = Marke des Bedieners
 no-webgl-3d = Dieser Browser kann nicht in 3-D zeichnen: WebGL 2 fehlt oder ist ausgeschaltet. Die Seite Schnitte zeigt die Karte ohne.
 map-was-remade = Die Karte wurde neu gerechnet.
 show-new = Die neue Karte zeigen
+being-made = Ein Auftrag rechnet diese Karte. Sie erscheint hier, sobald sie fertig ist.
 being-remade = Diese Karte wird neu gerechnet. Sie sehen die vorherige.
 move-on = Mit den Pfeilen weiterbewegen, dann noch einmal Leertaste
 no-photo = { $file } ist kein Foto, das dieser Browser lesen kann: JPEG oder PNG

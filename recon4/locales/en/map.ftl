@@ -18,6 +18,7 @@ mark-of-operator = Mark of the operator
 no-webgl-3d = This browser cannot draw in 3-D: WebGL 2 is missing or switched off. The page Slices shows the map without it.
 map-was-remade = The map was made again.
 show-new = Show the new map
+being-made = A job is making this map. It appears here once it is made.
 being-remade = This map is being made again. You see the one before.
 move-on = Move on with the arrows, then press Space again
 no-photo = { $file } is no photo that this browser can read: JPEG or PNG
