@@ -9,8 +9,8 @@ from PIL import Image
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import looks
-from tests.project_builder import ROOM_M, build_project
-from tests.served import served
+from tests.project_builder import ROOM_M
+from tests.served import office, served
 
 pytestmark = pytest.mark.e2e
 
@@ -21,12 +21,7 @@ METERS_PER_PX = 14.0 * 2.0 * np.tan(np.pi / 6.0)
 """Times the height of the canvas: of the camera ``TOP``."""
 
 
-def projects(root):
-    build_project(root / "office", points=60_000, normals=True)
-    build_project(root / "young", with_map=False)
-
-
-server = served(projects)
+server = served(office(points=60_000, normals=True))
 
 
 def opened(page, server, query=""):
@@ -120,6 +115,8 @@ def test_a_measured_distance_is_that_of_the_walls(server, page):
     opened(page, server, f"?{TOP}&z=..")
 
     page.keyboard.press("m")
+    page.mouse.click(*at(page, 8.0, 7.0))
+    page.keyboard.press("Backspace")  # beside what was meant
     for x in (0.0, ROOM_M[0]):
         page.mouse.click(*at(page, x, 2.5))
         expect(page.locator("#status .reading")).to_contain_text("m")
@@ -135,6 +132,20 @@ def test_a_measured_distance_is_that_of_the_walls(server, page):
     rows = download.value.path().read_text().splitlines()
     assert len(rows) == 3 and rows[1].startswith("Distance 1,distance,1,")
     expect(page).to_have_url(re.compile("m=distance;"))
+
+    page.locator("#map").focus()
+    for count, key in ((2, "q"), (3, "v")):  # a double click ends it, or one of the right button
+        page.keyboard.press(key)
+        for corner in ((6.0, 4.0), (10.0, 4.0)):
+            page.mouse.click(*at(page, *corner))
+        if key == "q":
+            page.mouse.dblclick(*at(page, 10.0, 6.0))
+        else:
+            page.mouse.click(*at(page, 10.0, 6.0))
+            page.mouse.click(*at(page, 9.0, 7.0), button="right")
+        expect(page.locator("#panel .value")).to_have_count(count)
+    corners = page.evaluate("recon4Map.page.state.measurements.map(({ points }) => points.length)")
+    assert corners == [2, 3, 3]
     page.keyboard.press("Escape")
     expect(page.get_by_role("button", name="Distance")).to_have_attribute("aria-pressed", "false")
 
@@ -280,20 +291,31 @@ def test_keys_zoom(server, page):
 
 
 @looks("desktop light")
+def test_fit_shows_all_of_the_map_again_from_where_one_looks(server, page):
+    page.emulate_media(reduced_motion="reduce")
+    opened(page, server)
+    page.keyboard.press("7")
+    expect(page).to_have_url(re.compile(r"camera=[^&]*,0,-90,"))
+    whole = page.url
+
+    for way in (
+        lambda: page.keyboard.press("f"),
+        lambda: page.get_by_role("button", name="Fit", exact=True).click(),
+    ):
+        for key in ("+", "+", "ArrowUp"):
+            page.keyboard.press(key)
+        expect(page).not_to_have_url(whole)
+        way()
+        expect(page).to_have_url(whole)
+
+
+@looks("desktop light")
 def test_a_browser_without_webgl_says_so(server, page):
     page.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
 
     page.goto(f"{server.url}/projects/office/map/")
 
     expect(page.locator("#message")).to_contain_text("WebGL 2 is missing or switched off")
-
-
-@looks("desktop light")
-def test_a_project_without_points_says_so(server, page):
-    page.goto(f"{server.url}/projects/young/map/")
-
-    expect(page.locator("#message")).to_contain_text("no points in 3-D")
-    expect(page.locator("#opening")).to_be_hidden()
 
 
 def pinched(page, middle, before_px, after_px):

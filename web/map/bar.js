@@ -21,6 +21,7 @@ import { VIEWS } from "./views.js";
  * @property {() => void} panel
  * @property {() => void} help
  * @property {() => void} finish of a measurement whose corners are not counted
+ * @property {() => void} undoPoint the last one of a measurement
  * @property {() => void} end of any tool
  * @property {(next: Partial<import("./state.js").MapState>) => void} change
  * @property {(name: string) => void} save

@@ -28,6 +28,7 @@ export const KEYS = [
   ["R V", t("do-profile")],
   ["S", t("do-snap")],
   ["Enter", t("do-enter")],
+  ["⌫", t("do-undo-point")],
   ["B", t("do-box")],
   ["X", t("do-section")],
   ["K", t("do-brush")],
@@ -70,8 +71,8 @@ export function drawStatus(element, { points, rested, scale }, act) {
   );
 }
 
-/** What Enter and Esc do, for fingers. */
-function ending(/** @type {Act} */ { finish, end }) {
+/** What Enter, Backspace and Esc do, for fingers. */
+function ending(/** @type {Act} */ { finish, undoPoint, end }) {
   const { tool, measuring, draft } = page;
   if (tool === "") return nothing;
   const { least, most } = KINDS[measuring];
@@ -80,6 +81,11 @@ function ending(/** @type {Act} */ { finish, end }) {
     ${
       open
         ? html`<button type="button" class="primary" @click=${finish}>${t("finish-tool")}</button>`
+        : nothing
+    }
+    ${
+      tool === "measure" && draft.length
+        ? html`<button type="button" @click=${undoPoint}>${t("undo-point")}</button>`
         : nothing
     }
     <button type="button" @click=${end}>${t("end-tool")}</button>

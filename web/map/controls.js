@@ -13,6 +13,7 @@ import { add, axesOf, lookedAround, orbited, panned, zoomed } from "./camera.js"
  * @property {(camera: Camera) => void} move
  * @property {(at: number[]) => number[] | null} under the point of the map under a pixel
  * @property {(at: number[]) => void} click
+ * @property {() => void} finish what the clicks of a tool began: a click with the right button
  * @property {(from: number[], to: number[], done: boolean) => void} drag of a tool
  * @property {() => void} cancel the drag of the tool: a second finger, or the system, ended it
  */
@@ -93,6 +94,7 @@ export function moveByGestures(element, on) {
       if (count > 1) return;
       if (on.dragging() && press.tool) on.drag(press.from, at, true);
       else if (!press.far && event.button === 0) on.click(at);
+      else if (!press.far && event.button === 2) on.finish();
     },
     onWheel: (deltaY, at) => zoom(Math.exp(Math.max(-1, Math.min(1, deltaY * 0.0015))), at),
   });

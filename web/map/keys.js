@@ -50,6 +50,7 @@ const keysOf = (act, more) => ({
   "?": act.help,
   Escape: act.end,
   Enter: act.finish,
+  Backspace: act.undoPoint,
   " ": more.press,
   ArrowLeft: () => more.step(-1, 0),
   ArrowRight: () => more.step(1, 0),

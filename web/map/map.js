@@ -34,7 +34,17 @@ import { drawProfile, profileOf } from "./profile.js";
 import { followJobs, takeNews } from "./rebuilt.js";
 import { savedOf, share } from "./saved.js";
 import { format, parse } from "./state.js";
-import { canceled, choose, clicked, dragged, face, finish, target } from "./tools.js";
+import {
+  canceled,
+  choose,
+  clicked,
+  dragged,
+  face,
+  finish,
+  finishHere,
+  target,
+  undoPoint,
+} from "./tools.js";
 import { togglesOf } from "./toggles.js";
 import { VIEWS, viewOf } from "./views.js";
 import { withoutPoints } from "./without_points.js";
@@ -293,6 +303,7 @@ const act = {
   },
   help: () => byId("help", HTMLDialogElement).showModal(),
   finish: () => void finish(stage).catch(showProblem),
+  undoPoint: () => void undoPoint(stage),
   end,
 };
 
@@ -332,11 +343,13 @@ function listen() {
     move,
     under,
     click,
+    finish: act.finish,
     drag: (from, to, done) => dragged(from, to, { ...stage, done }),
     cancel: () => canceled(stage),
   });
   place().addEventListener("dblclick", (event) => {
     if (page.tool === "") target([event.offsetX, event.offsetY], stage).catch(showProblem);
+    else finishHere(stage).catch(showProblem);
   });
   dark.addEventListener("change", draw);
   listenToKeys(act, {

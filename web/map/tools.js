@@ -4,7 +4,7 @@ import { idHere } from "../shared/address.js";
 import { pickOnMap } from "../shared/api.js";
 import { classText } from "../shared/class_words.js";
 import { decimal, t } from "../shared/texts.js";
-import { dot, minus, pixelM, rayAt } from "./camera.js";
+import { dot, lengthOf, minus, pixelM, rayAt } from "./camera.js";
 import { liftBrush, paint } from "./brush.js";
 import { boxOver, yawOfSection } from "./clip.js";
 import { nearestTo, standingAt } from "./flight.js";
@@ -155,6 +155,27 @@ export async function target(at, stage) {
 export const finish = (/** @type {Stage} */ stage) =>
   inTurn(() => {
     if (page.tool === "measure") finishMeasurement(stage);
+  });
+
+/** Removes the last point of the measurement: a click beside what was meant. */
+export const undoPoint = (/** @type {Stage} */ stage) =>
+  inTurn(() => {
+    if (!page.draft.pop()) return;
+    read(page.draft.length ? t("point-undone") : KINDS[page.measuring].hint, stage);
+  });
+
+/**
+ * A double click ends a measurement whose corners are not counted; its second click is no corner.
+ * @param {Stage} stage
+ */
+export const finishHere = (stage) =>
+  inTurn(() => {
+    const { draft, measuring } = page;
+    if (page.tool !== "measure" || KINDS[measuring].least === KINDS[measuring].most) return;
+    const [a, b] = draft.slice(-2);
+    const near = SNAP_PX * pixelM(stage.camera(), stage.screen());
+    if (a && b && lengthOf(minus(a.p, b.p)) < near) draft.pop();
+    finishMeasurement(stage);
   });
 
 /** Ends the measurement that has enough points. */
