@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -87,3 +88,36 @@ def test_a_corridor_that_holds_nothing_is_said_in_words(server, page, screenshot
     page.get_by_role("button", name="Stop").click()
     page.locator("#ending").get_by_role("button", name="Stop").click()
     expect(page.get_by_role("button", name="Make the map")).to_be_visible()
+
+
+HELD = """async () => {
+  const { Camera } = await import("/web/live/camera.js");
+  const camera = new Camera();
+  const place = [3, -2, 0];
+  const before = camera.project(place);
+  camera.zoom(1.7, before);
+  camera.rotate(0.8, before);
+  const after = camera.project(place);
+  return { off: Math.hypot(after[0] - before[0], after[1] - before[1]), px: camera.pxPerM };
+}"""
+
+
+@looks("phone dark")
+def test_two_fingers_zoom_and_turn_about_what_they_touch_and_one_touch_turns_it_back(server, page):
+    page.goto(f"{server.url}/live")
+    expect(page.get_by_role("button", name="Start…")).to_be_visible()
+    touch = page.context.new_cdp_session(page)
+
+    held = page.evaluate(HELD)
+    for kind, turn in (("Start", 0.0), ("Move", 0.3), ("Move", 0.8), ("End", None)):
+        ends = [] if turn is None else [0.0, math.pi]
+        fingers = [
+            {"id": k, "x": 150 + 80 * math.cos(a + turn), "y": 350 + 80 * math.sin(a + turn)}
+            for k, a in enumerate(ends)
+        ]
+        touch.send("Input.dispatchTouchEvent", {"type": f"touch{kind}", "touchPoints": fingers})
+
+    assert held["off"] < 1e-6 and held["px"] > 40
+    # A click: a busy machine holds a tap so long that Chromium takes it for a long press.
+    page.get_by_role("button", name="Turn the map back").click()
+    expect(page.get_by_role("button", name="Turn the map back")).to_be_hidden()

@@ -1,15 +1,10 @@
 // Buttons and dialogs of the operator's page: start, mark, pause, stop, make the map.
 
 import { keep, kept } from "../shared/address.js";
-import {
-  markHere,
-  projectUrl,
-  readCaptureChoices,
-  startCapture,
-  steerCapture,
-} from "../shared/api.js";
+import { projectUrl, readCaptureChoices, startCapture, steerCapture } from "../shared/api.js";
 import { attempt, byId, fields, html, nothing, render, say, within } from "../shared/dom.js";
 import { hasText, t } from "../shared/texts.js";
+import { keptMarks, sendKept, sendOrKeep } from "./kept_marks.js";
 
 /**
  * @import {NewCapture, RigChoice} from "../shared/http_types"
@@ -24,10 +19,9 @@ import { hasText, t } from "../shared/texts.js";
  * @property {() => Message["loop"]} loop
  */
 
-const LONGEST_NOTE_S = 600;
 const LAST = "recon4.live.last";
-/** Time of the Mark button; the operator walks on while typing. */
-const touched = { ms: 0 };
+/** When the Mark button was pressed, and in which capture; the operator walks on while typing. */
+const touched = { ms: 0, project: "" };
 
 /**
  * A dialog with a form; it closes when `act(fields)` succeeds.
@@ -61,11 +55,8 @@ const showStart = dialog("begin", ({ rig, preset, place }) => {
   keep(LAST, JSON.stringify({ rig: rig.value, preset: preset.value }));
   return startCapture({ rig: rig.value, preset: preset.value, place: place.value });
 });
-const showMark = dialog("note", ({ text }) => {
-  const ago = Math.max(0, (performance.now() - touched.ms) / 1000);
-  return markHere({ text: text.value, ago_s: Math.min(ago, LONGEST_NOTE_S) });
-});
-const showName = dialog("naming", ({ text }) => markHere({ what: "place", text: text.value }));
+const showMark = dialog("note", ({ text }) => add("point", text.value, touched.ms));
+const showName = dialog("naming", ({ text }) => add("place", text.value, Date.now()));
 const showEnd = dialog("ending", () => steerCapture("stop"));
 
 /**
@@ -111,8 +102,20 @@ async function begin() {
   showStart();
 }
 
+/**
+ * Adds a mark, or keeps it until there is a link.
+ * @param {"point" | "place"} what
+ * @param {string} text
+ * @param {number} at_ms
+ */
+async function add(what, text, at_ms) {
+  const sent = await sendOrKeep({ project: touched.project, what, text, at_ms });
+  if (!sent) say(byId("message"), t("marks-kept", { count: keptMarks().length }));
+  return sent;
+}
+
 export function mark() {
-  if (!byId("note", HTMLDialogElement).open) touched.ms = performance.now();
+  if (!byId("note", HTMLDialogElement).open) touched.ms = Date.now();
   formOf("note").reset();
   showMark();
 }
@@ -133,12 +136,17 @@ async function makeMap() {
 export function drawActions(
   /** @type {ActionState} */ { state, project, mayCapture, linked, loop },
 ) {
+  touched.project = project;
+  const open = ["recording", "paused"].includes(state);
+  if (linked && mayCapture && open && keptMarks().length)
+    sendKept(project).then((left) => left || say(byId("message"), ""));
   const button = (
     /** @type {string} */ text,
     /** @type {string} */ className,
     /** @type {() => unknown} */ act,
+    enabled = linked,
   ) =>
-    html`<button type="button" class=${className} @click=${act} ?disabled=${!linked}>
+    html`<button type="button" class=${className} @click=${act} ?disabled=${!enabled}>
       ${text}
     </button>`;
   const steer = (/** @type {"pause" | "resume"} */ what) => () =>
@@ -149,7 +157,7 @@ export function drawActions(
   const rows = {
     none: () => html`${button(t("start"), "primary", begin)}`,
     recording: () =>
-      html`${button(t("mark"), "", mark)}${button(t("pause"), "", steer("pause"))}${end}`,
+      html`${button(t("mark"), "", mark, true)}${button(t("pause"), "", steer("pause"))}${end}`,
     paused: () => html`${button(t("resume"), "primary", steer("resume"))}${end}`,
     ready: () =>
       html`<a class="button" href=${projectUrl(project)}>${t("project")}</a>

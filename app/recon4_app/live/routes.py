@@ -70,8 +70,8 @@ class NewMark(BaseModel):
 
     what: Literal["point", "place"] = "point"
     text: Note = Field(default="", max_length=500)
-    ago_s: float = Field(default=0.0, ge=0.0, le=600.0)
-    """Age of the mark [s]: the operator walks on while typing the note."""
+    ago_s: float = Field(default=0.0, ge=0.0, le=3600.0)
+    """Age of the mark [s]: the operator walks on while typing the note, or had no link."""
 
 
 class CaptureChoices(BaseModel):

@@ -37,6 +37,10 @@ note-title = Diese Stelle markieren
 note = Notiz
 note-example = Riss in der Wand
 mark = Markieren
+marks-kept = { $count ->
+    [one] Keine Verbindung: das Telefon behält die Marke und sendet sie, sobald es eine gibt
+   *[other] Keine Verbindung: das Telefon behält { $count } Marken und sendet sie, sobald es eine gibt
+}
 naming-title = Name des Ortes
 naming-example = Rathaus, 2. Obergeschoss
 name-it = Benennen

@@ -37,6 +37,10 @@ note-title = Mark this place
 note = Note
 note-example = Crack in the wall
 mark = Mark
+marks-kept = { $count ->
+    [one] No link: the mark is kept on this phone, and sent when there is one
+   *[other] No link: { $count } marks are kept on this phone, and sent when there is one
+}
 naming-title = Name of the place
 naming-example = Town hall, 2nd floor
 name-it = Name it
