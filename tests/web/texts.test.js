@@ -9,6 +9,7 @@ addTexts(
 part = { PERCENT($ratio, digits: 1) }
 points = { COUNT($points) } Punkte
 step-loop-closures = Schleifenschlüsse
+stage-graph = Graph
 off = { DECIMAL($m, digits: 1, sign: 1) } m, { DEGREES($rad, digits: 0) }, { LENGTH($short) }
 gaps = { $count ->
     [one] eine Lücke
@@ -44,5 +45,6 @@ test("what a language lacks is English, and what nobody has is its name", () => 
 test("a word of the server is shown in the language, or as the server wrote it", () => {
   assert.equal(wordOf("step", "Loop closures"), "Schleifenschlüsse");
   assert.equal(wordOf("step", "of tomorrow"), "of tomorrow");
+  assert.equal(wordOf("stage", "graph"), "Graph");
   assert.equal(wordOf("step", "Graph"), "Graph");
 });

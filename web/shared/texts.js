@@ -89,7 +89,7 @@ export const hasText = (/** @type {string} */ id) =>
 
 /**
  * What a word of the server is called, by the message PREFIX-WORD; else the word itself, which
- * keeps its capital letters also where the message is the same.
+ * keeps its capital letters also where the English message is the same.
  * @param {string} prefix
  * @param {string} word
  * @param {Values} [values]
@@ -100,7 +100,8 @@ export function wordOf(prefix, word, values = {}) {
     .replace(/[^a-z0-9]+/g, "-")
     .replace(/^-|-$/g, "")}`;
   const text = hasText(id) ? t(id, values) : word;
-  return text.toLowerCase() === word.toLowerCase() ? word : text;
+  const english = state.language === ENGLISH || !state.bundles[0]?.hasMessage(id);
+  return english && text.toLowerCase() === word.toLowerCase() ? word : text;
 }
 
 /** A number as the language writes it: decimal(12.34, 1) -> "12,3". */
