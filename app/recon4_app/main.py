@@ -229,6 +229,7 @@ def serve(
             notice = startup_notice(access, best, others=others, certificate=certificate)
             read_only = [CodedText("notice-read-only")] if settings.read_only else []
             on_ready(best + path, [*read_only, *notice])
+            app.state.parts.compute_pool.prepare_spare()
 
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
         stop.request(server.end)

@@ -21,7 +21,11 @@ from recon4_app.errors import ComputeFailed
 
 T = TypeVar("T")
 
-INTERACTIVE_MODULES = ("recon4_app.slices.slice_work", "recon4_app.review.review_work")
+INTERACTIVE_MODULES = (
+    "recon4_app.slices.slice_work",
+    "recon4_app.review.review_work",
+    "recon4_app.map_view.map_work",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +165,7 @@ class ComputePool:
                 return child
             await child.end()
         spare, self._spare = self._spare, None
-        self._prepare_spare()
+        self.prepare_spare()
         if spare is not None and spare.alive:
             return spare
         if spare is not None:
@@ -190,8 +194,11 @@ class ComputePool:
                 del self._kept[oldest]
             await gone.end()
 
-    def _prepare_spare(self) -> None:
-        """Schedule the start of a spare child, so that the next map opens without delay."""
+    def prepare_spare(self) -> None:
+        """Schedule the start of a spare child, so that the next map opens without delay.
+
+        A server does so once it listens: its first map waited for the imports of a child.
+        """
         if self._preparing is not None:
             self._preparing.cancel()
         if self._closed:

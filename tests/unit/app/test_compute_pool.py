@@ -7,9 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from msgspec import structs
 
 from recon4.errors import ConfigError, GraphError, WrongSettings
 from recon4.system.processes import ChildRegister
+from recon4_app.compute_pool import pool as pool_module
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import ComputeFailed
@@ -39,6 +41,24 @@ def test_work_runs_in_another_process_which_is_kept(tmp_path):
 
     assert (first, second) == (7, 8)
     assert pid == again != os.getpid()
+
+
+def test_a_child_that_was_prepared_serves_the_first_call(tmp_path, monkeypatch):
+    monkeypatch.setattr(pool_module, "INTERACTIVE_MODULES", ())
+    monkeypatch.setattr(
+        pool_module, "POOL_TIMES", structs.replace(pool_module.POOL_TIMES, spare_after_s=0.0)
+    )
+
+    async def opened_later(pool):
+        pool.prepare_spare()
+        while not (started := list((tmp_path / "children").glob("*-*"))):
+            await asyncio.sleep(0)
+        return started, await pool.run_interactive(Lane.SLICE, EVA, work.identity, 7)
+
+    started, (found, pid) = in_pool(tmp_path / "pool", opened_later)
+
+    assert found == 7
+    assert [int(one.name.partition("-")[0]) for one in started] == [pid]
 
 
 def test_background_work_and_other_files_get_a_child_of_their_own(tmp_path):
