@@ -34,10 +34,12 @@ export class JobStatus extends HTMLElement {
     const { job, status } = view;
     const running = job.state === "running";
     const text = running ? runProgressText(view) : job.note;
-    const part = running && status.what ? progressText(view) : "";
+    const what = running ? status.what : "";
+    const counted = status.total > 0 || status.done > 0;
+    const part = what && counted ? progressText(view) : "";
     render(
       html`<div class="job-line">
-          ${badge(job.state)}${part ? html`<strong>${stepText(status.what)}</strong>` : nothing}
+          ${badge(job.state)}${what ? html`<strong>${stepText(what)}</strong>` : nothing}
         </div>
         <progress
           max="1"

@@ -17,7 +17,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from recon4.errors import Cancelled
 from recon4.sandbox.private_cache import is_compiled
+from recon4_app.jobs.events import EventWriter
 from recon4_app.jobs.folder import beat
 from recon4_app.jobs.tuning import COMPILING_TIMES
 
@@ -39,15 +41,17 @@ def compiling_beside() -> Iterator[None]:
         child.wait()
 
 
-def compile_kernels_once(heartbeat: Path) -> None:
+def compile_kernels_once(folder: Path) -> None:
     """Compile the kernels unless they are, or wait for who does; a failure is only logged.
 
     Args:
-        heartbeat: File that is renewed meanwhile.
+        folder: Of the job: its heartbeat is renewed meanwhile, and its status says what is done.
     """
     if is_compiled():
         return
     log.info("compiling the kernels: once after an installation, some minutes")
+    _say(folder)
+    heartbeat = folder / "heartbeat"
     child = _start()
     deadline_s = time.monotonic() + COMPILING_TIMES.within_s
     while time.monotonic() < deadline_s:
@@ -59,6 +63,12 @@ def compile_kernels_once(heartbeat: Path) -> None:
     child.kill()
     child.wait()
     log.warning("the kernels could not be compiled ahead; every job compiles its own")
+
+
+def _say(folder: Path) -> None:
+    """The status of the job is what is compiled, until its work begins."""
+    with contextlib.closing(EventWriter(folder)) as events, contextlib.suppress(Cancelled):
+        events.start("compile", 0, "kernels")
 
 
 def _start() -> subprocess.Popen[bytes]:

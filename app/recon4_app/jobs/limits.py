@@ -53,7 +53,7 @@ def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     faulthandler.enable()  # a crash in native code writes its stack to the log
     project, _ = folder.request()
     project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
-    compile_kernels_once(folder.path / "heartbeat")
+    compile_kernels_once(folder.path)
     cached = use_private_cache(folder.temporary / "caches")
     return confine(policy.adding(read=cached))
 

@@ -57,6 +57,7 @@ step-double-walls = Doppelte Wände
 step-level = Horizontieren
 step-octree = Octree
 step-scans = Scans
+step-compile = Rechenkerne werden übersetzt, einmal nach einer Installation: einige Minuten
 step-calibration = Kalibrieren
 step-view-volumes = Sichtbereiche
 step-pairs = Paare registrieren

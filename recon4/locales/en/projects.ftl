@@ -57,6 +57,7 @@ step-double-walls = double walls
 step-level = level
 step-octree = octree
 step-scans = scans
+step-compile = the kernels are compiled, once after an installation: some minutes
 step-calibration = calibration
 step-view-volumes = view volumes
 step-pairs = pairs
