@@ -222,8 +222,11 @@ def test_a_job_that_ended_early_offers_other_settings(server, page, screenshot):
     server.wait_state(job, "cancelled")
     leave_out_viewer(page)
     page.goto(f"{server.url}/projects/hall/")
+    expect(page.locator("#viewer")).to_contain_text("the job ended before it had a trajectory")
+    other = page.get_by_role("button", name="Other settings…")
+    expect(other).to_be_in_viewport()
 
-    page.get_by_role("button", name="Other settings…").tap()
+    other.tap()
 
     expect(page.locator("new-job input[name=recording]")).to_have_value(str(recording))
     expect(page.get_by_label("Preset")).to_be_visible()

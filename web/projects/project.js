@@ -69,7 +69,7 @@ const state = {
 
 function draw() {
   const { id, project, view } = state;
-  const name = project?.name ?? id;
+  const name = project?.name || view?.job.inputs.title || id; // a waiting job has no project yet
   document.title = `${name} · recon4`;
   only("page-head").name = name;
   byId("title").textContent = name;
@@ -229,6 +229,9 @@ function showMap() {
   const { id, project, view } = state;
   const walking =
     view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
+  const ended = Boolean(view?.job.finished);
+  const empty = byId("viewer").querySelector(".empty");
+  if (empty) empty.textContent = t(ended ? "nothing-was-made" : "nothing-to-show");
   if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
   const viewer = document.createElement("iframe");
   Object.assign(viewer, { src: viewerUrl(id) + location.hash, title: t("map-in-3d") });

@@ -102,6 +102,7 @@ stage-audit = Befunde
 ## Seite eines Projekts
 
 project-title = Projekt · recon4
+nothing-was-made = Nichts zu zeigen: der Auftrag endete, bevor es eine Trajektorie gab.
 nothing-to-show = Noch nichts zu zeigen. Hier erscheint die erste Trajektorie, während der Auftrag läuft.
 before-use = Vor der Verwendung dieser Karte
 figures = Kennzahlen

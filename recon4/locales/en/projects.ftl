@@ -102,6 +102,7 @@ stage-audit = audit
 ## Page of a project
 
 project-title = Project · recon4
+nothing-was-made = Nothing to show: the job ended before it had a trajectory.
 nothing-to-show = Nothing to show yet. The first trajectory appears here while the job runs.
 before-use = Before you use this map
 figures = Figures
