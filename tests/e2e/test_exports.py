@@ -46,3 +46,9 @@ def test_a_file_is_ordered_downloaded_and_listed_and_what_cannot_be_made_is_said
     panel.get_by_text("Coordinates, box and more").click()
     panel.get_by_label("CRS").fill("EPSG:25832")
     expect(panel.get_by_role("alert")).to_contain_text("cannot be put into EPSG:25832")
+
+    page.context.add_cookies([{"name": "recon4_language", "value": "de", "url": server.url}])
+    page.reload()
+    row = panel.locator(".exports li").first
+    expect(row).to_contain_text("5\u202f000 Punkte · local")
+    expect(row).not_to_contain_text("points · local")

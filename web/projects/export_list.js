@@ -57,7 +57,7 @@ function exportRow(project, row, known, actions) {
     ${open ? progress(row) : nothing}
     ${words.length ? html`<p class="quiet">${words.join(" · ")}</p>` : nothing}
     <p class="quiet">
-      ${[made?.text, row.person, when(row.finished || row.created)].filter(Boolean).join(" · ")}
+      ${[made && contents(made), row.person, when(row.finished || row.created)].filter(Boolean).join(" · ")}
     </p>
     ${made ? details(row) : nothing} ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
     <div class="buttons">
@@ -66,6 +66,10 @@ function exportRow(project, row, known, actions) {
     </div>
   </li>`;
 }
+
+/** What is in a file, in the language of the page; its record says it in English. */
+const contents = (/** @type {NonNullable<ExportView["made"]>} */ { points, text }) =>
+  points ? t("made-points", { points }) : text;
 
 const stepName = (/** @type {string} */ what) =>
   what ? wordOf("export", stepText(what)) : t("starting");
@@ -95,6 +99,8 @@ const details = (/** @type {ExportView} */ { made, kept, of_this_map }) =>
           <dl class="hashes">
             <dt>${t("file")}</dt>
             <dd>${made.name}</dd>
+            <dt>${t("made-of")}</dt>
+            <dd lang="en">${made.text}</dd>
             <dt>SHA-256</dt>
             <dd><code>${made.sha256}</code></dd>
             <dt>recon4</dt>
