@@ -173,7 +173,7 @@ usability-good = gut
 
 ## Dateien
 
-upload-again = { $why }; neuer Versuch in { $seconds } s
+upload-again = Neuer Versuch in { $seconds } s: { $why }
 upload-unreadable = { $name } ist nicht mehr lesbar; neu auswählen
 file-being-made = { $name }: die Datei wird erstellt…
 

@@ -173,7 +173,7 @@ usability-good = good
 
 ## Files
 
-upload-again = { $why }; trying again in { $seconds } s
+upload-again = Trying again in { $seconds } s: { $why }
 upload-unreadable = { $name } cannot be read any more; select it again
 file-being-made = { $name }: the file is being made…
 
