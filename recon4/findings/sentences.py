@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from recon4.locales.coded import CODE, StoredText
+from recon4.locales.coded import CODE, StoredText, folded_values, said
 from recon4.locales.texts import Functions, Texts, quoted_by, readable
 from recon4.model.finding import Value
 from recon4.model.import_counts import count_fate, count_label, count_noun, count_text
@@ -59,15 +59,19 @@ def said_of(
 
 
 def known_values(values: Mapping[str, Value], language: str) -> dict[str, Value]:
-    """The values that are numbers, or no numbers by their kind; errors as a language says them."""
-    known = {name: value for name, value in values.items() if _is_known(value)}
+    """The values that are numbers, or no numbers by their kind.
+
+    Errors and texts with a code are in the language.
+    """
+    folded = folded_values({name: value for name, value in values.items() if _is_known(value)})
+    known = {n: said(one, language) if isinstance(one, str) else one for n, one in folded.items()}
     quoted = {name.removesuffix(CODE): code for name, code in known.items() if name.endswith(CODE)}
-    said = {
+    errors = {
         name: StoredText(text=str(known[name]), code=str(code), values={"detail": str(known[name])})
         for name, code in quoted.items()
         if name in known
     }
-    return known | {name: text.said(language) for name, text in said.items()}
+    return known | {name: text.said(language) for name, text in errors.items()}
 
 
 def functions(texts: Texts) -> Functions:

@@ -25,6 +25,8 @@ FILES = ("problems", "endings", "references", "recordings")
 references, and of recordings."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
+COUNTS = ("counts",)
+"""Files of what became of data that is counted, for texts that quote it."""
 CODE = "_code"
 """End of the name of a value that is the code of the error in another value of a finding."""
 UNCODED = "message"
@@ -102,8 +104,11 @@ def flat_values(values: Mapping[str, Shown]) -> dict[str, Shown]:
     return flat
 
 
-def _folded(values: Mapping[str, Shown]) -> dict[str, Shown]:
-    """The values that `flat_values` wrote; what is nested deeper than any text is left out."""
+def folded_values(values: Mapping[str, Shown]) -> dict[str, Shown]:
+    """The values that `flat_values` wrote, coded texts again.
+
+    What is nested deeper than any text is left out.
+    """
     known = {name: value for name, value in values.items() if name.count(":") <= 8}
     folded = {name: value for name, value in known.items() if ":" not in name}
     for name, value in folded.items():
@@ -181,7 +186,7 @@ def stored_text(code: str, values: Mapping[str, Shown], english: str) -> str:
     A later version may have another code; what another process sent may be anything.
     """
     try:
-        return CodedText(code, **_folded(values))
+        return CodedText(code, **folded_values(values))
     except (KeyError, TypeError, ValueError):
         return english
 
@@ -198,7 +203,7 @@ def _again(code: str, values: dict[str, Shown]) -> CodedText:
 
 @cache
 def _texts(language: str) -> Texts:
-    return Texts(language, "shared", *STEPS, *FILES, functions=_functions)
+    return Texts(language, "shared", *STEPS, *COUNTS, *FILES, functions=_functions)
 
 
 def _functions(texts: Texts) -> Functions:
@@ -233,6 +238,9 @@ def _functions(texts: Texts) -> Functions:
     def rate(hz: float) -> str:
         return texts("word-rate", hz=as_float(hz)) if as_float(hz) > 0.0 else ""
 
+    def turns(hz: float) -> str:
+        return texts("word-turns", hz=as_float(hz)) if as_float(hz) > 0.0 else ""
+
     def numbers(written: str) -> str:
         return "; ".join(localized(one, texts.language) for one in written.split())
 
@@ -241,6 +249,7 @@ def _functions(texts: Texts) -> Functions:
         "COUNTED": counted,
         "NUMBERS": numbers,
         "RATE": rate,
+        "TURNS": turns,
         "QUOTED": lambda value: repr(str(value)),
         "WORDS": words,
         "NAMED": named,

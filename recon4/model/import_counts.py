@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Loss:
-    """A count of data that is not used."""
+    """A count of data that is not used, or was repaired."""
 
     name: str
     number: int
@@ -32,8 +32,17 @@ class Loss:
 
     @property
     def text(self) -> str:
-        """How many of how many, what became of them, and the detail."""
-        return _counted(self)
+        """How many of how many, what became of them, and the detail; in English."""
+        return self.said(ENGLISH)
+
+    def said(self, language: str) -> str:
+        """The same in a language; the detail as it is."""
+        texts = _texts(language)
+        number = str(self.number)
+        if self.total:
+            number = texts("counts-of", number=self.number, total=self.total)
+        detail = f" ({self.detail})" if self.detail else ""
+        return f"{number} {count_label(self.name, language)}{detail}"
 
     @property
     def is_warned(self) -> bool:
@@ -96,17 +105,7 @@ def count_text(
         detail: What the reader knows besides, such as a port.
         language: Of the text.
     """
-    loss = Loss(name, counts.get(name, 0), _total(name, counts), detail)
-    return _counted(loss, language)
-
-
-def _counted(loss: Loss, language: str = ENGLISH) -> str:
-    texts = _texts(language)
-    number = str(loss.number)
-    if loss.total:
-        number = texts("counts-of", number=loss.number, total=loss.total)
-    detail = f" ({loss.detail})" if loss.detail else ""
-    return f"{number} {count_label(loss.name, language)}{detail}"
+    return Loss(name, counts.get(name, 0), _total(name, counts), detail).said(language)
 
 
 def ratio_text(name: str, ratio: float, language: str = ENGLISH) -> str:
@@ -144,9 +143,9 @@ def _largest_first(
     return sorted(found, key=lambda loss: -loss.ratio if loss.ratio == loss.ratio else -1.0)
 
 
-def repairs(counts: Mapping[str, int]) -> list[str]:
-    """All counts of repaired data, in words."""
-    return [count_text(name, counts) for name in _of_kind(counts, CountKind.REPAIRED)]
+def repairs(counts: Mapping[str, int]) -> list[Loss]:
+    """All counts of repaired data, in the order in which they were counted."""
+    return [_loss(name, counts, {}) for name in _of_kind(counts, CountKind.REPAIRED)]
 
 
 def _of_kind(counts: Mapping[str, int], kind: CountKind) -> Iterator[str]:

@@ -60,7 +60,7 @@ def _samples(stream: PacketStream) -> CodedText:
 
 def _unread(stream: PacketStream) -> CodedText:
     of: dict[str, Shown] = {"packets": stream.packets, "source": stream.source}
-    return CodedText("unread-packets", **of, port=stream.port, why=stream.refused)
+    return CodedText("unread-packets", **of, port=stream.port, why=stream.refused or "")
 
 
 def _others(streams: Sequence[PacketStream], scanners: ScanStreams) -> list[PacketStream]:

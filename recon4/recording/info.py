@@ -242,8 +242,8 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
         gaps=tuple(g for g in _gaps(path.name, scans.t_ns) if g.seconds > LASERS.gap_s),
         derived=tuple(report.derived),
         missing=() if scans.odometry is not None else (CodedText("missing-odometry"),),
-        lost=tuple(report.lost()),
-        repaired=tuple(report.repaired()),
+        lost=tuple(report.losses()),
+        repaired=tuple(report.repairs()),
         findings=tuple(report.findings),
     )
 
@@ -318,7 +318,7 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
         t_last_ns=last,
         samples=(CodedText(code, count=len(t_ns), **values),),
         derived=tuple(report.derived),
-        lost=tuple(report.lost()),
+        lost=tuple(report.losses()),
         findings=tuple(report.findings),
     )
 
@@ -385,8 +385,8 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         samples=tuple(samples),
         missing=tuple(missing),
         derived=tuple(report.derived),
-        lost=tuple(report.lost()),
-        repaired=tuple(report.repaired()),
+        lost=tuple(report.losses()),
+        repaired=tuple(report.repairs()),
         findings=tuple(report.findings),
         first_rig=first_rig_of(rig, to_complete, path),
     )

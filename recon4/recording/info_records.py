@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-
-import numpy as np
 
 from recon4.findings.derived import derived_text, said_derived
 from recon4.findings.wording import whole_text
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, said
 from recon4.locales.languages import ENGLISH
 from recon4.model.derived import Derived
 from recon4.model.finding import Finding
+from recon4.model.import_counts import Loss
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.formats.file_times import utc
 from recon4.recording.tuning_times import FRAME_TIMES
@@ -44,6 +44,23 @@ class SensorInfo:
             "remarks": [one.said(language) for one in self.remarks],
         }
 
+    def texts(self, language: str, *, estimated: bool) -> Iterator[tuple[str, str]]:
+        """What each line is of, and its text.
+
+        Args:
+            language: Of the findings.
+            estimated: Whether only the head of a large file was read.
+        """
+        rates = {"rate_hz": self.rate_hz, "turns_hz": self.rotation_hz}
+        of = {"model": self.model, "content": self.content, "estimated": _yes(estimated)}
+        yield "lidar", CodedText("info-sensor", label=self.label, count=self.count, **of, **rates)
+        if self.fields:
+            yield "fields", ", ".join(self.fields)
+        for one in self.remarks:
+            yield "remark", f"{self.label}: {one.said(language)}"
+        for found in self.findings:
+            yield "remark", whole_text(found, language)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordingInfo:
@@ -68,9 +85,9 @@ class RecordingInfo:
     derived: tuple[Derived, ...] = ()
     """What recon4 derives or chooses because the recording does not say it."""
     missing: tuple[CodedText, ...] = ()
-    lost: tuple[str, ...] = ()
-    """Counts of data that is not used, in words; of a large recording, at its head."""
-    repaired: tuple[str, ...] = ()
+    lost: tuple[Loss, ...] = ()
+    """Counts of data that is not used; of a large recording, at its head."""
+    repaired: tuple[Loss, ...] = ()
     """Counts of repaired data."""
     findings: tuple[Finding, ...] = ()
     """What the readers warn of."""
@@ -91,6 +108,8 @@ class RecordingInfo:
             "unread": [one.said(language) for one in self.unread],
             "derived": [said_derived(one, language) for one in self.derived],
             "missing": [one.said(language) for one in self.missing],
+            "lost": [one.said(language) for one in self.lost],
+            "repaired": [one.said(language) for one in self.repaired],
             "walk": self.walk_text(language),
         }
 
@@ -99,44 +118,57 @@ class RecordingInfo:
         return derived_text(self.walk, language) if self.walk is not None else ""
 
     def lines(self, language: str = ENGLISH) -> list[str]:
-        """The contents as text; what is derived and warned of in a language."""
-        about = "about " if self.estimated else ""
-        lines = [f"{self.path}: {self.kind.said(language)}, {self.bytes / 1e6:.1f} MB"]
-        absolute = self.t_first_ns > FRAME_TIMES.earliest_ns
-        if absolute or self.t_last_ns > self.t_first_ns:
-            start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
-            back = "" if self.seconds >= 0.0 else ", in reversed order: its times run backward"
-            lines.append(f"time      {start}, {about}{abs(self.seconds):.2f} s{back}")
-        lines += [f"walk      {self.walk_text(language)}"] if self.walk else []
+        """The contents as lines in a language, each with a word at its begin that says of what."""
+        megabytes = self.bytes / 1e6
+        head = CodedText("info-head", path=self.path, kind=self.kind, megabytes=megabytes)
+        labelled = [(key, said(text, language)) for key, text in self._texts(language)]
+        return [
+            head.said(language),
+            *(f"{_label(key, language):<9} {text}" for key, text in labelled),
+        ]
+
+    def _texts(self, language: str) -> Iterator[tuple[str, str]]:
+        """What each line is of, and its text."""
+        if (time := self._time()) is not None:
+            yield "time", time
+        if self.walk:
+            yield "walk", self.walk_text(language)
         for sensor in self.sensors:
-            lines += _sensor_lines(sensor, about, language)
-        lines += [f"samples   {one.said(language)}" for one in self.samples]
-        lines += [f"not read  {one.said(language)}" for one in self.unread]
+            yield from sensor.texts(language, estimated=self.estimated)
+        yield from (("samples", one) for one in self.samples)
+        yield from (("unread", one) for one in self.unread)
+        yield from (("gap", one) for one in self._gap_texts())
+        yield from (("derived", derived_text(one, language)) for one in self.derived)
+        yield from (("missing", one) for one in self.missing)
+        yield from (("lost", one.said(language)) for one in self.lost)
+        yield from (("repaired", one.said(language)) for one in self.repaired)
+        yield from (("warning", whole_text(one, language)) for one in self.findings)
+
+    def _time(self) -> CodedText | None:
+        absolute = self.t_first_ns > FRAME_TIMES.earliest_ns
+        if not absolute and self.t_last_ns <= self.t_first_ns:
+            return None
+        none = CodedText("info-no-times")
+        start = CodedText("info-start", start=utc(self.t_first_ns)) if absolute else none
+        code = "info-time" if self.seconds >= 0.0 else "info-time-back"
+        return CodedText(
+            code, start=start, estimated=_yes(self.estimated), seconds=abs(self.seconds)
+        )
+
+    def _gap_texts(self) -> Iterator[CodedText]:
         for gap in self.gaps[:10]:
             since_s = (gap.t_ns - self.t_first_ns) / 1e9
-            what = "" if gap.seconds > 0 else "the clock goes back by "
-            lines.append(
-                f"gap       {gap.sensor}: {what}{abs(gap.seconds):.3f} s at {since_s:.2f} s"
+            of = {"seconds": abs(gap.seconds), "since_s": since_s}
+            yield CodedText(
+                "info-gap" if gap.seconds > 0 else "info-gap-back", sensor=gap.sensor, **of
             )
         if len(self.gaps) > 10:
-            lines.append(f"gap       … {len(self.gaps)} in all")
-        lines += [f"derived   {derived_text(one, language)}" for one in self.derived]
-        lines += [f"missing   {one.said(language)}" for one in self.missing]
-        lines += [f"lost      {text}" for text in self.lost]
-        lines += [f"repaired  {text}" for text in self.repaired]
-        lines += [f"warning   {whole_text(one, language)}" for one in self.findings]
-        return lines
+            yield CodedText("info-gaps", count=len(self.gaps))
 
 
-def _sensor_lines(sensor: SensorInfo, about: str, language: str) -> list[str]:
-    rate = f", {sensor.rate_hz:.1f} a second" if np.isfinite(sensor.rate_hz) else ""
-    turns = f", {sensor.rotation_hz:.2f} revolutions a second" * bool(
-        np.isfinite(sensor.rotation_hz)
-    )
-    text = f"{sensor.label} {sensor.model}: {about}{sensor.count} "
-    text += f"{sensor.content.said(language)}{rate}{turns}"
-    lines = [f"lidar     {text}"]
-    if sensor.fields:
-        lines.append(f"fields    {', '.join(sensor.fields)}")
-    lines += [f"remark    {sensor.label}: {one.said(language)}" for one in sensor.remarks]
-    return lines + [f"remark    {whole_text(one, language)}" for one in sensor.findings]
+def _yes(is_so: bool) -> str:
+    return "yes" if is_so else "no"
+
+
+def _label(key: str, language: str) -> str:
+    return CodedText(f"info-label-{key}").said(language)

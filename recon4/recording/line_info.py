@@ -94,8 +94,8 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
         samples=tuple(samples),
         gaps=seen.gaps,
         missing=missing,
-        lost=tuple(report.lost()),
-        repaired=tuple(report.repaired()),
+        lost=tuple(report.losses()),
+        repaired=tuple(report.repairs()),
         findings=tuple(report.findings),
     )
 

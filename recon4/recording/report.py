@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.findings.derived import derived_text
 from recon4.findings.wording import whole_text
-from recon4.locales.coded import CODE, KINDS, coded
+from recon4.locales.coded import CODE, KINDS, CodedText, coded, flat_values
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level, Value
@@ -111,7 +111,7 @@ class ImportReport:
 
     def warn_of_losses(self) -> None:
         """Warn of each large loss that no reader warned of; call once, at the end."""
-        for loss in self._losses():
+        for loss in self.losses():
             if loss.is_warned:
                 self.warn(FindingKind.DATA_LOST, **_values(loss))
 
@@ -121,9 +121,10 @@ class ImportReport:
 
     def lost(self) -> list[str]:
         """All counts of lost data, in words."""
-        return [loss.text for loss in self._losses()]
+        return [loss.text for loss in self.losses()]
 
-    def _losses(self) -> list[Loss]:
+    def losses(self) -> list[Loss]:
+        """All counts of lost data: what is not used, then what something worse stands in for."""
         return losses(self.counts, self.details) + replaced(self.counts, self.details)
 
     def why_no_points(self, seen: str = "") -> str:
@@ -156,6 +157,10 @@ class ImportReport:
 
     def repaired(self) -> list[str]:
         """All counts of repaired data, in words."""
+        return [one.text for one in self.repairs()]
+
+    def repairs(self) -> list[Loss]:
+        """All counts of repaired data."""
         return repairs(self.counts)
 
 
@@ -163,7 +168,9 @@ def _known(values: Mapping[str, Value | Exception]) -> dict[str, Value]:
     coded_errors = {
         name + CODE: coded(one).code for name, one in values.items() if isinstance(one, Exception)
     }
-    known = {name: _bounded(one) for name, one in values.items() if one == one}
+    coded_texts = {name: one for name, one in values.items() if isinstance(one, CodedText)}
+    every: dict[str, Value | Exception] = {**values, **flat_values(coded_texts)}
+    known = {name: _bounded(one) for name, one in every.items() if one == one}
     return known | {name: code for name, code in coded_errors.items() if code in KINDS.values()}
 
 

@@ -46,6 +46,48 @@ remark-ranges = Entfernungen bis { DECIMAL($farthest_m, digits: 2) } m, { PERCEN
 remark-lines = { DECIMAL($shots, digits: 0) } Schüsse je Linie, { PERCENT($returns, digits: 0) } davon kommen zurück
 remark-head = Kopf von { DEGREES($low, digits: 0) } bis { DEGREES($high, digits: 0) }, { DECIMAL($shots, digits: 0) } Schüsse je Linie, { PERCENT($returns, digits: 0) } davon kommen zurück
 unread-packets = { $packets } Pakete von { $source } an Port { $port } ({ $why })
+refused-sizes = von { $sizes } Bytes{ $more ->
+    [yes] {" "}und anderen
+   *[no] {""}
+ }: nicht die eines bekannten LiDARs
+refused-model = { $name }, dessen Pakete nicht dekodiert werden
+refused-airy = ein Airy der Variante { $variant } (48 oder 192 Zeilen), dessen Pakete nicht dekodiert werden
+refused-count = { $number } von { $total } Datenpaketen: { $what }
+
+## A recording in lines: what begins each, and its words
+
+info-label-time = Zeit
+info-label-walk = Begehung
+info-label-lidar = LiDAR
+info-label-fields = Felder
+info-label-remark = Hinweis
+info-label-samples = Messwerte
+info-label-unread = ungelesen
+info-label-gap = Lücke
+info-label-derived = gefolgert
+info-label-missing = fehlt
+info-label-lost = verloren
+info-label-repaired = behoben
+info-label-warning = Warnung
+info-head = { $path }: { $kind }, { DECIMAL($megabytes, digits: 1) } MB
+info-start = { $start } UTC
+info-no-times = keine absoluten Zeiten
+info-time = { $start }, { $estimated ->
+    [yes] etwa{" "}
+   *[no] {""}
+ }{ DECIMAL($seconds, digits: 2) } s
+info-time-back = { $start }, { $estimated ->
+    [yes] etwa{" "}
+   *[no] {""}
+ }{ DECIMAL($seconds, digits: 2) } s, in umgekehrter Reihenfolge: die Zeiten laufen rückwärts
+info-sensor = { $label } { $model }: { $estimated ->
+    [yes] etwa{" "}
+   *[no] {""}
+ }{ $count } { $content }{ RATE($rate_hz) }{ TURNS($turns_hz) }
+info-gap = { $sensor }: { DECIMAL($seconds, digits: 3) } s bei { DECIMAL($since_s, digits: 2) } s
+info-gap-back = { $sensor }: die Uhr geht { DECIMAL($seconds, digits: 3) } s zurück, bei { DECIMAL($since_s, digits: 2) } s
+info-gaps = … { $count } insgesamt
+word-turns = , { DECIMAL($hz, digits: 2) } Umdrehungen je Sekunde
 
 ## Messwerte
 

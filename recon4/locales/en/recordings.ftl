@@ -46,6 +46,48 @@ remark-ranges = ranges up to { DECIMAL($farthest_m, digits: 2) } m, { PERCENT($r
 remark-lines = { DECIMAL($shots, digits: 0) } shots a line, { PERCENT($returns, digits: 0) } of them return
 remark-head = head from { DEGREES($low, digits: 0) } to { DEGREES($high, digits: 0) }, { DECIMAL($shots, digits: 0) } shots a line, { PERCENT($returns, digits: 0) } of them return
 unread-packets = { $packets } packets from { $source } to port { $port } ({ $why })
+refused-sizes = of { $sizes } bytes{ $more ->
+    [yes] {" "}and others
+   *[no] {""}
+ }: not those of a known LiDAR
+refused-model = { $name }, whose packets are not decoded
+refused-airy = an Airy of variant { $variant } (48 or 192 lines), whose packets are not decoded
+refused-count = { $number } of { $total } data packets: { $what }
+
+## A recording in lines: what begins each, and its words
+
+info-label-time = time
+info-label-walk = walk
+info-label-lidar = lidar
+info-label-fields = fields
+info-label-remark = remark
+info-label-samples = samples
+info-label-unread = not read
+info-label-gap = gap
+info-label-derived = derived
+info-label-missing = missing
+info-label-lost = lost
+info-label-repaired = repaired
+info-label-warning = warning
+info-head = { $path }: { $kind }, { DECIMAL($megabytes, digits: 1) } MB
+info-start = { $start } UTC
+info-no-times = no absolute times
+info-time = { $start }, { $estimated ->
+    [yes] about{" "}
+   *[no] {""}
+ }{ DECIMAL($seconds, digits: 2) } s
+info-time-back = { $start }, { $estimated ->
+    [yes] about{" "}
+   *[no] {""}
+ }{ DECIMAL($seconds, digits: 2) } s, in reversed order: its times run backward
+info-sensor = { $label } { $model }: { $estimated ->
+    [yes] about{" "}
+   *[no] {""}
+ }{ $count } { $content }{ RATE($rate_hz) }{ TURNS($turns_hz) }
+info-gap = { $sensor }: { DECIMAL($seconds, digits: 3) } s at { DECIMAL($since_s, digits: 2) } s
+info-gap-back = { $sensor }: the clock goes back by { DECIMAL($seconds, digits: 3) } s at { DECIMAL($since_s, digits: 2) } s
+info-gaps = … { $count } in all
+word-turns = , { DECIMAL($hz, digits: 2) } revolutions a second
 
 ## Samples
 

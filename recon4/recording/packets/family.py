@@ -18,6 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Finding
 from recon4.model.rig import Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -84,8 +85,8 @@ class Recognized:
     """UTC minus time of arrival, where positions prove that GPS drives the sensor's clock."""
     findings: tuple[Finding, ...] = ()
     """Warnings, as about a model byte that contradicts the data."""
-    refused: str = ""
-    """Why packets of this make are not read; empty for other kinds than ``other``."""
+    refused: CodedText | None = None
+    """Why packets of this make are not read; None for other kinds than ``other``."""
     rows: NDArray[np.bool_] | None = None
     """Which of the datagrams are of this sensor, (N,); None = all."""
     others: tuple[Recognized, ...] = ()

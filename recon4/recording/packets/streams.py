@@ -12,6 +12,7 @@ from msgspec.structs import replace as replace_fields
 from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Finding
 from recon4.model.rig import Sensor
 from recon4.recording.formats.datagrams import (
@@ -67,7 +68,7 @@ class PacketStream:
     """What its packets are; None = not those of a known LiDAR."""
     utc_offset_ns: int | None = None
     """UTC minus capture time if the GPS of its position packets drives its clock."""
-    refused: str = ""
+    refused: CodedText | None = None
     """Why its packets are no data packets of a LiDAR; empty for other kinds than ``other``."""
     head: Datagrams = NO_DATAGRAMS
     """Its first packets."""
@@ -100,7 +101,7 @@ class PacketStream:
     @property
     def text(self) -> str:
         """What its packets are, for messages that say why there is no data."""
-        what = _CONTENTS.get(self.kind, self.refused)
+        what = _CONTENTS.get(self.kind, self.refused or "")
         what += f" of a {self.model}" * bool(self.kind == "data" and self.model)
         return f"{self.packets} packets from {self.label} ({what})"
 
@@ -259,7 +260,7 @@ def _streams(
     found = recognized(datagrams, companions)
     if found is None:
         kind = _samples_kind(datagrams.take(slice(HEAD.samples)))
-        refused = _lengths_text(datagrams.length) if kind == "other" else ""
+        refused = _of_lengths(datagrams.length) if kind == "other" else None
         return [replace(_stream(head, datagrams), kind=kind, refused=refused)]
     return [
         replace(
@@ -298,11 +299,11 @@ def _samples_kind(datagrams: Datagrams) -> str:
     return "IMU" if imu is not None else "GNSS" if gnss is not None else "other"
 
 
-def _lengths_text(length: NDArray[np.int64]) -> str:
+def _of_lengths(length: NDArray[np.int64]) -> CodedText:
     sizes, numbers = np.unique(length, return_counts=True)
-    usual = [f"{size} bytes" for size in sizes[np.argsort(-numbers)][: LISTED.sizes].tolist()]
-    more = " and others" * (len(sizes) > LISTED.sizes)
-    return f"of {', '.join(usual)}{more}: not those of a known LiDAR"
+    usual = ", ".join(map(str, sizes[np.argsort(-numbers)][: LISTED.sizes].tolist()))
+    more = "yes" if len(sizes) > LISTED.sizes else "no"
+    return CodedText("refused-sizes", sizes=usual, more=more)
 
 
 def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:

@@ -147,7 +147,7 @@ def test_a_record_is_said_in_any_language():
 def test_info_says_it_as_lines_and_as_a_record_with_its_text():
     info = RecordingInfo(path="a", kind=RecordingKind.PCAP.text, bytes=0, derived=(UNIT,))
 
-    assert info.lines("de")[-1] == f"derived   {derived_text(UNIT, 'de')}"
+    assert info.lines("de")[-1] == f"gefolgert {derived_text(UNIT, 'de')}"
     assert info.to_json("de")["derived"] == [said_derived(UNIT, "de")]
 
 

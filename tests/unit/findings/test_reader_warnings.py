@@ -5,8 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from recon4.findings.wording import catalog
+from recon4.findings.wording import catalog, whole_text
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import MOUNT_DOUBTS, FindingKind
+from recon4.recording.report import ImportReport
 from tests.source_trees import sources, trees_with
 
 ROOT = Path(__file__).parents[3]
@@ -70,3 +72,13 @@ def test_each_kind_of_a_reader_is_in_its_catalog_and_no_other():
 
     assert {kind for _, kind, _ in NAMED} | by_report == catalog().readers
     assert MOUNT_DOUBTS - {FindingKind.LASER_MOUNT} <= catalog().readers
+
+
+def test_a_warning_quotes_a_reason_in_the_language_of_the_reader():
+    report = ImportReport()
+    why = CodedText("refused-count", number=9, total=9, what=CodedText("count-packets_hdl64"))
+
+    report.warn(FindingKind.PACKETS_UNREAD, sender="a", packets=9, why=why)
+
+    assert "9 of 9 data packets: blocks of the lower lasers" in whole_text(report.findings[0])
+    assert "9 von 9 Datenpaketen: Blöcke der unteren Laser" in whole_text(report.findings[0], "de")

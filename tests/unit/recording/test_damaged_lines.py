@@ -125,7 +125,7 @@ def test_damaged_poses_are_said_by_the_evaluation(tmp_path):
 def test_info_says_damaged_lines(tmp_path):
     info = describe(imu_file(tmp_path / "imu.csv", {40: b"x"}))
 
-    assert any("line 42" in text for text in info.lost)
+    assert any("line 42" in loss.text for loss in info.lost)
 
 
 # -- times

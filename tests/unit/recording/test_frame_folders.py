@@ -226,7 +226,7 @@ def test_files_whose_numbers_are_in_another_order_are_sorted_by_their_times(tmp_
     assert [natural(file)[0][1] for file in frames.files] == np.argsort(steps).tolist()
     assert np.all(np.diff(frames.t_ns) == 100_000_000)
     text = f"{frames.out_of_order} of 12 files: numbers in another order than their times, sorted"
-    assert describe(folder).repaired == (text,)
+    assert [one.text for one in describe(folder).repaired] == [text]
     counts = run(folder, out=tmp_path / "o").report["counts"]
     assert counts["files_out_of_order"] == frames.out_of_order > 0
 

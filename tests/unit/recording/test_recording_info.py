@@ -151,7 +151,7 @@ def test_samples_without_stamps_are_counted_as_repaired(tmp_path):
             if k % 10 == 0:
                 bag.fix("/fix", t_ns, 50.0 + 1e-7 * k, 14.0, 300.0)
 
-    repaired = describe(path).repaired
+    repaired = [one.text for one in describe(path).repaired]
 
     assert "100 of 100 IMU samples: without a stamp, the time of recording is used" in repaired
     assert "10 of 10 GNSS positions: without a stamp, the time of recording is used" in repaired
@@ -162,7 +162,9 @@ def test_the_command_speaks_the_language_that_its_confinement_forgets(pcap, monk
     monkeypatch.setattr(commands, "confine_command", lambda **_: monkeypatch.delenv(ENVIRONMENT))
 
     assert commands.main(["info", str(pcap)]) == 0
-    assert "derived   Kein Rig angegeben: ein VLP-16" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "gefolgert Kein Rig angegeben: ein VLP-16" in said
+    assert " je Sekunde, " in said and "Umdrehungen je Sekunde\n" in said
 
 
 def test_each_kind_of_recording_has_a_code_whose_english_text_is_its_value():

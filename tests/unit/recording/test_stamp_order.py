@@ -89,4 +89,4 @@ def test_one_cloud_that_is_recorded_seconds_late_moves_no_other_one(tmp_path):
     assert store.report["counts"]["clouds_late"] == 1
     assert "clock_jumps_back" not in store.report["counts"]
     assert store[len(store) - 1].t_ns == T0_NS + 39 * PERIOD_NS
-    assert any("recorded after many later ones" in text for text in describe(bag).lost)
+    assert any("recorded after many later ones" in loss.text for loss in describe(bag).lost)

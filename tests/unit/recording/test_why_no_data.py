@@ -77,7 +77,7 @@ def test_one_lidar_that_is_cut_is_a_warning_beside_the_other(tmp_path):
     assert points[0] > 0 and set(points) == {0}
     report.warn_of_losses()
     assert warned(report, K.DATA_LOST, count="records_cut", number=100, total=200)
-    assert any("to port 2369" in text for text in describe(path).lost)
+    assert any("to port 2369" in loss.text for loss in describe(path).lost)
 
 
 def test_damaged_flags_are_the_reason_and_not_the_length(tmp_path):
@@ -206,7 +206,7 @@ def test_a_counter_that_runs_past_the_hour_is_read_and_said(tmp_path):
 
     assert points == {0: 700 * 384}
     assert report.counts["packets_past_hour"] == int((stamps >= 3_600_000_000).sum()) > 500
-    assert any("past the end of the hour" in text for text in describe(path).repaired)
+    assert any("past the end of the hour" in one.text for one in describe(path).repaired)
 
 
 def test_counts_of_the_head_are_not_counted_twice(tmp_path):

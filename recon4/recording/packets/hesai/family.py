@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
@@ -192,8 +193,10 @@ class Hesai:
             return None
         version = tuple(np.median(payloads[begins, 2:4], axis=0).astype(int).tolist())
         name = UNREAD.get(version, "")
-        reason = f"{name}, whose packets are not decoded"
-        return Recognized(family=self.name, kind="other", refused=reason) if name else None
+        if not name:
+            return None
+        reason = CodedText("refused-model", name=name)
+        return Recognized(family=self.name, kind="other", refused=reason)
 
 
 FAMILY: PacketFamily = Hesai()

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
@@ -316,7 +317,7 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
     if found.model == "Bpearl":
         return _of_old_id(found, packets, kind)
     if found.model == "Airy" and kind[1] not in (AIRY_VARIANT, AIRY_UNKNOWN_VARIANT):
-        reason = f"an Airy of variant {kind[1]} (48 or 192 lines), whose packets are not decoded"
+        reason = CodedText("refused-airy", variant=kind[1])
         return replace(found, kind="other", refused=reason)
     if found.model != "Helios 32":
         return found

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.distinct import distinct
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
@@ -226,7 +227,10 @@ def _recognized_data(payloads: Payloads) -> Recognized | None:
     report = ImportReport()
     rows = np.flatnonzero(sound_packets(payloads, report))
     if len(rows) < len(payloads) // 2 or not len(rows):
-        return replace(found, kind="other", refused="; ".join(report.lost()))
+        most = report.losses()[0]
+        of = {"number": most.number, "total": len(payloads)}
+        reason = CodedText("refused-count", **of, what=CodedText(f"count-{most.name}"))
+        return replace(found, kind="other", refused=reason)
     packets = as_packets(payloads[rows])
     packets = packets[_longest_run(packets["time_us"].astype(np.int64) * 1000)]
     product = int(np.bincount(packets["product"]).argmax())
