@@ -213,6 +213,8 @@ class Edge:
         count = len(self.judgments)
         while count > 1 and self.judgments[count - 1].by in judges:
             count -= 1
+        if count == len(self.judgments):
+            return self
         return replace(self, judgments=self.judgments[:count])
 
     @property

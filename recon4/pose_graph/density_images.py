@@ -120,9 +120,9 @@ def yaws_within(bound_rad: float) -> Array:
 
 def _correlate(target: DensityImage, source: TurnedImage, yaw: float) -> NDArray[np.float32]:
     """Cosine of the images for all shifts of the turned source, (S, S)."""
-    shape = (DENSITY.cells, DENSITY.cells)
-    scores = fft.irfft2(target.spectrum * source.spectrum(yaw), s=shape)
-    chosen: NDArray[np.float32] = scores[np.ix_(_SHIFTS, _SHIFTS)]
+    # As `irfft2` does it, one axis after the other, without the rows that no shift asks for.
+    rows = fft.ifft(target.spectrum * source.spectrum(yaw), axis=0)[_SHIFTS]
+    chosen: NDArray[np.float32] = fft.irfft(rows, n=DENSITY.cells, axis=1)[:, _SHIFTS]
     return chosen
 
 
@@ -152,11 +152,13 @@ def _descriptor(image: NDArray[np.float32], layers: Layers) -> Array:
     """Magnitudes of the spectrum are invariant to shifts; their own spectrum around the circle is
     invariant to rotations. A histogram of heights tells low rooms from halls.
     """
-    magnitude = np.log1p(np.abs(fft.fftshift(fft.fft2(image))))
+    center = DENSITY.cells // 2
+    reach = np.arange(-center // 2 - 1, center // 2 + 2)
+    magnitude = np.log1p(np.abs(fft.fft2(image)[np.ix_(reach, reach)]))
     radius = np.linspace(2.0, DENSITY.cells / 4.0, DENSITY.radii)
     angle = np.arange(DENSITY.angles) * np.pi / DENSITY.angles  # the other half repeats it
-    center = DENSITY.cells // 2
     at = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))]) + center
+    at -= center + reach[0]  # exact: the fractions stay
     polar = ndimage.map_coordinates(magnitude, at, order=1)
     waves = np.abs(fft.rfft(polar, axis=1))[:, : DENSITY.angles // 4]
     # The means of the rings are alike everywhere; they would hide the rest.

@@ -102,9 +102,12 @@ def make_places(
     path_m, part = _path_m(graph), _unbroken_parts(graph)
     nodes = _every(path_m, part, settings.spacing_m)
     images, drawn = StoredImages(views.scratch), dict[int, _NodeWalls]()
+    reach_m = settings.reach_m + settings.spacing_m  # certainly all that are near
     for node in nodes:
-        near = np.abs(path_m - path_m[node]) <= settings.reach_m
-        members = np.flatnonzero(near & (part == part[node])).tolist()
+        around = slice(*np.searchsorted(path_m, path_m[node] + np.array([-1.0, 1.0]) * reach_m))
+        near = np.abs(path_m[around] - path_m[node]) <= settings.reach_m
+        same = part[around] == part[node]
+        members = (np.flatnonzero(near & same) + around.start).tolist()
         # A node belongs to several places in a row.
         drawn = {k: drawn.get(k) or _walls_of(graph, views, k) for k in members}
         walls_m = np.concatenate([one.walls_m for one in drawn.values()])

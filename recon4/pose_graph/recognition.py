@@ -139,12 +139,13 @@ def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
         height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place])
         for overlay in overlays(places.images[k], source, yaws=yaws, most=settings.hypotheses):
+            if overlay.score < settings.min_score:
+                break  # the best ones come first
             T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)
             move_m = T.t - T_map_place.t[place]
             across = float(np.linalg.norm(move_m[:2])) / (likely_m + settings.bound_m)
             unlikely = max(across, abs(float(move_m[2])) / (height_m + RECOGNITION.height_m))
-            if overlay.score >= settings.min_score:
-                found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
+            found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
     return _distinct(sorted(found, key=lambda one: -one.rank), settings.hypotheses)
 
 

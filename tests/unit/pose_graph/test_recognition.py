@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy import fft
 
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges, seen_through_ratio
@@ -32,7 +33,7 @@ from recon4.pose_graph.recognition import recognize
 from recon4.pose_graph.recognized_groups import RecognizedChain, judge_chains
 from recon4.pose_graph.stored_images import StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
-from recon4.pose_graph.tuning_places import BoundTuning
+from recon4.pose_graph.tuning_places import DENSITY, BoundTuning
 from recon4.progress import Silent
 
 SETTINGS = RecognitionTuning()
@@ -67,6 +68,20 @@ def test_the_best_overlay_is_the_rotation_and_shift_between_two_visits():
 
     back = turned(seen, best.yaw_rad, np.array(best.shift_m))
     assert np.linalg.norm(back - walls, axis=1).max() < 0.7
+
+
+def test_a_score_is_that_of_the_correlation_over_all_shifts():
+    walls = walls_of(TWO_CUBES)
+    target = image(walls)
+    source = TurnedImage(image(turned(walls, 0.0, np.array([2.0, -3.2]))))
+
+    best = overlays(target, source, yaws=np.zeros(1), most=1)[0]
+
+    cells = DENSITY.cells
+    whole = fft.irfft2(target.spectrum * source.spectrum(0.0), s=(cells, cells))
+    across, along = (round(shift / DENSITY.cell_m) for shift in best.shift_m)
+    assert (across, along) == (-5, 8)
+    assert best.score == whole[across, along] == whole.max()
 
 
 def test_an_image_without_walls_is_laid_onto_like_any_other(tmp_path):
