@@ -91,6 +91,23 @@ def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
     expect(page.get_by_role("link", name="Account of rita reviewer")).to_be_visible()
 
 
+@looks("desktop light")
+def test_a_password_goes_where_it_is_typed_however_late_the_server_says_who_one_is(server, page):
+    held: list[Route] = []
+    page.route("**/api/me", lambda route: route.continue_() if held else held.append(route))
+    with page.expect_request("**/api/me"):
+        page.goto(f"{server.url}/login")
+    page.get_by_label("Password", exact=True).focus()
+    page.keyboard.type("three green")
+
+    held[0].continue_()
+    page.evaluate("fetch('/api/me').then((answer) => answer.text())")  # after the one before it
+    page.keyboard.type(" owls")
+
+    expect(page.get_by_label("Password", exact=True)).to_have_value("three green owls")
+    expect(page.get_by_label("Name")).to_have_value("")
+
+
 @looks("desktop light", "phone dark")
 def test_signing_out_shows_the_login_and_clears_the_session(server, page):
     sign_in(page, server, "vera")

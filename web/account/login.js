@@ -47,5 +47,6 @@ byId("show").addEventListener("change", (event) => {
   controls.password.type = targetOf(event).checked ? "text" : "password";
 });
 if (setup) offerSetup();
-else if (await isSignedIn()) location.replace(next());
-controls.name.focus();
+// Before any wait: a password that is being typed would go on in the field of the name.
+if (!form.contains(document.activeElement)) controls.name.focus();
+if (!setup && (await isSignedIn())) location.replace(next());
