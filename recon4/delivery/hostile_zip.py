@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import stat
+import struct
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from enum import IntFlag
+from enum import IntEnum, IntFlag
+from os import SEEK_END
 from pathlib import Path
+from typing import BinaryIO, cast
 
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import CorruptFile
@@ -16,14 +19,29 @@ from recon4.untrusted.limits import LIMITS
 from recon4.untrusted.names import visible
 
 _METHODS = {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}
+_LOCAL = struct.Struct("<4s5H3I2H")
+"""Before the name of an entry (APPNOTE 4.3.7)."""
+_END = struct.Struct("<4s4H2IH")
+"""The last bytes of a ZIP file without a comment (APPNOTE 4.3.16)."""
+_END_SIGNATURE = b"PK\x05\x06"
 _RESERVED = set('\\:*?"<>|')
 """In no name of a file that other systems can write."""
+
+
+class ZipField(IntEnum):
+    """Values of fields."""
+
+    COUNT_IN_ZIP64 = 0xFFFF
+    SIZE_IN_ZIP64 = 0xFFFFFFFF
+    """What it is, a field of ZIP64 says."""
 
 
 class ZipFlag(IntFlag):
     """Flags of an entry."""
 
     ENCRYPTED = 1
+    DESCRIPTOR = 1 << 3
+    """Checksum and sizes follow its bytes."""
     UTF_8 = 1 << 11
     """Its name is UTF-8, else code page 437."""
 
@@ -127,15 +145,49 @@ def _refuse_same(path: Path, entries: list[zipfile.ZipInfo]) -> None:
 
 
 def _refuse_hidden(path: Path, entries: list[zipfile.ZipInfo], archive: zipfile.ZipFile) -> None:
-    """Refuse entries with the same bytes, and bytes of no entry before the first one."""
+    """Refuse entries with the same bytes, and bytes that belong to no entry."""
     if archive.comment:
         raise CorruptFile(f"{path.name}: expected no comment at its end")
-    end = 0
+    file = cast(BinaryIO, archive.fp)
+    ends = {0}
     for entry in sorted(entries, key=lambda one: one.header_offset):
-        if entry.header_offset < end or (not end and entry.header_offset):
-            raise CorruptFile(f"{path.name}: {entry.filename!r} overlaps with another entry")
-        encoding = "utf-8" if entry.flag_bits & ZipFlag.UTF_8 else "cp437"
-        name_bytes = len(entry.orig_filename.encode(encoding, "surrogateescape"))
-        end = entry.header_offset + DELIVERIES.local_header_bytes + name_bytes + entry.compress_size
-    if end > archive.start_dir:
-        raise CorruptFile(f"{path.name}: an entry reaches into the list at its end")
+        if wrong := _wrong_start(entry.header_offset, ends):
+            raise CorruptFile(f"{path.name}: {visible(entry.filename)!r} {wrong}")
+        size = _packed_size(path, file, entry)
+        ends = {entry.header_offset + size + more for more in _trailers(entry)}
+    if wrong := _wrong_start(archive.start_dir, ends):
+        raise CorruptFile(f"{path.name}: the list at its end {wrong}")
+    file.seek(-_END.size, SEEK_END)
+    signature, *disks, here, every, _, _, comment = _END.unpack(file.read(_END.size))
+    counts = {here, every} - {ZipField.COUNT_IN_ZIP64}
+    if signature != _END_SIGNATURE or comment or any(disks) or counts - {len(entries)}:
+        raise CorruptFile(f"{path.name}: expected the end of its list of entries at its end")
+
+
+def _wrong_start(start: int, ends: set[int]) -> str:
+    """What is wrong of something that begins elsewhere than where the entry before it ends."""
+    if start < min(ends):
+        return "overlaps with another entry"
+    return "" if start in ends else "has bytes of no entry before it"
+
+
+def _packed_size(path: Path, file: BinaryIO, entry: zipfile.ZipInfo) -> int:
+    """Bytes of an entry with its header, which says what the list at the end says."""
+    file.seek(entry.header_offset)
+    head = file.read(_LOCAL.size)
+    if len(head) < _LOCAL.size:
+        raise CorruptFile(f"{path.name}: {visible(entry.filename)!r} begins beyond its end")
+    _, _, flags, method, _, _, *sums, name_bytes, extra_bytes = _LOCAL.unpack(head)
+    listed = (entry.CRC, entry.compress_size, entry.file_size)
+    alike = all(a in (b, ZipField.SIZE_IN_ZIP64) for a, b in zip(sums, listed, strict=True))
+    described = flags & ZipFlag.DESCRIPTOR
+    if (flags, method) != (entry.flag_bits, entry.compress_type) or not (alike or described):
+        raise CorruptFile(
+            f"{path.name}: {visible(entry.filename)!r} differs from the list at its end"
+        )
+    return _LOCAL.size + int(name_bytes) + int(extra_bytes) + entry.compress_size
+
+
+def _trailers(entry: zipfile.ZipInfo) -> tuple[int, ...]:
+    """How many bytes may follow an entry: a data descriptor (APPNOTE 4.3.9), or none."""
+    return (12, 16, 20, 24) if entry.flag_bits & ZipFlag.DESCRIPTOR else (0,)

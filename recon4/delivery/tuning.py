@@ -13,8 +13,6 @@ class DeliveryLimits(Struct, frozen=True, kw_only=True):
     max_manifest_bytes: int = 16 << 20
     max_files: int = 10_000
     """In a delivery."""
-    local_header_bytes: int = 30
-    """Before the name of an entry of a ZIP file (APPNOTE 4.3.7)."""
     block_bytes: int = 1 << 20
     """Read at a time."""
 

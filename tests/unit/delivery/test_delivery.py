@@ -232,6 +232,21 @@ def _overlapping():
     return whole[: at + 42] + bytes(4) + whole[at + 46 :]
 
 
+def _changed(at, *values):
+    """A delivery of one stored file, some of whose bytes are others."""
+    whole = bytearray(_zip(("manifest.json", b"{}")))
+    whole[at : (at + len(values)) or None] = bytes(values)
+    return bytes(whole)
+
+
+def _gap():
+    """Bytes between the last entry and the list at the end, which begins after them."""
+    whole = _zip(("manifest.json", b"{}"))
+    at = whole.index(b"PK\x01\x02")
+    start = (at + 9).to_bytes(4, "little")
+    return whole[:at] + b"something" + whole[at:-6] + start + whole[-2:]
+
+
 HARMFUL = {
     "outside": _zip(("../a", b"x")),
     "absolute": _zip(("/etc/a", b"x")),
@@ -247,10 +262,28 @@ HARMFUL = {
     "not a delivery": _zip(("a.txt", b"x")),
     "cut": _zip(("a.txt", b"x" * 1000))[:500],
     "before": b"PK\x03\x04" + bytes(100) + _zip(("manifest.json", b"{}")),
+    "behind": _zip(("manifest.json", b"{}")) + b"something",
+    "gap": _gap(),
+    "method of a stream": _changed(8, 8),
+    "checksum of a stream": _changed(14, 1, 2),
+    "size of a stream": _changed(18, 1),
+    "count": _changed(-14, 2),
+    "disk": _changed(-18, 1),
     "many": _zip(*[(f"{k}", b"") for k in range(10_001)]),
     "deep": _zip(("manifest.json", b"[" * 100_000)),
     "no files": _zip(("manifest.json", b'{"kind": "recon4 delivery", "format": 1}')),
 }
+
+
+HARMFUL_WHY = {
+    "overlap": "overlaps",
+    "before": "'manifest.json' has bytes of no entry before it",
+    "gap": "the list at its end has bytes of no entry before it",
+    "behind": "at its end",
+    **dict.fromkeys(("count", "disk"), "at its end"),
+    **{f"{what} of a stream": "differs from the list" for what in ("method", "checksum", "size")},
+}
+"""What those say that have no other fault."""
 
 
 @pytest.mark.filterwarnings("ignore:Duplicate name")
@@ -260,9 +293,35 @@ def test_hostile_archives_are_refused(name, stranger):
     (stranger / "a.zip").write_bytes(data)
     expected = StoreError if name in ("deep", "no files") else CorruptFile
 
-    with pytest.raises(expected):
+    with pytest.raises(expected) as refused:
         check_file(stranger / "a.zip")
+    assert HARMFUL_WHY.get(name, "") in str(refused.value)
     assert [path.name for path in stranger.iterdir()] == ["a.zip"]
+
+
+class _Stream(io.BytesIO):
+    """Does not seek: checksum and sizes then follow the bytes of each entry."""
+
+    def seekable(self):
+        return False
+
+    def seek(self, *_):
+        raise OSError
+
+
+def test_a_delivery_that_was_packed_again_as_a_stream_is_whole(sent, stranger):
+    stream = _Stream()
+    with (
+        zipfile.ZipFile(sent / "sent.zip") as old,
+        zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as new,
+    ):
+        for name in old.namelist():
+            new.writestr(name, old.read(name))
+    (stranger / "a.zip").write_bytes(stream.getvalue())
+
+    found = check_file(stranger / "a.zip")
+
+    assert (found.altered, found.missing, found.added) == ((), (), ())
 
 
 def test_the_key_of_the_server_is_the_one_that_is_trusted(sent):
