@@ -113,7 +113,7 @@ def _geometries(findings: list[SaidFinding], lines: list[Array], place: MapSyste
         feature(line, place, _properties(finding))
         for finding, line in zip(findings, lines, strict=True)
     ]
-    return collection(features)
+    return collection(features, place)
 
 
 def _properties(finding: SaidFinding) -> dict[str, object]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, to_geodetic
+from recon4.georeference.geojson_crs import geojson_crs
 from recon4.georeference.site_grid import SiteGrid
 
 MapSystem = CrsTransform | SiteGrid
@@ -31,9 +32,17 @@ def feature(p_map: Array, place: MapSystem | None, about: JsonObject) -> JsonObj
     }
 
 
-def collection(features: Sequence[JsonObject]) -> str:
-    """Features as a file."""
-    whole = {"type": "FeatureCollection", "features": list(features)}
+def collection(features: Sequence[JsonObject], place: MapSystem | None) -> str:
+    """Features as a file, which names its system unless it has longitudes and latitudes.
+
+    Args:
+        features: As `feature` makes them.
+        place: Where the map is, as given to `feature`.
+    """
+    whole: JsonObject = {"type": "FeatureCollection"}
+    if not isinstance(place, CrsTransform):
+        whole["crs"] = geojson_crs(wkt=place.wkt if place is not None else "")
+    whole["features"] = list(features)
     return json.dumps(whole, ensure_ascii=False, indent=1) + "\n"
 
 

@@ -31,4 +31,5 @@ def notes_geojson(project: Path, notes: Sequence[PlacedNote]) -> str:
     """
     artifacts = read_artifacts(project)
     place = read_crs(artifacts["level"]) if "level" in artifacts else None
-    return collection([feature(np.array([one.p_map]), place, one.about) for one in notes])
+    features = [feature(np.array([one.p_map]), place, one.about) for one in notes]
+    return collection(features, place)

@@ -173,11 +173,13 @@ def _write_geojson(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes
         }
         for shape in shapes
     ]
-    record: dict[str, object] = {"type": "FeatureCollection", "name": notes.description}
-    code = notes.frame.crs.removeprefix("EPSG:").split("+")[0]
-    if notes.frame.to_crs and code.isdigit():
-        record["crs"] = {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{code}"}}
-    record |= {"coordinates": notes.frame.written_text, "features": features}
+    record = {
+        "type": "FeatureCollection",
+        "name": notes.description,
+        "crs": notes.frame.geojson_crs,
+        "coordinates": notes.frame.written_text,
+        "features": features,
+    }
     path.write_text(json.dumps(record), "utf-8")
 
 

@@ -11,6 +11,7 @@ from recon4.errors import GeoreferenceError, StoreError
 from recon4.export.points import ToCrs
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs_file import read_crs
+from recon4.georeference.geojson_crs import geojson_crs
 from recon4.mapping.tiles import TileSet
 from recon4.slices.tuning import MAP_FRAMES
 
@@ -39,6 +40,11 @@ class MapFrame:
         if self.to_crs is None:
             return self.text
         return f"easting, northing, height in {self.crs}, meters"
+
+    @property
+    def geojson_crs(self) -> dict[str, object]:
+        """The member ``crs`` of a GeoJSON file of points that were put into the CRS."""
+        return geojson_crs(self.crs, self.wkt)
 
     def from_crs(self, p_crs: Array) -> Array:
         """Points of the CRS in the map [m], (N, 3): Newton steps on `to_crs`, to 1 µm.

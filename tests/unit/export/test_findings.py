@@ -4,6 +4,7 @@ import csv
 import json
 
 import numpy as np
+import pyogrio
 import pytest
 from typer.testing import CliRunner
 
@@ -94,6 +95,19 @@ def test_of_a_georeferenced_map_lines_are_in_longitude_and_latitude(georeference
     np.testing.assert_allclose(east, east_m, rtol=5e-3)
     np.testing.assert_allclose(height - 400.0, up_m, atol=1e-2)
     assert "WGS 84" in feature["properties"]["coordinates"]
+
+
+def test_a_gis_takes_a_map_without_a_place_for_local_coordinates(project, tmp_path):
+    path = tmp_path / "findings.geojson"
+    export_findings(project, path)
+
+    assert pyogrio.read_info(path)["crs"].startswith('LOCAL_CS["map frame: not georeferenced"')
+
+
+def test_in_longitude_and_latitude_the_file_is_that_of_rfc_7946(georeferenced):
+    record = json.loads(findings_file(georeferenced, ".geojson")[1])
+
+    assert record.keys() == {"type", "features"}
 
 
 def test_the_table_has_both_ends_in_the_crs_of_the_map(project, georeferenced):

@@ -1,10 +1,13 @@
 """Storeys and floor plans of buildings whose every measure is known."""
 
 import json
+from dataclasses import replace
 
 import ezdxf
 import numpy as np
+import pyogrio
 import pytest
+from pyproj import CRS
 
 from recon4.errors import ConfigError
 from recon4.products.drawing import DrawingLayer, DrawingNotes, DrawnShape, write_drawing
@@ -230,6 +233,23 @@ def test_geojson_says_what_each_line_is(rooms, tmp_path):
     assert layers.count("S0_WINDOWS") == 1
     door = next(one for one in record["features"] if one["properties"]["layer"] == "S0_DOORS")
     assert door["properties"]["width_m"] == pytest.approx(0.9, abs=0.02)
+
+
+@pytest.mark.parametrize(
+    ("frame", "starts"),
+    [
+        (LOCAL, 'LOCAL_CS["map frame: not georeferenced"'),
+        (MapFrame("its CRS", CRS.from_epsg(32633).to_wkt("WKT1_GDAL"), np.array), "EPSG:32633"),
+        (replace(PLACED, crs="EPSG:32633+5773"), 'COMPD_CS["WGS 84 / UTM zone 33N + EGM96'),
+    ],
+    ids=["local", "wkt", "heights"],
+)
+def test_a_gis_knows_the_system_of_a_geojson(frame, starts, tmp_path):
+    path = tmp_path / "plan.geojson"
+    line = DrawnShape(DrawingLayer("S0_WALLS", 7), np.eye(3))
+    write_drawing([line], path, DrawingNotes(frame=frame))
+
+    assert pyogrio.read_info(path)["crs"].startswith(starts)
 
 
 def test_wrong_storeys_and_names_are_refused_and_nothing_is_written(rooms, tmp_path):
