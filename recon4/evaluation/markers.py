@@ -42,7 +42,8 @@ def read_markers(
         choice: What a person says of the columns.
 
     Raises:
-        CorruptFile: Naming the line, what was expected and what was found.
+        CorruptFile: Naming the line, what was expected and what was found; also if a marker is in
+            two rows, alike or not: one of them would count unseen.
         ConfigError: With a question, if the columns are not certain.
     """
     data = read_bytes_limited(path, MARKER_FILES.max_bytes)
@@ -50,6 +51,13 @@ def read_markers(
     raise_question(found.preview, path.name)
     if found.skipped:
         raise CorruptFile(f"{path.name} {found.skipped[0]}")
+    lines: dict[str, int] = {}
+    for row in found.points:
+        if lines.setdefault(row.name, row.line) != row.line:
+            raise CorruptFile(
+                f"{path.name} line {row.line}: marker {row.name[:40]!r} is in line "
+                f"{lines[row.name]} already: remove one of them, or rename it"
+            )
     return tuple(_marker(row, f"{path.name} line {row.line}") for row in found.points)
 
 

@@ -30,6 +30,15 @@ def test_a_bad_line_is_refused_by_number(tmp_path: Path, line: str) -> None:
         read_markers(file)
 
 
+@pytest.mark.parametrize("again", ["A,1,2,3", "A,1,2,3.5"], ids=["alike", "elsewhere"])
+def test_a_marker_in_two_rows_is_named(tmp_path: Path, again: str) -> None:
+    file = tmp_path / "markers.csv"
+    file.write_text(f"name,x_m,y_m,z_m\nA,1,2,3\nB,4,5,6\n{again}\n")
+
+    with pytest.raises(CorruptFile, match=r"markers\.csv line 4: marker 'A' is in line 2 already"):
+        read_markers(file)
+
+
 @pytest.mark.parametrize("empty", ["", " ", "-", "–"])
 def test_a_coordinate_may_be_not_measured_only_where_that_is_expected(
     tmp_path: Path, empty
