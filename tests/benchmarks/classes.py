@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.classes.stage import write_classes
+from recon4.classes.stage import classify, write_classes
 from recon4.evaluation.table import text_table
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3
@@ -96,7 +96,7 @@ def figures(name: str, work: Path, *, seed: int) -> str:
     classes.mkdir()
     mirrors = mirrors_of(frames, truth)
     begun = time.process_time()
-    write_classes(frames, truth, classes, mirrors=mirrors)
+    write_classes(classify(frames, truth, mirrors=mirrors), classes)
     ms = 1e3 * (time.process_time() - begun) / len(frames)
     stored = StoredClasses.open(classes)
     found = by_cause(frames, truth, stored, setup=setup)
