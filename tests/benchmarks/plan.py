@@ -5,9 +5,10 @@
 WALK is a project of ``recon4 process``, RECORDING the folder of ``recon4 simulate`` with its truth.
 The map is laid on the true model as by `tests.benchmarks.delivered`: by the fit of its trajectory,
 whose error is that of ATE, then by ICP. Along a corridor the trajectory alone leaves a turn open.
-Seen is a stretch of a true wall at the height of the cut which three places of the path see, nearer
-than 20 m. Right is a stretch of it with a drawn wall within 1 cm. Invented is a stretch of a drawn
-wall with no true wall, seen or not, within 5 cm.
+Seen is a stretch of a plastered wall at the height of the cut which three places of the path see,
+nearer than 20 m. Right is a stretch of it with a drawn wall within 1 cm. Invented is a stretch of a
+drawn wall with nothing of a building, seen or not, within 5 cm: walls of every material, columns,
+panes and mirrors.
 """
 
 from __future__ import annotations
@@ -22,9 +23,10 @@ import numpy as np
 from recon4.api.maps import open_map
 from recon4.evaluation.reference_mesh import read_mesh
 from recon4.evaluation.table import text_table
-from recon4.geometry.mesh import WorldMesh
+from recon4.geometry.mesh import SurfaceKind, WorldMesh
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.tuning import SURFACES
 from recon4.products.floor_plan import FloorPlan, draw_plan
 from recon4.products.storeys import find_storeys, level_surfaces
 from recon4.recording.formats.poses import read_tum
@@ -36,6 +38,7 @@ from tests.benchmarks.delivered import onto_truth
 STEP_M = 0.02
 CUT_M = 1.2
 WALLS = (MATERIAL.plaster,)
+PANES = max(SURFACES.glass, SURFACES.clear, SURFACES.mirror)
 HEAD = ("world", "storey", "seen m", "right %", "drawn m", "1 cm %", "invented %", "median mm",
         "95 % mm", "rms mm", "doors, windows")  # fmt: skip
 
@@ -80,7 +83,8 @@ def row(world: World, plan: FloorPlan, T_world_map: SE3, *, path: Array) -> tupl
     """Figures of a plan."""
     floor_m = float((T_world_map @ np.array([[0.0, 0.0, plan.storey.floor_m]]))[0, 2])
     cut_m = floor_m + CUT_M
-    true = true_walls(world.mesh, cut_m)
+    true = true_walls(world.mesh, cut_m, np.isin(world.mesh.reflectivity, np.float32(WALLS)))
+    real = true_walls(world.mesh, cut_m, of_buildings(world.mesh))
     storey = path[np.abs(path[:, 2] - floor_m - CUT_M) < 1.2]
     seen = seen_from(Scene(world.mesh), true, storey, cut_m)
     paths = [in_world(line, plan.storey.floor_m, T_world_map) for line in plan.walls]
@@ -90,7 +94,7 @@ def row(world: World, plan: FloorPlan, T_world_map: SE3, *, path: Array) -> tupl
     right = true.length_m[seen][near < 0.01].sum() / true.length_m[seen].sum()
     from scipy.spatial import cKDTree
 
-    away = off_walls(drawn, true, cKDTree(true.p))
+    away = off_walls(drawn, real, cKDTree(real.p))
     holes = [sum(hole.kind == kind for hole in plan.openings) for kind in ("door", "window")]
     widths = [hole.width_m for hole in plan.openings if hole.kind == "door"]
     width = f" ({1e3 * np.median(np.abs(np.array(widths) - 0.95)):.0f} mm)" if widths else ""
@@ -103,9 +107,13 @@ def row(world: World, plan: FloorPlan, T_world_map: SE3, *, path: Array) -> tupl
     )  # fmt: skip
 
 
-def true_walls(mesh: WorldMesh, z_m: float) -> TrueWalls:
-    """Cut the walls of a world at a height."""
-    wall = np.isin(mesh.reflectivity, np.float32(WALLS))
+def of_buildings(mesh: WorldMesh) -> np.ndarray:
+    """Which triangles a plan may show as a wall: of a building, a pane or a mirror, (T,)."""
+    return (mesh.kind == SurfaceKind.BUILDING) | (mesh.reflectivity <= np.float32(PANES))
+
+
+def true_walls(mesh: WorldMesh, z_m: float, wall: np.ndarray) -> TrueWalls:
+    """Cut some triangles (T,) of a world at a height."""
     corners = mesh.vertices_m[mesh.triangles[wall]].astype(np.float64)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
