@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from recon4.findings.wording import title_of, whole_text
-from recon4.model.classes import CLASSES
-from recon4.model.figures import ClassFigures
+from recon4.mapping.tiles import TileSet
+from recon4.model.classes import CLASSES, PointClass
 from recon4.model.finding import Finding
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.report import charts
@@ -22,7 +23,9 @@ from recon4.report.html import changed_settings
 from recon4.report.rig import RigRow, origin_rows, rig_outcome, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
 from recon4.report.tuning import CLIENT_REPORT
-from recon4.store.stage import read_figures
+
+_LOOPS = (EdgeKind.LOOP, EdgeKind.MANUAL)
+"""Edges between two visits of a place."""
 
 
 def sections(
@@ -154,11 +157,7 @@ def _loops(assessed: Assessment, drawings: MapDrawings, words: Words) -> Section
 
 def weakest_loops(graph: PoseGraph) -> list[Edge]:
     """Accepted loop closures, the one that fits worst first; without a residual the last."""
-    loops = [
-        one
-        for one in graph.edges
-        if one.verdict is Verdict.ACCEPTED and one.kind is not EdgeKind.ODOMETRY
-    ]
+    loops = [one for one in graph.edges if one.verdict is Verdict.ACCEPTED and one.kind in _LOOPS]
     return sorted(loops, key=lambda one: -one.chi2 if np.isfinite(one.chi2) else np.inf)
 
 
@@ -182,9 +181,11 @@ def _verdicts(graph: PoseGraph, words: Words) -> Table:
     rows = []
     for verdict in Verdict:
         of_it = [one for one in graph.edges if one.verdict is verdict]
-        odometry = sum(one.kind is EdgeKind.ODOMETRY for one in of_it)
-        rows.append((words.term(verdict), grouped(len(of_it) - odometry), grouped(odometry)))
-    head = tuple(words(f"table.{name}") for name in ("verdict", "loops", "odometry"))
+        kinds = Counter(one.kind for one in of_it)
+        loops = sum(kinds[kind] for kind in _LOOPS)
+        counts = (loops, kinds[EdgeKind.NEIGHBOR], kinds[EdgeKind.ODOMETRY])
+        rows.append((words.term(verdict), *map(grouped, counts)))
+    head = tuple(words(f"table.{name}") for name in ("verdict", "loops", "neighbors", "odometry"))
     return Table(head=head, rows=tuple(rows))
 
 
@@ -241,29 +242,28 @@ def _walk_charts(assessed: Assessment, words: Words) -> tuple[Drawing, ...]:
 
 
 def _classes(assessed: Assessment, words: Words) -> Section:
-    """The classes of the measured points with their share."""
-    folder = assessed.facts.artifacts.get("classes")
-    if folder is None:
-        return Section(title=words("section.classes"))
-    figures = read_figures(folder, ClassFigures)
-    delivered = {facts.title: facts.delivered for facts in CLASSES.values()}
+    """The classes of the points of the map with their share, also of those left out."""
+    title = words("section.classes")
+    folder = assessed.facts.artifacts.get("map")
+    counts = TileSet.open(folder).class_counts() if folder is not None else {}
+    if not counts:
+        return Section(title=title)
     head = tuple(words(f"table.{name}") for name in ("class", "points", "share", "delivered"))
-    total = max(figures.points, 1)
+    total = max(sum(counts.values()), 1)
+    known = [(CLASSES[PointClass(code)], count) for code, count in counts.items()]
     rows = tuple(
         (
-            words.term(shown(title)),
+            words.term(facts.title),
             grouped(count),
             words.number(count / total, 2, 100.0),
-            words("table.yes" if delivered.get(title, True) else "table.no"),
+            words("table.yes" if facts.delivered else "table.no"),
         )
-        for title, count in sorted(
-            figures.classes.items(), key=lambda one: (not delivered.get(one[0], True), -one[1])
-        )
+        for facts, count in sorted(known, key=lambda one: (not one[0].delivered, -one[1]))
     )
-    tables = (Table(head=head, rows=rows, texts=(3,)),) if rows else ()
     corrected = _corrected(assessed, words)
     text = (words("text.classes"), *((words("text.corrected"),) if corrected else ()))
-    return Section(title=words("section.classes"), text=text, tables=(*tables, *corrected))
+    tables = (Table(head=head, rows=rows, texts=(3,)), *corrected)
+    return Section(title=title, text=text, tables=tables)
 
 
 def _corrected(assessed: Assessment, words: Words) -> tuple[Table, ...]:

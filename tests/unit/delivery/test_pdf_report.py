@@ -109,7 +109,7 @@ def test_numbers_are_those_that_the_artifacts_give_by_another_way(room):
 def test_weakest_loop_closures_are_accepted_ones_and_counts_add_up(room):
     report = report_of(room, None, NOT_APPROVED, wish=ReportWish())
     (loops,) = [one for one in report.sections if one.title == words()("section.loops")]
-    counts = {row[0]: int(row[1]) + int(row[2]) for row in loops.tables[0].rows}
+    counts = {verdict: sum(map(int, of_it)) for verdict, *of_it in loops.tables[0].rows}
     walk = loop_walk()  # of which the builder made the graph
     edges = verified_graph(walk).edges
 

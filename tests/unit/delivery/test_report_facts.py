@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from collections import Counter
 from dataclasses import replace
 from io import BytesIO
 
@@ -13,14 +14,17 @@ from recon4.delivery.people_section import people_section
 from recon4.delivery.report_files import _notes, checked_approval
 from recon4.findings.summary_notes import findings_in
 from recon4.findings.wording import said
+from recon4.mapping.tiles import TileSet
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.height_system import height_system
+from recon4.model.pose_graph import EdgeKind, Verdict
 from recon4.model.site_control import SITE_GRID
 from recon4.report.assessment import assess
 from recon4.report.client import Signature
 from recon4.report.client_front import front_page
 from recon4.report.client_report import ReportExtras, client_report
+from recon4.report.client_sections import _verdicts, weakest_loops
 from recon4.report.client_words import words
 from recon4.report.pdf import _printable, pdf_of
 from recon4.report.project import project_facts
@@ -30,6 +34,7 @@ from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.review.trusted_keys import ensure_own_key
 from recon4.store.checked import Altered
+from recon4.store.project import read_artifacts
 from recon4.store.seal import changing
 from recon4_app.annotations.model import NewMapView, NewNote
 from recon4_app.annotations.store import add_note, add_view
@@ -235,3 +240,37 @@ def test_an_approved_report_has_the_notes_that_were_signed(room):
 
 def test_characters_without_a_shape_in_the_font_are_shown_as_numbers():
     assert _printable({"title": "Žižkov – 中"}) == {"title": "Žižkov – <U+4E2D>"}
+
+
+def _tables(room, section):
+    extras = ReportExtras(signature=Signature(approved=True, text=""))
+    report = client_report(assess(project_facts(room)), extras)
+    (found,) = [one for one in report.sections if one.title == words()(f"section.{section}")]
+    return found.tables
+
+
+def test_classes_are_those_of_the_points_that_the_first_page_counts(tmp_path):
+    build_project(tmp_path / "room", points=1_000, strays=7)
+    tiles = TileSet.open(read_artifacts(tmp_path / "room")["map"])
+
+    (table,) = _tables(tmp_path / "room", "classes")
+
+    counts = {answer: 0 for answer in ("yes", "no")}
+    for _, points, _, answer in table.rows:
+        counts[answer] += int(points.replace("\u202f", ""))
+    assert counts == {"yes": len(tiles), "no": tiles.strays}
+
+
+def test_only_two_visits_of_a_place_are_counted_as_loop_closures(room):
+    graph = assess(project_facts(room)).results.graph
+    near = next(k for k, one in enumerate(graph.edges) if one.kind is EdgeKind.LOOP)
+    edges = [replace(one, kind=EdgeKind.NEIGHBOR) if k == near else one
+             for k, one in enumerate(graph.edges)]  # fmt: skip
+    graph = replace(graph, edges=edges)
+    kinds = Counter(one.kind for one in edges if one.verdict is Verdict.ACCEPTED)
+
+    accepted = next(row for row in _verdicts(graph, words()).rows if row[0] == "accepted")
+
+    counted = (EdgeKind.LOOP, EdgeKind.NEIGHBOR, EdgeKind.ODOMETRY)
+    assert accepted[1:] == tuple(str(kinds[kind]) for kind in counted)
+    assert edges[near] not in weakest_loops(graph)
