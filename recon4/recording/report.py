@@ -107,7 +107,8 @@ class ImportReport:
     @property
     def recorder_set_ns(self) -> tuple[int, ...]:
         """Jumps of the recorder's clock [ns]: as by the LiDAR that shows most of them."""
-        return tuple(max(self.recorder_jumps_ns.values(), key=lambda jumps: len(jumps), default=[]))
+        most: list[int] = max(self.recorder_jumps_ns.values(), key=len, default=[])
+        return tuple(most)
 
     def warn_of_losses(self) -> None:
         """Warn of each large loss that no reader warned of; call once, at the end."""
