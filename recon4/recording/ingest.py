@@ -261,7 +261,7 @@ def _items(
     """The contents of a recording, with shots assembled to multiframes."""
     for item in recording.read():
         if isinstance(item, Shots):
-            yield from assembler.push(item)
+            yield from assembler.pushed(item)
         else:
             yield item
     yield from assembler.flush()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -109,7 +109,11 @@ class Assembler:
         self.gaps: list[TimeGap] = []
 
     def push(self, shots: Shots) -> list[Multiframe]:
-        """Add shots of one sensor.
+        """Add shots of one sensor, see `pushed`."""
+        return list(self.pushed(shots))
+
+    def pushed(self, shots: Shots) -> Iterator[Multiframe]:
+        """Add shots of one sensor; take all frames: of the first second they are many.
 
         Raises:
             ConfigError: If the clocks of the sensors have nothing to do with each other.
@@ -122,13 +126,12 @@ class Assembler:
         )
         for number, part in enumerate(runs(kept, round(self._settings.gap_s * 1e9))):
             self._take(part, set_back=number > 0 or shots.set_back)
-        if self._start_ns is None and not self._head_complete():
-            return []
-        return self._cut(final=False)
+        if self._start_ns is not None or self._head_complete():
+            yield from self._cut(final=False)
 
     def flush(self) -> list[Multiframe]:
         """Return the remaining multiframes; call once, at the end."""
-        frames = self._cut(final=True)
+        frames = list(self._cut(final=True))
         for stream in self._streams:
             self._report.count("points_late", stream.late)
         held, self._held = self._held, None
@@ -232,20 +235,18 @@ class Assembler:
 
     # -- cutting
 
-    def _cut(self, *, final: bool) -> list[Multiframe]:
+    def _cut(self, *, final: bool) -> Iterator[Multiframe]:
         if not any(stream.waiting for stream in self._streams):
-            return []
+            return
         if self._start_ns is None:
             self._begin()
         assert self._start_ns is not None
-        frames: list[Multiframe] = []
         while any(stream.waiting for stream in self._streams):
             self._skip_empty()
             end_ns = self._start_ns + (self._next + 1) * self.duration_ns
             if not final and not self._passed(end_ns):
                 break
-            frames += self._emit(end_ns)
-        return frames
+            yield from self._emit(end_ns)
 
     def _passed(self, end_ns: int) -> bool:
         """Whether no sensor can still deliver points before ``end_ns``, or one is overdue."""

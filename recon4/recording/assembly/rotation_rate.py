@@ -44,14 +44,17 @@ def rotation_of_head(shots: Sequence[Shots], head_ns: int) -> float:
         shots: Of one sensor.
         head_ns: Points up to this long after the first one count [ns].
     """
-    t_ns = np.concatenate([part.t_ns for part in shots])
-    rows = np.flatnonzero(t_ns <= t_ns[0] + head_ns)
-    rows = rows[np.linspace(0, len(rows) - 1, min(ROTATION.points, len(rows))).astype(np.intp)]
-    ends = np.cumsum([len(part) for part in shots])
-    rows_of = np.split(rows, np.searchsorted(rows, ends[:-1]))
-    starts = ends - [len(part) for part in shots]
-    xyz = [shots[k].xyz[own - starts[k]] for k, own in enumerate(rows_of)]
-    return rotation_rate(t_ns[rows], np.concatenate(xyz))
+    end_ns = next(int(part.t_ns[0]) for part in shots if len(part)) + head_ns
+    ends = np.cumsum([np.count_nonzero(part.t_ns <= end_ns) for part in shots])
+    places = np.linspace(0, ends[-1] - 1, min(ROTATION.points, int(ends[-1]))).astype(np.intp)
+    t_ns, xyz, start = [], [], 0
+    for part, end in zip(shots, ends.tolist(), strict=True):
+        own = places[(places >= start) & (places < end)] - start
+        rows = np.flatnonzero(part.t_ns <= end_ns)[own]
+        t_ns.append(part.t_ns[rows])
+        xyz.append(part.xyz[rows])
+        start = end
+    return rotation_rate(np.concatenate(t_ns), np.concatenate(xyz))
 
 
 def nominal(rate_hz: float) -> float:

@@ -188,7 +188,8 @@ class PacketCapture:
         self._report.count("packets_wrong_length", int(other.sum()))
         rows = np.flatnonzero(whole)
         if len(rows):  # first: they tell the clock best
-            yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, decoder.size))
+            payloads = datagrams.payloads(rows, decoder.size)
+            yield from decoder.push_in_parts(datagrams.t_ns[rows], payloads)
         samples = decoder.samples(datagrams.take(beside)) if beside.any() else None
         if samples is not None:
             yield self._imu.of(channel.sensor.name, samples)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from recon4.recording.packets.packet_holes import PacketHoles
 from recon4.recording.packets.packet_order import PacketOrder
 from recon4.recording.packets.rotation_rate import Rotation
 from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.tuning import SLOTS
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning
 from recon4.settings.tuning import tuned
@@ -118,6 +120,19 @@ class PacketDecoder:
             Shots in firing order; after a hole, those of the last ``reorder_window_s`` are
             held back.
         """
+        return self._shots(*self._in_order(t_arrival_ns, payloads))
+
+    def push_in_parts(self, t_arrival_ns: Times, payloads: Payloads) -> Iterator[Shots]:
+        """As `push`, in parts of about `SlotTuning.slot_ns`: fewer points are in memory at once."""
+        t_ns, payloads = self._in_order(t_arrival_ns, payloads)
+        most = max(1, round(SLOTS.slot_ns / SECOND_NS / self._layout.packet_s))
+        set_back = self._order.is_set_back
+        for first in range(0, max(1, len(t_ns)), most):
+            self._order.is_set_back = set_back
+            yield self._shots(t_ns[first : first + most], payloads[first : first + most])
+
+    def _in_order(self, t_arrival_ns: Times, payloads: Payloads) -> tuple[Times, Payloads]:
+        """Times and bytes of the packets that are certain to be in order."""
         t_arrival_ns = np.asarray(t_arrival_ns, dtype=np.int64)
         if payloads.ndim != 2 or payloads.shape[1] != self.size:
             self.report.count("packets", len(payloads))
@@ -127,13 +142,13 @@ class PacketDecoder:
         if not sound.all():
             t_arrival_ns, payloads = t_arrival_ns[sound], payloads[sound]
         if not len(payloads):
-            return self._shots(*self._order.push(t_arrival_ns, payloads))
+            return self._order.push(t_arrival_ns, payloads)
         self._order.step_ns = round(self._layout.packet_s * SECOND_NS)
         t_ns, trusted = self.clock.push_ns(t_arrival_ns, self._layout.stamps_ns(payloads))
         if not trusted.all():
             t_arrival_ns, t_ns = t_arrival_ns[trusted], t_ns[trusted]
             payloads = payloads[trusted]
-        return self._shots(*self._order.push_arrived(t_ns, payloads, t_arrival_ns))
+        return self._order.push_arrived(t_ns, payloads, t_arrival_ns)
 
     @property
     def sample_sizes(self) -> frozenset[int]:

@@ -294,7 +294,21 @@ def test_the_rotation_of_the_head_is_measured_without_a_copy_of_its_points():
     tracemalloc.stop()
 
     assert rate_hz == rotation_rate(head.t_ns, head.xyz)
-    assert most < 20 * len(shots)  # all points and times: 20 bytes, and as much for the head
+    assert most < 8 * len(shots)  # all points and times: 20 bytes, and as much for the head
+
+
+def test_the_frames_of_the_first_second_are_made_one_by_one():
+    made = []
+    assembler = Assembler(
+        load_rig("single-vlp16"), settings=SETTINGS, report=ImportReport(), on_cut=made.append
+    )
+
+    frames = assembler.pushed(spin(seconds=2.0))
+    first = next(frames)
+
+    assert first.frame_id == 0
+    assert len(made) == 2, "that, and the one that shows that it is whole"
+    assert len(list(frames)) > 10
 
 
 @pytest.mark.parametrize("seconds", [0.031, 0.04, 0.08])

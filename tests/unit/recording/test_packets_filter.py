@@ -10,7 +10,7 @@ from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.units import SECOND_NS
-from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
+from tests.unit.recording.packet_builders import T0_NS, WIDE, decode_all, sensor, spin
 from tests.warned import K, warned
 
 
@@ -261,3 +261,14 @@ def test_packets_that_follow_each_other_wait_for_nobody_and_a_hole_is_waited_for
     assert given(510)[-1] == 510
     assert report.counts["packets_out_of_order"] == 1
     assert report.counts["packets_late"] == 0
+
+
+def test_many_packets_are_decoded_in_parts_of_a_tenth_of_a_second(clean):
+    t_ns, payloads, expected = clean
+    of = PacketSensor(row=0, sensor=sensor(), settings=WIDE, report=ImportReport())
+    decoder = open_decoder(of)
+
+    parts = list(decoder.push_in_parts(t_ns, payloads))
+
+    assert len(parts) > 10 and max(map(len, parts)) <= 76 * 384
+    assert sum(map(len, parts)) + len(decoder.flush()) == len(expected["t_ns"])
