@@ -33,7 +33,8 @@ export class JobStatus extends HTMLElement {
     if (!view) return;
     const { job, status } = view;
     const running = job.state === "running";
-    const text = running ? runProgressText(view) : job.note;
+    const waits = job.state === "queued" ? t("job-waits") : job.note;
+    const text = running ? runProgressText(view) : waits;
     const what = running ? status.what : "";
     const counted = status.total > 0 || status.done > 0;
     const part = what && counted ? progressText(view) : "";

@@ -44,6 +44,7 @@ free-space = Speicherplatz freigeben; erneute Verarbeitung stellt es wieder her
 ## Aufträge
 
 progress-whole = Fortschritt des ganzen Laufs
+job-waits = Er beginnt, sobald die Aufträge vor ihm beendet sind
 resume-job = Fortsetzen
 other-settings = Andere Einstellungen…
 

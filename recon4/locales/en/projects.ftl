@@ -44,6 +44,7 @@ free-space = Free space; processing the recording again makes it again
 ## Jobs
 
 progress-whole = Progress of the whole run
+job-waits = It begins once the jobs before it have ended
 resume-job = Resume
 other-settings = Other settings…
 
