@@ -29,3 +29,14 @@ test("no file of the pages has more than 400 lines", () => {
   const long = files.filter(({ lines }) => lines.length - 1 > MAX_LINES).map(({ path }) => path);
   assert.deepEqual(long, []);
 });
+
+test("each color that a page or the map of the phone names is declared", () => {
+  const all = files.map(({ lines }) => lines.join("\n")).join("\n");
+  const found = (pattern, text = all) => [...text.matchAll(pattern)].map(([, name]) => name);
+  const declared = new Set(found(/(?:^|[\s{;"])--([\w-]+):/g));
+  const drawn = found(/"(\w+)"/g, all.match(/const COLORS = \[(.*)\]/)[1]);
+
+  assert.ok(drawn.includes("path") && declared.size > 20);
+  const named = [...found(/var\(--([\w-]+)\)/g), ...drawn];
+  assert.deepEqual([...new Set(named)].filter((name) => !declared.has(name)).sort(), []);
+});
