@@ -43,6 +43,7 @@ function exportRow(project, row, known, actions) {
   const open = row.state === "queued" || row.state === "running";
   const words = optionWords(row.options, known.classes);
   const { made } = row;
+  const facts = [made && contents(made), row.person, when(row.finished || row.created)];
   const name = wordOf("export", row.title);
   const title =
     made && row.kept
@@ -57,7 +58,7 @@ function exportRow(project, row, known, actions) {
     ${open ? progress(row) : nothing}
     ${words.length ? html`<p class="quiet">${words.join(" · ")}</p>` : nothing}
     <p class="quiet">
-      ${[made && contents(made), row.person, when(row.finished || row.created)].filter(Boolean).join(" · ")}
+      ${facts.filter(Boolean).join(" · ")}
     </p>
     ${made ? details(row) : nothing} ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
     <div class="buttons">
