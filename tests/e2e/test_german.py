@@ -33,6 +33,16 @@ OUTSIDE = """(buttons) => buttons.map((one) => {
   return !one.checkVisibility() || one.contains(over) ? "" : one.textContent.trim();
 }).filter(Boolean)"""
 """Buttons that are shown and cannot be pressed."""
+CUT_CHOICES = """() => [...document.querySelectorAll("#findings select")].filter((one) => {
+  const copy = one.cloneNode(true);
+  [...copy.options].filter(({ value }) => value !== one.value).forEach((other) => other.remove());
+  copy.style.cssText = "position: absolute; width: auto; max-width: none";
+  one.parentElement.append(copy);
+  const whole_px = copy.offsetWidth;
+  copy.remove();
+  return one.checkVisibility() && one.offsetWidth + 1 < whole_px;
+}).map((one) => one.selectedOptions[0].text)"""
+"""What is chosen in lists that are too narrow for it."""
 OF_THE_PAGE = {
     "review": ("Prüfung von office · recon4", "#pair h2", "Multiframes"),
     "map": ("Karte · office · recon4", "#status .shown", "Punkten"),
@@ -86,6 +96,9 @@ def test_a_german_page_has_no_english_text(server, page, name):
 
     if name == "slices":
         assert page.evaluate(ROWS) == 1
+        page.get_by_text("Vergleich mit einer Referenz").click()
+        expect(page.get_by_role("button", name="Vergleichen", exact=True)).to_be_visible()
+        assert page.evaluate(CUT_CHOICES) == []
     if name != "review":
         page.set_viewport_size({"width": 1024, "height": 500})
         page.keyboard.press("?")
