@@ -57,9 +57,7 @@ function exportRow(project, row, known, actions) {
     </div>
     ${open ? progress(row) : nothing}
     ${words.length ? html`<p class="quiet">${words.join(" · ")}</p>` : nothing}
-    <p class="quiet">
-      ${facts.filter(Boolean).join(" · ")}
-    </p>
+    <p class="quiet">${facts.filter(Boolean).join(" · ")}</p>
     ${made ? details(row) : nothing} ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
     <div class="buttons">
       ${open && known.mine(row) ? button(t("cancel"), () => actions.cancel(row)) : nothing}
