@@ -287,9 +287,13 @@ class Done(msgspec.Struct, tag_field="kind", tag="done"):
     frames: int
     """Number of multiframes in the project."""
     problem: str
-    """Why there are none; empty = no problem."""
+    """Why there are none, in English; empty = no problem."""
     seconds: float = 0.0
     """Time to complete the project [s]."""
+    code: str = ""
+    """Of the problem, as in `StoredText`; empty = it has none."""
+    values: dict[str, int | float | str] = {}
+    """What its text quotes."""
 
 
 RecorderMessage = Written | Status | Mark | Stopped

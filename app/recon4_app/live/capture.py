@@ -13,7 +13,7 @@ from recon4.live.project_files import discard
 from recon4.live.protocol import Done, Pause, Request, Resume, Status, Stopped
 from recon4.live.session import CaptureSession
 from recon4.live.tuning import LINE_CLIENT
-from recon4.locales.coded import CodedText, coded, text_of
+from recon4.locales.coded import CodedText, coded, stored_text, text_of
 from recon4_app.errors import Conflict
 from recon4_app.live.stream_state import StreamState
 from recon4_app.live.tuning import CAPTURES
@@ -135,7 +135,8 @@ class Capture:
                 except ConfigError as error:
                     self.problems = self._problems(text_of(error))
         if done is not None:  # finished: earlier problems no longer count
-            self.problems = self._problems(done.problem)
+            problem = stored_text(done.code, done.values, done.problem)
+            self.problems = self._problems(problem)
         else:
             goes_on = CodedText("capture-recording-goes-on") if self._recorder else ""
             self.problems = self._problems(CodedText("capture-map-stopped"), goes_on)

@@ -35,6 +35,7 @@ from recon4.live.mapper.warm_up import warm_up
 from recon4.live.project_files import finish, finish_scans
 from recon4.live.protocol import Done, MapperMessage, Message, Pose, Stopped, Written
 from recon4.live.session import CaptureSession, load_session, stretched
+from recon4.locales.coded import StoredText, text_of
 from recon4.model.laser_scans import LaserScans
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, load_rig
@@ -50,6 +51,11 @@ from recon4.system.stopping import StopSignals, end_process
 log = logging.getLogger(__name__)
 
 STOPPED = Done(frames=0, problem="the mapper was stopped by a signal")
+
+
+def _failed(error: Exception) -> Done:
+    why = StoredText.of(text_of(error))
+    return Done(frames=0, problem=why.text, code=why.code, values=why.values)
 
 
 class Mapper:
@@ -90,7 +96,7 @@ class Mapper:
         try:
             outcome = await asyncio.to_thread(self._read)
         except (Recon4Error, OSError) as error:
-            outcome = STOPPED if self._aborted else Done(frames=0, problem=str(error))
+            outcome = STOPPED if self._aborted else _failed(error)
             if not self._aborted:
                 log.exception("mapping ended")
         following.cancel()

@@ -2,13 +2,40 @@
 
 import asyncio
 
+from recon4.errors import CorruptFile
 from recon4.live.protocol import Done, encode
 from recon4.live.session import CaptureSession
+from recon4.locales.coded import StoredText, said, text_of
 from recon4_app.live.capture import Capture, unfinished
 from tests.live_messages import pose
 
 POSE = pose()
 DONE = Done(frames=3, problem="")
+
+
+def test_why_there_is_no_map_is_said_in_the_language_of_who_looks(tmp_path):
+    session = CaptureSession(project=tmp_path / "walk")
+    session.folder.mkdir(parents=True)
+    session.outcome.write_text('{"why": "stopped"}')
+    why = StoredText.of(text_of(CorruptFile("walk.pcap: cut")))
+    ended = Done(frames=0, problem=why.text, code=why.code, values=why.values)
+
+    async def serve(reader, writer):
+        writer.write(encode(ended))
+        writer.close()
+
+    async def run():
+        capture = Capture(session)
+        async with await asyncio.start_unix_server(serve, session.socket("mapper")):
+            await capture.follow()
+            while not capture.over:
+                await capture.stream.news(capture.stream.version, timeout_s=0.1)
+            await capture.leave()
+        return capture
+
+    (problem,) = asyncio.run(run()).problems
+
+    assert said(problem, "de") == said(text_of(CorruptFile("walk.pcap: cut")), "de") != problem
 
 
 def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
