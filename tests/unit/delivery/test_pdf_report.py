@@ -122,6 +122,16 @@ def pages_in(pdf):
     return len(PdfReader(BytesIO(pdf)).pages)
 
 
+@pytest.mark.parametrize("limits", [3, 15])
+def test_the_first_page_has_its_image_as_high_as_there_is_room(room, limits):
+    report = report_of(room, None, NOT_APPROVED, wish=ReportWish())
+    front = replace(report.front, limits=("A sentence on what the map is not for.",) * limits)
+    first = PdfReader(BytesIO(pdf_of(replace(report, front=front)))).pages[0]
+
+    caption = report.front.drawing.caption
+    assert caption in " ".join(first.extract_text().split())
+
+
 def test_hostile_texts_are_shown_and_change_nothing(room):
     plain = report_of(room, None, NOT_APPROVED, wish=ReportWish())
     usual = pages_in(pdf_of(plain))
