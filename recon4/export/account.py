@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
+from recon4.mapping.threads import Each, in_turn
 
 
 @dataclass(slots=True, eq=False)
@@ -46,18 +47,22 @@ class PointAccount:
         self.high_m = np.maximum(self.high_m, corners[1])
         self.classes += np.bincount(classification, minlength=256)
 
-    def add_stored(self, rows: NDArray[Any]) -> None:
+    def merge(self, other: PointAccount) -> None:
+        """Account for the points of another one, but for their stored bytes."""
+        self.count += other.count
+        self.low_m = np.minimum(self.low_m, other.low_m)
+        self.high_m = np.maximum(self.high_m, other.high_m)
+        self.classes += other.classes
+
+    def add_stored(self, rows: NDArray[Any], each: Each = in_turn) -> None:
         """Account for the bytes of points as the file stores them, (N, ...)."""
         step = POINT_EXPORT.summed
-        at = 0
-        while at < len(rows):
-            if self.summed % step == 0:
-                self.sums.append(0)
-            taken = min(len(rows) - at, step - self.summed % step)
-            data = np.ascontiguousarray(rows[at : at + taken]).view(np.uint8).reshape(-1)
-            self.sums[-1] = zlib.crc32(data.data, self.sums[-1])
-            self.summed += taken
-            at += taken
+        lacking = -self.summed % step  # rows of the last sum
+        if lacking:
+            self.sums[-1] = _crc(rows[:lacking], self.sums[-1])
+        parts = (rows[at : at + step] for at in range(lacking, len(rows), step))
+        self.sums.extend(each(_crc, parts))
+        self.summed += len(rows)
 
     def compare(self, found: PointAccount, name: str, *, within_m: float) -> None:
         """Compare what was meant with what was found in a file.
@@ -92,6 +97,11 @@ class PointAccount:
             wrong = next((k for k, (a, b) in enumerate(pairs) if a != b), len(found.sums))
             first = wrong * POINT_EXPORT.summed
             yield f"points from number {first} on", "the same", "others"
+
+
+def _crc(rows: NDArray[Any], before: int = 0) -> int:
+    """CRC-32 of the bytes of rows (N, ...) that follow others, by the sum of these."""
+    return zlib.crc32(np.ascontiguousarray(rows).view(np.uint8).reshape(-1).data, before)
 
 
 def _shown(classes: NDArray[np.int64]) -> dict[int, int]:

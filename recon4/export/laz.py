@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
-from dataclasses import dataclass
-from itertools import chain
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import chain, groupby, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +36,9 @@ from recon4.export.las_points import (
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.export.selection import DELIVERED, PointSelection
-from recon4.export.tuning import LAZ, REREAD
+from recon4.export.tuning import LAZ, POINT_EXPORT, REREAD
 from recon4.geometry.se3 import Array
+from recon4.mapping.threads import Each, in_order
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
@@ -115,21 +118,27 @@ def export_laz(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
-    source = PointSource.of(map_, output, selection)
-    header = las_header(source, scale_m=LAZ.scale_m)
-    meant = PointAccount(crs=crs_text(header))
-    stream = las_blocks(source, progress)
-    with atomic_file(path) as temporary:
+    with ThreadPoolExecutor(LAZ.workers) as pool, atomic_file(path) as temporary:
+        each = partial(in_order, pool)
+        source = replace(PointSource.of(map_, output, selection), each=each)
+        header = las_header(source, scale_m=LAZ.scale_m)
+        meant = PointAccount(crs=crs_text(header))
+        stream = las_blocks(source, progress)
         with writing_las(temporary, path.name) as file:
-            _write(file, header, stream, meant=meant)
+            _write(file, header, stream, meant=meant, each=each)
         source.seal(temporary)
         with reading_las(path.name):
-            _check(temporary, meant, path.name)
+            _check(temporary, meant, path.name, each=each)
     return meant.count
 
 
 def _write(
-    file: ErrorKeepingWriter, header: Any, stream: Iterable[Block], *, meant: PointAccount
+    file: ErrorKeepingWriter,
+    header: Any,
+    stream: Iterable[Block],
+    *,
+    meant: PointAccount,
+    each: Each,
 ) -> None:
     with laspy.open(
         file,
@@ -138,31 +147,65 @@ def _write(
         laz_backend=laspy.LazBackend.LazrsParallel,
         closefd=False,
     ) as out:
-        for points in _together(stream, header, meant):
+        for points in _together(stream, header, meant, each=each):
             out.write_points(points)
-            meant.add_stored(points.array)
+            meant.add_stored(points.array, each)
 
 
-def _together(stream: Iterable[Block], header: Any, meant: PointAccount) -> Iterator[Any]:
+@dataclass(frozen=True, slots=True, eq=False)
+class _BatchPart:
+    """Points of a file that are made ready at once."""
+
+    block: Block
+    first: int
+    """Number of the first in the file."""
+
+    @property
+    def batch(self) -> int:
+        """Which points it is compressed with."""
+        return self.first // LAZ.together
+
+
+def _parts(stream: Iterable[Block]) -> Iterator[_BatchPart]:
+    """Blocks, cut where a batch ends: batches are as large as can be, and so are chunks."""
+    first = 0
+    for block in stream:
+        count = len(block.xyz)
+        ends = range(LAZ.together - first % LAZ.together, count, LAZ.together)
+        for begin, end in pairwise([0, *ends, count]):
+            part = block if end - begin == count else block.only(slice(begin, end))
+            yield _BatchPart(part, first + begin)
+        first += count
+
+
+def _together(
+    stream: Iterable[Block], header: Any, meant: PointAccount, *, each: Each
+) -> Iterator[Any]:
     """Records of many blocks at a time, of which each thread compresses a part.
 
     They are valid until the next ones.
     """
-    records, filled = las_records(LAZ.together, header), 0
-    of = header.point_format, header.scales, header.offsets
-    for block in stream:
-        count = len(block.xyz)
-        meant.add(block.xyz, block.columns["classification"])
-        if filled + count > len(records):
-            yield laspy.ScaleAwarePointRecord(records[:filled], *of)
-            filled = 0
-        las_points(block, header, records[filled : filled + count])
-        filled += count
-    if filled:
-        yield laspy.ScaleAwarePointRecord(records[:filled], *of)
+    records = las_records(LAZ.together, header)
+
+    def fill(part: _BatchPart) -> PointAccount:
+        xyz, begin = part.block.xyz, part.first % LAZ.together
+        las_points(part.block, header, records[begin : begin + len(xyz)])
+        account = PointAccount()
+        account.add(xyz, part.block.columns["classification"])
+        return account
+
+    for batch, parts in groupby(_parts(stream), lambda part: part.batch):
+        for account in each(fill, parts):
+            meant.merge(account)
+        yield laspy.ScaleAwarePointRecord(
+            records[: meant.count - batch * LAZ.together],
+            header.point_format,
+            header.scales,
+            header.offsets,
+        )
 
 
-def _check(path: Path, meant: PointAccount, name: str) -> None:
+def _check(path: Path, meant: PointAccount, name: str, *, each: Each) -> None:
     """Read every point back, and compare with what was meant.
 
     Raises:
@@ -171,14 +214,26 @@ def _check(path: Path, meant: PointAccount, name: str) -> None:
     with laspy.open(path) as file:
         found = PointAccount(crs=crs_text(file.header))
         for points in file.chunk_iterator(LAZ.together):
-            add_records(found, points.array, file.header)
-            found.add_stored(points.array)
+            _account(found, points.array, file.header, each=each)
         stated = PointAccount(found.crs, file.header.point_count)
         stated.low_m, stated.high_m = file.header.mins, file.header.maxs
     stated.classes, stated.sums = found.classes, found.sums
     rounded_m = LAZ.scale_m / 2.0 + REREAD.bounds_m
     for one in (stated, found):
         meant.compare(one, name, within_m=rounded_m)
+
+
+def _account(found: PointAccount, records: NDArray[np.void], header: Any, *, each: Each) -> None:
+    """Account for records that were read, (N,), some of them on each thread."""
+
+    def account(first: int) -> PointAccount:
+        part = PointAccount()
+        add_records(part, records[first : first + POINT_EXPORT.summed], header)
+        return part
+
+    for part in each(account, range(0, len(records), POINT_EXPORT.summed)):
+        found.merge(part)
+    found.add_stored(records, each)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

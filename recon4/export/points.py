@@ -14,6 +14,7 @@ from recon4.errors import ConfigError
 from recon4.export.selection import DELIVERED, PointSelection, shares_text
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
+from recon4.mapping.threads import Each, in_turn
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.model.classes import PointClass
@@ -48,7 +49,7 @@ class Block:
     columns: Columns
     """Further fields requested, and ``classification``."""
 
-    def only(self, rows: NDArray[np.bool_]) -> Block:
+    def only(self, rows: NDArray[np.bool_] | slice) -> Block:
         """Some of them."""
         return Block(self.xyz[rows], {name: one[rows] for name, one in self.columns.items()})
 
@@ -70,6 +71,8 @@ class PointSource:
     """Points that are written."""
     seal: Callable[[Path], None]
     """Adds a record to the finished file."""
+    each: Each = in_turn
+    """Threads that read a tile."""
 
     @staticmethod
     def of(
@@ -155,7 +158,7 @@ class PointSource:
 
     def _of_tile(self, tile: Tile, fields: list[str]) -> Iterator[Block]:
         stated = ["classification"] if "classification" in tile.fields else []
-        columns = tile.read_in_space(["xyz", *fields, *stated])
+        columns = tile.read_in_space(["xyz", *fields, *stated], self.each)
         if not stated:
             columns["classification"] = _earlier_classification(tile)
         origin_m = np.array(tile.origin_m)

@@ -39,6 +39,8 @@ class LazTuning(Struct, frozen=True, kw_only=True):
     """Of the coordinates: they reach 214 km from whole meters near the middle of the map."""
     together: int = 500_000
     """Points that are compressed at once, 50 000 a thread."""
+    workers: int = 2
+    """Threads that make points ready for the compression, and compare what is read again."""
     normalized_step: float = 1.0 / 16.0
     """Of normalized intensities: finer than the raw step."""
     deviation_step_m: float = 0.0001

@@ -9,9 +9,10 @@ The blocks of a field can be read one by one: those of some rows, and only of th
 from __future__ import annotations
 
 import threading
-from collections import OrderedDict
+from collections import OrderedDict, deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.threads import Each, in_turn
 from recon4.mapping.tile import FIELDS, Columns
 from recon4.mapping.tile_order import Rows, places_of, spatial_order_of
 from recon4.mapping.tile_packing import FIELD_PACKING, PackedField, unpack
@@ -62,9 +64,17 @@ class TileColumns(Protocol):
         """
 
     def read_in_space(
-        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+        self,
+        names: Sequence[str],
+        rows: slice,
+        *,
+        checked: CheckedArtifact | None = None,
+        each: Each = in_turn,
     ) -> Columns:
-        """All rows of a part of a tile, neighbors one after the other; otherwise as `read`."""
+        """All rows of a part of a tile, neighbors one after the other; otherwise as `read`.
+
+        Threads may be given for the fields and their blocks.
+        """
 
 
 def index_dtype(fields: Sequence[str]) -> np.dtype[Any]:
@@ -145,16 +155,28 @@ class PackedColumns:
         return self._with_times(found, names)
 
     def read_in_space(
-        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+        self,
+        names: Sequence[str],
+        rows: slice,
+        *,
+        checked: CheckedArtifact | None = None,
+        each: Each = in_turn,
     ) -> Columns:
         """See `TileColumns.read_in_space`."""
         found = _room(_needed(names), rows.stop - rows.start)
         places = {block: places_of(*self._within(block)) for block, _ in self._blocks(rows)}
-        # Field by field: the rows of one fit into the processor's cache.
-        for name, values in found.items():
-            for block, of_block in places.items():
-                self._check(name, block, checked)
-                self._unpack(name, block, rows=of_block, out=values)
+
+        def parts() -> Iterator[tuple[str, int]]:
+            # Field by field: the rows of one fit into the processor's cache.
+            for part in product(found, places):
+                self._check(*part, checked)
+                yield part
+
+        def unpack_part(part: tuple[str, int]) -> None:
+            name, block = part
+            self._unpack(name, block, rows=places[block], out=found[name])
+
+        deque(each(unpack_part, parts()), maxlen=0)
         return self._with_times(found, names)
 
     def _with_times(self, found: Columns, names: Sequence[str]) -> Columns:

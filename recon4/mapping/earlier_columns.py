@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.threads import Each, in_turn
 from recon4.mapping.tile import FIELDS, Columns
 from recon4.mapping.tile_order import spatial_order
 from recon4.store.checked import CheckedArtifact
@@ -75,7 +76,12 @@ class EarlierColumns:
         return found
 
     def read_in_space(
-        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+        self,
+        names: Sequence[str],
+        rows: slice,
+        *,
+        checked: CheckedArtifact | None = None,
+        each: Each = in_turn,
     ) -> Columns:
         """See `TileColumns.read_in_space`."""
         order = spatial_order(rows.stop - rows.start)

@@ -24,6 +24,7 @@ from recon4.mapping.columns import PackedColumns, TileColumns
 from recon4.mapping.earlier_columns import EarlierColumns
 from recon4.mapping.map_notes import MapCrs, MapNotes, read_map_list
 from recon4.mapping.sensor_paths import range_and_incidence
+from recon4.mapping.threads import Each, in_turn
 from recon4.mapping.tile import DERIVED, FIELDS, Columns
 from recon4.mapping.tile_order import spatial_order
 from recon4.mapping.tuning import TILES
@@ -103,10 +104,13 @@ class Tile:
         within = slice(self.start + taken.start, self.start + taken.stop, taken.step or 1)
         return self._read(fields, partial(self.columns.read, rows=within))
 
-    def read_in_space(self, fields: Sequence[str]) -> Columns:
-        """Read some fields of all points, neighbors one after the other; otherwise as `read`."""
+    def read_in_space(self, fields: Sequence[str], each: Each = in_turn) -> Columns:
+        """Read some fields of all points, neighbors one after the other; otherwise as `read`.
+
+        Threads may be given for the fields and their blocks.
+        """
         every = slice(self.start, self.stop, 1)
-        return self._read(fields, partial(self.columns.read_in_space, rows=every))
+        return self._read(fields, partial(self.columns.read_in_space, rows=every, each=each))
 
     def _read(self, fields: Sequence[str], stored: Callable[..., Columns]) -> Columns:
         unknown = sorted(set(fields) - set(self.fields))

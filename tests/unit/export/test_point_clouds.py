@@ -10,14 +10,16 @@ import numpy as np
 import open3d
 import pyproj
 import pytest
+from msgspec import structs
 
 from recon4.errors import ConfigError, GeoreferenceError, StoreError
-from recon4.export import laz
+from recon4.export import account, laz
 from recon4.export.laz import export_laz
 from recon4.export.pcd import export_pcd, needed_offset
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
 from recon4.export.selection import EVERY_CLASS, PointSelection
+from recon4.export.tuning import LAZ, POINT_EXPORT
 from recon4.export.xyz import export_xyz
 from recon4.intensity.normalize import learn_intensity
 from recon4.intensity.tuning import IntensityTuning
@@ -90,6 +92,16 @@ def test_the_same_map_gives_the_same_file(folder, tmp_path):
 
     assert (tmp_path / "a.laz").read_bytes() == (tmp_path / "b.laz").read_bytes()
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
+
+
+def test_how_many_points_are_compressed_at_once_changes_nothing(folder, tmp_path, monkeypatch):
+    export_laz(folder, tmp_path / "a.laz")
+    monkeypatch.setattr(laz, "LAZ", structs.replace(LAZ, together=1001))
+    monkeypatch.setattr(account, "POINT_EXPORT", structs.replace(POINT_EXPORT, summed=300))
+
+    export_laz(folder, tmp_path / "b.laz")
+
+    assert (tmp_path / "a.laz").read_bytes() == (tmp_path / "b.laz").read_bytes()
 
 
 def test_a_map_with_its_own_clock_and_no_crs_says_so(tmp_path):
@@ -220,8 +232,8 @@ def test_a_crs_that_is_none_and_coordinates_that_do_not_fit_are_refused(folder, 
 def test_a_file_that_reads_back_wrong_never_gets_its_name(folder, tmp_path, monkeypatch):
     write = laz._write
 
-    def lose_a_point(*args, meant):
-        write(*args, meant=meant)
+    def lose_a_point(*args, meant, each):
+        write(*args, meant=meant, each=each)
         meant.count += 1
 
     (tmp_path / "map.laz").write_text("the one before")
