@@ -12,6 +12,8 @@ from recon4.kernels.voxels import joined_returns, voxel_at, voxel_rank
 
 MERGED, FULL = -1, -2
 """In place of a run: all are merged, the output is full."""
+_DONE = np.iinfo(np.int64).max
+"""Voxel of a run without further records."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -53,19 +55,17 @@ def merge_runs(
     Returns:
         The run that needs records, `MERGED` or `FULL`.
     """
-    while True:
-        best = -1
-        for r in range(len(head)):
-            if head[r] == stop[r]:
-                if left[r] > 0:
-                    return r
-                continue
+    for r in range(len(head)):
+        if head[r] < stop[r]:
             if keys[r] < 0:
                 keys[r] = voxel_at(f4, head[r], cells[0], cells[1], cells[2], cells[3])
-            if best < 0 or keys[r] < keys[best]:
-                best = r
-        if best < 0:
-            return MERGED
+        elif left[r] > 0:
+            return r
+        else:
+            keys[r] = _DONE
+    losers, lost = _tournament(keys)
+    best = losers[0]
+    while keys[best] != _DONE:
         n, fresh = head[best], keys[best] != state[1]
         if fresh and state[0] == len(out_i4):
             return FULL
@@ -83,4 +83,54 @@ def merge_runs(
         if fresh:
             state[0], state[1] = at + 1, keys[best]
         head[best] += 1
-        keys[best] = -1
+        if head[best] < stop[best]:
+            keys[best] = voxel_at(f4, head[best], cells[0], cells[1], cells[2], cells[3])
+        elif left[best] > 0:
+            keys[best] = -1
+            return best
+        else:
+            keys[best] = _DONE
+        best = _replayed(best, keys[best], losers, lost)
+    return MERGED
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _tournament(keys: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Runs in a tree of matches, in which the smaller key wins, of equal ones the first run.
+
+    Knuth, The Art of Computer Programming 3, 5.4.1: a tree of losers. The next record is found in
+    as many steps as the tree has levels, however many runs there are.
+
+    Args:
+        keys: Of the runs, (R,).
+
+    Returns:
+        The run that lost each match, and its key, (W,), W a power of two; the winner is the first.
+    """
+    width = 1
+    while width < len(keys):
+        width *= 2
+    winners, won = np.arange(-width, width), np.full(2 * width, _DONE)
+    won[width : width + len(keys)] = keys
+    losers, lost = np.empty((2, width), np.int64)
+    for match in range(width - 1, 0, -1):
+        a, b = 2 * match, 2 * match + 1
+        if won[b] < won[a]:
+            a, b = b, a
+        winners[match], won[match] = winners[a], won[a]
+        losers[match], lost[match] = winners[b], won[b]
+    losers[0] = winners[1]
+    return losers, lost
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _replayed(run: int, key: int, losers: NDArray[np.int64], lost: NDArray[np.int64]) -> int:
+    """The winner after the one before, ``run``, got another key."""
+    match = (len(losers) + run) >> 1
+    while match > 0:
+        other, its = losers[match], lost[match]
+        if its < key or (its == key and other < run):
+            losers[match], lost[match] = run, key
+            run, key = other, its
+        match >>= 1
+    return run
