@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
+from itertools import zip_longest
 
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.made_tiles import Finished, TileCounts
@@ -35,6 +36,27 @@ def finish_tile(
     return packed, TileCounts(made.removed, made.corrected, made.classes)
 
 
+def read_tiles(
+    buckets: TileBuckets, tiles: Sequence[Tile], pool: ThreadPoolExecutor
+) -> Iterator[Records]:
+    """Records of tiles in their order; while some are used, those of the next tile are read.
+
+    Much of a large tile is made by one thread, while the other one reads. A tile of more than
+    `MAP_BUILD.ahead` records is not read before it is used.
+    """
+    coming: deque[Future[Records]] = deque()
+    try:
+        for tile, after in zip_longest(tiles, tiles[1:]):
+            if not coming:
+                coming.append(pool.submit(buckets.read, tile))
+            if after is not None and sum(buckets.counts[after]) <= MAP_BUILD.ahead:
+                coming.append(pool.submit(buckets.read, after))
+            yield coming.popleft().result()
+    finally:
+        for future in coming:
+            future.cancel()
+
+
 def finished_tiles(
     buckets: TileBuckets,
     tiles: Sequence[Tile],
@@ -45,7 +67,7 @@ def finished_tiles(
 ) -> Iterator[Finished]:
     """Tiles in their order: several small ones at a time, of a large one several parts.
 
-    So there is never more than one large tile in memory.
+    So there is never more than one large tile in memory, and the records of the next one.
 
     Args:
         buckets: The records.
@@ -58,8 +80,9 @@ def finished_tiles(
     small, large = TileMeans(Scratch()), TileMeans(None, partial(in_order, pool))
     waiting: deque[Future[Finished]] = deque()
     try:
+        read = read_tiles(buckets, tiles, pool)
         for tile in tiles:
-            records = buckets.read(tile)
+            records = next(read)
             is_large = len(records) >= MAP_BUILD.large
             if not is_large:
                 waiting.append(pool.submit(finish, tile, records, means=small))

@@ -23,6 +23,9 @@ class MapBuildTuning(Struct, frozen=True, kw_only=True):
     """Threads; the kernels do not hold Python's lock."""
     large: int = 600_000
     """A tile of as many records, which is fitted in parts, is made alone by all threads."""
+    ahead: int = 3_000_000
+    """A tile of at most as many records on disk is read while the one before is made: half of them
+    are left then (50 MB)."""
 
 
 MAP_BUILD = MapBuildTuning()
