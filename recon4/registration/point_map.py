@@ -9,7 +9,7 @@ against planes that are remembered much longer than the keyframes of the segment
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,8 @@ from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.state import END_POSE, START
 from recon4.registration.tuning import PLANES, PlaneTuning
-from recon4.registration.tuning_matching import POINT_MAP
+from recon4.registration.tuning_matching import POINT_MAP, WEAK_PLACES
+from recon4.registration.weak_places import better_place_m
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +42,13 @@ class FramePoints:
 
     def __getitem__(self, rows: NDArray[np.intp] | slice) -> FramePoints:
         return FramePoints(self.body[rows], self.s[rows])
+
+    @staticmethod
+    def of_all(parts: Sequence[FramePoints]) -> FramePoints:
+        """The points of all parts; those of several count once, in the order of their time."""
+        body, s = (np.concatenate([getattr(one, name) for one in parts]) for name in ("body", "s"))
+        rows = np.unique(np.column_stack([s, body]), axis=0, return_index=True)[1]
+        return FramePoints(body[rows], s[rows])
 
     def placed(self, t_s: Array, T_odom_body: SE3) -> Array:
         """The points in odom [m], (N, 3), by the poses (K,) of the body at the times ``t_s``."""
@@ -145,6 +153,9 @@ class WeakDirections:
     ) -> None:
         self._map, self._points, self._max_eigenvalue = point_map, points, max_eigenvalue
         self._t_s, self._center = prediction.t_s, prediction.T_odom_body.t[-1]
+        self._by_scans = prediction.expected is not None
+        self._begun: Array | None = None
+        """Where the body was in the first round, (3,)."""
         self._weak: Array = np.empty((0, 3))
         self._chosen: FramePoints | None = None
 
@@ -159,20 +170,57 @@ class WeakDirections:
             gate_m: Points farther from their plane do not match [m].
             T_odom_body: Poses of the body at the times of the prediction, (K,).
         """
+        shift = np.zeros(3)
+        if self._begun is None:
+            self._begun = T_odom_body.t[-1].copy()
         if rounds in self._CHOSEN_IN:
             self._weak = segments.weak_directions(self._max_eigenvalue)
-            self._chosen = (
-                self._map.choose(self._points(), self._t_s, T_odom_body, weak=self._weak)
-                if len(self._weak)
-                else None
-            )
+            if rounds == self._CHOSEN_IN[-1] and self._by_scans and len(self._weak) == 1:
+                shift = self._to_better_place(T_odom_body, self._begun)
+            self._chosen = self._choose(_shifted(T_odom_body, shift)) if len(self._weak) else None
         if self._chosen is None or not len(self._chosen):
             return np.zeros((12, 12)), np.zeros(12)
-        match = self._map.match(
-            self._chosen, self._t_s, T_odom_body, center=self._center, gate_m=gate_m
-        )
+        match = self._match(self._chosen, _shifted(T_odom_body, shift), gate_m)
         only = _along(self._weak)
-        return POINT_MAP.scale * (only @ match.H @ only), POINT_MAP.scale * (only @ match.g)
+        H, g = only @ match.H @ only, only @ match.g
+        g = g - H @ _shift_of_both(shift)  # as it is without the shift: a step leads there
+        return POINT_MAP.scale * H, POINT_MAP.scale * g
+
+    def _choose(self, T_odom_body: SE3) -> FramePoints:
+        return self._map.choose(self._points(), self._t_s, T_odom_body, weak=self._weak)
+
+    def _match(self, points: FramePoints, T_odom_body: SE3, gate_m: float) -> Match:
+        return self._map.match(points, self._t_s, T_odom_body, center=self._center, gate_m=gate_m)
+
+    def _to_better_place(self, T_odom_body: SE3, begun: Array) -> Array:
+        """Shift to where clearly more points lie on planes, (3,); see `better_place_m`.
+
+        Only a prediction by scans can be beside the place by the depth of a door: an IMU knows the
+        motion of a frame to millimeters.
+        """
+        direction = self._weak[0]
+        aside = WEAK_PLACES.aside_m * direction
+        chosen = FramePoints.of_all(
+            [self._choose(_shifted(T_odom_body, n * aside)) for n in (-1, 0, 1)]
+        )
+        points = chosen[:: -(-len(chosen) // WEAK_PLACES.max_points) or 1]
+
+        def distances(shift_m: float) -> Array:
+            T = _shifted(T_odom_body, shift_m * direction)
+            return self._match(points, T, POINT_MAP.gate_m).residual_m
+
+        shifted_m = float(direction @ (T_odom_body.t[-1] - begun))
+        return better_place_m(distances, shifted_m=shifted_m) * direction
+
+
+def _shifted(T_odom_body: SE3, shift: Array) -> SE3:
+    """Poses moved by the same shift, (3,)."""
+    return SE3(T_odom_body.R, T_odom_body.t + shift)
+
+
+def _shift_of_both(shift: Array) -> Array:
+    """A correction of the poses at start and end by the same shift (3,), (12,)."""
+    return np.tile(np.concatenate([np.zeros(3), shift]), 2)
 
 
 def _along(directions: Array) -> Array:

@@ -174,6 +174,26 @@ class PointMapTuning(Struct, frozen=True, kw_only=True):
 POINT_MAP = PointMapTuning()
 
 
+class WeakPlaceTuning(Struct, frozen=True, kw_only=True):
+    """The place along a weak direction where most points lie on planes (`weak_places.py`)."""
+
+    step_m: float = 0.02
+    """Between two places that are compared [m]: the kernel of the planes."""
+    steps: int = 10
+    """Number of them forward, and back: four standard deviations of the prediction."""
+    clear: float = 3.0
+    """Half chi-square by which another place is better: 8 to 12 where a corridor was 12 cm off at
+    the depth of a door."""
+    aside_m: float = 0.1
+    """Points are also chosen with the body this far forward, and back [m]: at a wrong place many
+    lie on nothing."""
+    max_points: int = 300
+    """Of more points some are compared."""
+
+
+WEAK_PLACES = WeakPlaceTuning()
+
+
 class ScanChainTuning(Struct, frozen=True, kw_only=True):
     """Pose of a frame relative to the last good scan."""
 
