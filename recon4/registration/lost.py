@@ -44,6 +44,13 @@ class LostLimits:
         usual = s.lost_usual_ratio * float(np.median(self._ratios))
         return float(np.clip(usual, s.lost_least_ratio, s.lost_match_ratio))
 
+    def is_usual(self, match: Match) -> bool:
+        """Whether as much of a frame matches as of those before it."""
+        if not self.is_usual_known:
+            return False
+        usual = LOST.usual_part * float(np.median(self._ratios))
+        return match.match_ratio >= usual and match.mean_m < self._settings.lost_error_m
+
     def is_lost(self, match: Match, *, sure: bool) -> bool:
         """Whether a frame is lost.
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 from msgspec import structs
 
@@ -14,7 +16,7 @@ from recon4.registration.result import StopReason
 from recon4.registration.scan_registration import make_scan, search_scans
 from recon4.registration.tuning import SCANS, ScanTuning
 from recon4.registration.tuning_matching import SCAN_CHAIN
-from recon4.registration.tuning_motion import BRIDGE
+from recon4.registration.tuning_motion import BRIDGE, LOST
 
 
 class ScanChain:
@@ -34,6 +36,9 @@ class ScanChain:
         self._motion = self._located = SE3.identity()
         self.is_sure = False
         """Whether most of the newest scan lies on the last good one."""
+        self._ratios: deque[float] = deque(maxlen=LOST.usual_frames)
+        self._ratio = 0.0
+        """Of the points of the newest scan that lie on the last good one."""
         self._sure_scans = 0
         self._velocity_m_s: Array = np.zeros(3)
         """In axes of the last good scan."""
@@ -42,6 +47,16 @@ class ScanChain:
     def sure_scans(self) -> int:
         """How many scans in a row were located surely and kept."""
         return self._sure_scans
+
+    @property
+    def shares_usual(self) -> bool:
+        """Whether the newest scan shares with the last good one what is usual for the place.
+
+        On bare ground two scans of a tilted LiDAR share a third of their points, and in a turn
+        less. What opens to another storey shares less than a third of the usual.
+        """
+        usual = float(np.median(self._ratios)) if self._ratios else np.inf
+        return self._ratio >= LOST.usual_scan_ratio * usual
 
     @property
     def located(self) -> SE3:
@@ -72,6 +87,7 @@ class ScanChain:
             prior=prior,
         )
         self._located = found.T_target_source
+        self._ratio = found.match_ratio
         self.is_sure = found.match_ratio >= self._settings.confident_inlier_ratio
         # With two distorted scans the matches may oscillate: the inlier ratio decides.
         return None if found.stop is StopReason.TOO_FEW else found.T_target_source
@@ -114,6 +130,8 @@ class ScanChain:
     def keep(self, T_odom_body: SE3, t_ns: int) -> None:
         """Make the scan just located the last good one, with its pose and time [ns]."""
         self._sure_scans = self._sure_scans + 1 if self.is_sure else 0
+        if self._last is not None:
+            self._ratios.append(self._ratio)
         if self._bridged:  # how the body moved meanwhile says nothing of how it moves on
             self._motion, self._velocity_m_s = SE3.identity(), np.zeros(3)
         elif self._last is not None:

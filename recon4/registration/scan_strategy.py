@@ -38,6 +38,8 @@ class ScanStrategy:
         """The scans since tracking was lost."""
         self._fixes: GnssAiding | None = None
         """The aiding, if the odometry began in its frame."""
+        self._goes_on = False
+        """Whether the velocity predicted the newest scan, as nothing else places it."""
         self.longest_map = tuned(OdometryTuning, settings.odometry).longest_map(with_imu=False)
         self.fitter = FrameFitter(
             settings.odometry,
@@ -74,7 +76,12 @@ class ScanStrategy:
     def predict(
         self, state: MotionState | None, view: FrameView, tracking: TrackingState
     ) -> Prediction:
-        """See `MotionStrategy.predict`; its ``expected`` is None if nothing places the scan."""
+        """See `MotionStrategy.predict`; its ``expected`` is None if nothing places the scan.
+
+        Right after a scan that was tracked its velocity then predicts this one: on bare ground two
+        scans of a tilted LiDAR share too little, and the local map has all of it.
+        """
+        self._goes_on = False
         found = self._chain.locate(view.scan(), view.frame.t_mid_ns)
         if state is None:
             state = self._free.initial(view.start_ns)
@@ -84,7 +91,11 @@ class ScanStrategy:
         by_scans = self._chain.last[0] @ found if found else None
         expected = self._placed(by_scans, view.frame.t_mid_ns)
         if expected is None:
-            return self._move(self._free.at_rest(state, view.start_ns), view)
+            seen = view.start_ns - state.t_ns < SCAN_MOTION.unseen_ns
+            self._goes_on = tracking.is_velocity_known and seen and self._chain.shares_usual
+            if not self._goes_on:
+                state = self._free.at_rest(state, view.start_ns)
+            return self._move(state, view)
         if not tracking.is_velocity_known:
             return self._through(expected, view)
         return replace(self._move(state, view), expected=expected)
@@ -113,8 +124,11 @@ class ScanStrategy:
 
     def is_lost(self, fit: FrameFit, prediction: Prediction, limits: LostLimits) -> bool:
         """See `MotionStrategy.is_lost`."""
-        missing = prediction.expected is None or not is_numeric(fit)
-        return missing or limits.is_lost(fit.match, sure=self._chain.is_sure)
+        if not is_numeric(fit):
+            return True
+        if prediction.expected is None:
+            return not (self._goes_on and limits.is_usual(fit.match))
+        return limits.is_lost(fit.match, sure=self._chain.is_sure)
 
     def by_fixes(self, view: FrameView, prediction: Prediction) -> Prediction | None:
         """See `MotionStrategy.by_fixes`."""
@@ -124,7 +138,7 @@ class ScanStrategy:
 
     def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
         """See `MotionStrategy.refined`: two scans that agree are those of a body at rest."""
-        if not is_stationary(self._chain.located):
+        if self._goes_on or not is_stationary(self._chain.located):
             return fit
         return zero_velocity_update(fit, prediction, self._chain.last[0])
 

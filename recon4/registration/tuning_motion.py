@@ -218,6 +218,10 @@ class LostTuning(Struct, frozen=True, kw_only=True):
 
     usual_frames: int = 50
     """Number of frames from which the usual match ratio is learned."""
+    usual_part: float = 0.8
+    """With this part of it a frame lies on the local map …"""
+    usual_scan_ratio: float = 0.4
+    """… if it shares this part of what scans usually share with the one before."""
 
 
 LOST = LostTuning()

@@ -354,7 +354,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 38, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    50,
+    51,
     OdometryReads,
     _odometry,
     OdometryFigures,

@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.registration import scan_chain
 from recon4.registration.lost import LostLimits
 from recon4.registration.odometry import Odometry
 from recon4.registration.plane_map import Match
+from recon4.registration.result import StopReason
+from recon4.registration.scan_registration import search_scans
 from recon4.registration.tuning import OdometryTuning, ScanTuning
 from recon4.settings import OdometrySettings, Settings
 from tests.scanned_room import strolling, walk, without_points
@@ -44,6 +47,39 @@ def test_before_anything_is_usual_the_scan_before_decides():
     assert first.is_lost(match_of(0.25), sure=False)
     assert not first.is_lost(match_of(0.25), sure=True)
     assert first.is_lost(match_of(0.25, mean_m=0.2), sure=True)
+
+
+def test_a_frame_lies_on_the_map_if_it_matches_as_usual():
+    found = limits(*[0.8] * 20)
+
+    assert found.is_usual(match_of(0.65))
+    assert not found.is_usual(match_of(0.6))
+    assert not found.is_usual(match_of(0.8, mean_m=0.2))
+    assert not limits(*[0.8] * 5).is_usual(match_of(0.8))
+
+
+FEW = range(14, 18)
+
+
+@pytest.mark.parametrize(("share", "lost"), [(0.6, False), (0.2, True)])
+def test_a_scan_too_sparse_for_the_last_one_lies_on_the_map_but_a_new_view_does_not(
+    stroll, monkeypatch, share, lost
+):
+    calls = iter(range(1, 1000))
+
+    def few(*args, **kwargs):
+        found = search_scans(*args, **kwargs)
+        if next(calls) not in FEW:
+            return found
+        return replace(found, stop=StopReason.TOO_FEW, match_ratio=share * found.match_ratio)
+
+    monkeypatch.setattr(scan_chain, "search_scans", few)
+    odometry = Odometry(stroll.rig, Settings(), None)
+    steps = [odometry.push(frame) for frame in stroll]
+
+    assert any(step.lost for step in steps) is lost
+    off = stroll.true_poses()[-1].t - stroll.true_poses()[5].t
+    assert np.linalg.norm(steps[-1].T_odom_body.t - steps[5].T_odom_body.t - off) < 0.03
 
 
 def paused(stroll, gap_s):
