@@ -126,9 +126,12 @@ def workers_here(count: int) -> Cluster:
         raise ConfigError(f"command: --workers: expected 1 to {CLUSTER.most_workers}, got {count}")
 
     def connect(opened: ExitStack) -> Client:
+        import dask
         from distributed import Client, LocalCluster, Security
 
         security = Security.temporary()
+        timeout = {"distributed.deploy.lost-worker-timeout": f"{CLUSTER.lost_worker_s} s"}
+        opened.enter_context(dask.config.set(timeout))  # read whenever a worker is lost
         cluster = opened.enter_context(
             LocalCluster(
                 n_workers=count,

@@ -6,6 +6,7 @@ import os
 import threading
 from contextlib import ExitStack
 
+import dask
 import pytest
 from msgspec import structs
 
@@ -25,7 +26,8 @@ def ignore(name: str, line: str) -> None:
 
 @pytest.fixture(scope="module")
 def cluster():
-    with workers_here(2) as cluster:
+    impatient = {"distributed.deploy.lost-worker-timeout": "1 ms"}  # as on a busy computer
+    with dask.config.set(impatient), workers_here(2) as cluster:
         yield cluster
 
 
@@ -57,6 +59,7 @@ def test_a_task_whose_worker_is_killed_is_done_by_another(cluster, tmp_path):
     assert ended.failure == ""
     assert ended.result == (tmp_path / "killed").read_text("ascii")
     assert int(ended.result) != os.getpid()
+    wait_for(lambda: cluster.size == 2, "the killed worker is started again", max_s=60)
 
 
 def test_an_error_of_a_task_is_its_failure(cluster):
