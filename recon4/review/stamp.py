@@ -98,9 +98,12 @@ def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     shutil.copyfileobj(source, target, 1 << 20)
 
 
-def _after_first_line(prefix: str) -> Callable[[BinaryIO, BinaryIO, Stamp], None]:
+def _after_first_line(
+    prefix: str, *, lines: int = 1
+) -> Callable[[BinaryIO, BinaryIO, Stamp], None]:
     def write(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
-        target.write(source.readline())
+        for _ in range(lines):
+            target.write(source.readline())
         target.write(f"{prefix} recon4 approval {stamp.json_line()}\n".encode("ascii"))
         shutil.copyfileobj(source, target, 1 << 20)
 
@@ -143,7 +146,8 @@ def _html(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 
 _WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
     ".laz": _laz,
-    ".ply": _after_first_line("comment"),
+    # rply, of Open3D and CloudCompare, refuses a comment before the format.
+    ".ply": _after_first_line("comment", lines=2),
     ".g2o": _after_first_line("#"),
     ".pcd": _after_first_line("#"),
     ".xyz": _after_first_line("//"),

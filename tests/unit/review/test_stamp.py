@@ -38,7 +38,7 @@ def test_a_laz_file_keeps_its_points_and_all_its_records(tmp_path, evlr):
 @pytest.mark.parametrize(
     ("name", "text", "line"),
     [
-        ("a.ply", "ply\nformat ascii 1.0\nend_header\n1 2 3\n", 1),
+        ("a.ply", "ply\nformat ascii 1.0\nend_header\n1 2 3\n", 2),
         ("a.g2o", "# recon4\nVERTEX\n", 1),
         ("a.pcd", "# .PCD v0.7\nVERSION 0.7\n", 1),
         ("a.xyz", "//X Y Z Intensity\n1 2 3 4\n", 1),
