@@ -268,7 +268,9 @@ class SensorClock:
         usual = int(np.median(block[0]))
         if abs(usual) <= CLOCKS.step_ns:
             self._offset_ns += int(0.1 * usual)
-            self._apart, self._went_back = [], False
+            self._apart = []
+            # The step may be in the second half of this block.
+            self._went_back &= abs(int(block[0][-1])) > CLOCKS.step_ns
         else:
             self._confirm_apart(int(t_sensor[-1]), block[0])
         self._report_ahead()

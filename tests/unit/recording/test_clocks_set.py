@@ -74,6 +74,17 @@ def test_a_step_of_the_recorders_clock_below_a_second_is_said(jump_s, off_ns):
     assert warned(report, K.CLOCK_JUMP, whose="recorder")
 
 
+@pytest.mark.parametrize("row", [450, 490, 511])
+def test_a_recorder_that_is_set_back_is_noticed_within_a_second(row):
+    _, arrival, stamps = packets(1000)
+    arrival[row:] -= 600_000_000
+    report = ImportReport()
+
+    push_all(a_clock(report), arrival, stamps)
+
+    assert warned(report, K.CLOCK_JUMP, whose="recorder")
+
+
 @pytest.mark.parametrize("late_s", [0.3, 0.45])
 def test_packets_that_are_held_up_are_no_step(late_s):
     """A recorder that stops for a moment every second: then all that waited comes at once."""
