@@ -114,6 +114,12 @@ async function add(what, text, at_ms) {
   return sent;
 }
 
+function sayWhatIsKept(/** @type {Awaited<ReturnType<typeof sendKept>>} */ { left, refused }) {
+  const texts = refused.map(({ text }) => text || t("mark")).join(", ");
+  if (refused.length) say(byId("message"), t("marks-refused", { count: refused.length, texts }));
+  else if (!left) say(byId("message"), "");
+}
+
 export function mark() {
   if (!byId("note", HTMLDialogElement).open) touched.ms = Date.now();
   formOf("note").reset();
@@ -138,8 +144,7 @@ export function drawActions(
 ) {
   touched.project = project;
   const open = ["recording", "paused"].includes(state);
-  if (linked && mayCapture && open && keptMarks().length)
-    sendKept(project).then((left) => left || say(byId("message"), ""));
+  if (linked && mayCapture && open && keptMarks().length) sendKept(project).then(sayWhatIsKept);
   const button = (
     /** @type {string} */ text,
     /** @type {string} */ className,

@@ -15,7 +15,9 @@ import { ApiError } from "../shared/http.js";
 
 const KEPT = "recon4.live.marks";
 export const OLDEST_S = 3600; // an older mark gets this age
-const sending = { on: false };
+const AGAIN_MS = 2000; // from a try in vain to the next one
+const LATER = [0, 401, 403, 408, 429]; // answers after which the same mark may be taken
+const sending = { on: false, again_ms: 0 };
 
 /** @returns {KeptMark[]} */
 export const keptMarks = () => JSON.parse(kept(KEPT) ?? "[]");
@@ -44,23 +46,39 @@ export async function sendOrKeep(mark) {
 }
 
 /**
- * Sends the kept marks of the capture, in their order; those of an earlier one are forgotten.
+ * Tries to send a mark; it may be sent later without a link, to a busy server, or after a login.
+ * @param {KeptMark} mark
+ * @returns {Promise<"sent" | "later" | "refused">}
+ */
+async function tried(mark) {
+  try {
+    await send(mark);
+    return "sent";
+  } catch (error) {
+    const { status } = /** @type {ApiError} */ (error);
+    return status >= 500 || LATER.includes(status) ? "later" : "refused";
+  }
+}
+
+/**
+ * Sends the kept marks of the capture, in their order.
  * @param {string} project that is being recorded
- * @returns {Promise<number>} how many are still kept
+ * @returns {Promise<{left: number, refused: KeptMark[]}>} how many are still kept, and those that
+ *   the server will never take: of an earlier capture, or refused
  */
 export async function sendKept(project) {
-  if (sending.on || !keptMarks().length) return keptMarks().length;
+  if (sending.on || Date.now() < sending.again_ms) return { left: keptMarks().length, refused: [] };
   sending.on = true;
-  try {
-    keepMarks(keptMarks().filter((mark) => mark.project === project));
-    for (const mark of keptMarks()) {
-      await send(mark);
-      keepMarks(keptMarks().slice(1));
-    }
-  } catch (error) {
-    if (!(error instanceof ApiError) || error.status !== 0) keepMarks(keptMarks().slice(1));
-  } finally {
-    sending.on = false;
+  const refused = keptMarks().filter((mark) => mark.project !== project);
+  keepMarks(keptMarks().filter((mark) => mark.project === project));
+  while (keptMarks().length) {
+    const [mark] = keptMarks();
+    const outcome = await tried(mark);
+    if (outcome === "refused") refused.push(mark);
+    sending.again_ms = outcome === "later" ? Date.now() + AGAIN_MS : 0;
+    if (sending.again_ms) break;
+    keepMarks(keptMarks().slice(1));
   }
-  return keptMarks().length;
+  sending.on = false;
+  return { left: keptMarks().length, refused };
 }

@@ -41,6 +41,10 @@ marks-kept = { $count ->
     [one] Keine Verbindung: das Telefon behält die Marke und sendet sie, sobald es eine gibt
    *[other] Keine Verbindung: das Telefon behält { $count } Marken und sendet sie, sobald es eine gibt
 }
+marks-refused = { $count ->
+    [one] Eine Marke dieses Telefons wird nicht angenommen, ihre Aufnahme ist beendet: { $texts }
+   *[other] { $count } Marken dieses Telefons werden nicht angenommen, ihre Aufnahme ist beendet: { $texts }
+}
 naming-title = Name des Ortes
 naming-example = Rathaus, 2. Obergeschoss
 name-it = Benennen

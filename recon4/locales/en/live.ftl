@@ -41,6 +41,10 @@ marks-kept = { $count ->
     [one] No link: the mark is kept on this phone, and sent when there is one
    *[other] No link: { $count } marks are kept on this phone, and sent when there is one
 }
+marks-refused = { $count ->
+    [one] A mark that this phone kept is not taken, its capture is over: { $texts }
+   *[other] { $count } marks that this phone kept are not taken, their capture is over: { $texts }
+}
 naming-title = Name of the place
 naming-example = Town hall, 2nd floor
 name-it = Name it
