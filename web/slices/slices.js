@@ -369,26 +369,30 @@ async function begin() {
     change(state.kind === "vertical" ? ends : unframed({ ...state, kind: "vertical", ...ends }));
   });
   dark.addEventListener("change", load);
-  await attempt(byId("message"), async () => {
+  const begun = await attempt(byId("message"), async () => {
     const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
     if (!isGuest(me)) Object.assign(found, fillFindings());
     only("page-head").name = project.name;
     only("map-verdict").facts = factsIn(project.summary);
     document.title = t("title-of", { project: project.name });
-    if (isPlan(project)) return showPlan(id, project, isGuest(me));
+    if (isPlan(project)) {
+      showPlan(id, project, isGuest(me));
+      return true;
+    }
     await reload();
     above.walk = page.stretch = await stretchOf();
     const { facts, state } = page;
-    if (!facts) return;
+    if (!facts) return true;
     if (!state.given)
       page.state = { ...state, ...startOf("horizontal", state, facts.bounds_m, null), given: true };
     const { u, v, m } = page.state;
     if (u !== null && v !== null && m !== null) first.frame = { u, v, m };
     change({});
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
+    return true;
   });
+  document.body.classList.toggle("no-slices", !begun && !page.facts);
 }
 
 addEventListener("popstate", () => change(parse(location.search)));
-await begin();
-document.body.classList.toggle("no-slices", byId("message").textContent !== "" && !page.facts);
+begin();
