@@ -349,7 +349,8 @@ def test_the_stretches_of_findings_are_marked_on_the_map(server, page, screensho
 def a_mark_is_kept_until_it_can_be_sent(page, server):
     """The first request for a mark fails as without a link."""
     page.route("**/api/live/marks", lambda route: route.abort(), times=1)
-    mark(page, WITHOUT_LINK)
+    with page.expect_response("**/api/live/marks"):  # the one that fails has none
+        mark(page, WITHOUT_LINK)
     file = server.root / "walk" / "recordings" / "marks.jsonl"
     wait_for(lambda: file.exists() and WITHOUT_LINK in file.read_text(), "the mark is sent")
     expect(page.locator("#message")).to_be_empty()
