@@ -15,6 +15,7 @@ import pytest
 
 from recon4.cli.main import main
 from recon4_app.access.login.login_service import open_access
+from tests.deadlines import HANG_S
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD
 
@@ -99,7 +100,7 @@ def test_the_first_start_shows_fingerprint_and_one_time_link_and_logs_no_secret(
         fingerprint = next(line for line in lines if re.fullmatch(r"([0-9A-F]{2}:){31}..", line))
         token = next(line for line in lines if "#setup=" in line).split("#setup=")[1]
         trust = ssl.create_default_context(cafile=tmp_path / ".recon4" / "tls" / "certificate.pem")
-        with httpx.Client(base_url=url, verify=trust) as client:
+        with httpx.Client(base_url=url, verify=trust, timeout=HANG_S) as client:
             given = {"token": token, "name": "Anna", "password": PASSWORD}
             me = client.post("/api/setup", json=given).json()
             wrong = {"name": PASSWORD, "password": "typed in the wrong field"}

@@ -7,6 +7,7 @@ import httpx
 import psutil
 import pytest
 
+from tests.deadlines import HANG_S
 from tests.served import served
 from tests.service.running import (
     SLOW,
@@ -216,7 +217,7 @@ def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
 def test_the_server_answers_before_a_job_that_takes_all_processors(tmp_path, recording):
     with (
         server_process(tmp_path) as (server, process),
-        httpx.Client(base_url=server.url) as client,
+        httpx.Client(base_url=server.url, timeout=HANG_S) as client,
     ):
         job = server.start("office", recording)
         server.wait_at_gate(job)

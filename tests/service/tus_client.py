@@ -10,7 +10,9 @@ from urllib.parse import urlsplit
 
 import httpx
 
-HTTP = httpx.Client(limits=httpx.Limits(max_keepalive_connections=0))
+from tests.deadlines import HANG_S
+
+HTTP = httpx.Client(limits=httpx.Limits(max_keepalive_connections=0), timeout=HANG_S)
 TUS = {"Tus-Resumable": "1.0.0"}
 CHUNK = TUS | {"Content-Type": "application/offset+octet-stream"}
 
