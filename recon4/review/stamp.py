@@ -10,7 +10,7 @@ import shutil
 import struct
 import zlib
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -29,6 +29,10 @@ _PNG_HEADER_BYTES = 8 + 25
 """Signature and header chunk."""
 _HEADER_BYTES = 375
 """Of LAS 1.4, the only version `recon4.export.laz` writes."""
+_LONGEST_ESCAPE = 12
+"""Bytes of a character in JSON in ASCII, at most."""
+_PLY_LINE = 900
+"""Bytes of an approval in a PLY: rply, of Open3D and CloudCompare, refuses lines above 1024."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,9 +56,16 @@ class Stamp:
         values = {field.name: getattr(self, field.name) for field in fields(self)}
         return {name: value for name, value in values.items() if value != ""}
 
-    def json_line(self) -> str:
-        """JSON in ASCII on one line."""
-        return json.dumps(self.to_json())
+    def json_line(self, most: int | None = None) -> str:
+        """JSON in ASCII on one line; of more than ``most`` bytes the end of the reason is left out.
+
+        The whole reason stands in the signed statement, whose hash is in the line.
+        """
+        line = json.dumps(self.to_json())
+        if most is None or len(line) <= most or not self.why:
+            return line
+        left = len(self.why.removesuffix("…")) - 1 - (len(line) - most) // _LONGEST_ESCAPE
+        return replace(self, why=self.why[: max(left, 0)] + "…" * (left > 0)).json_line(most)
 
 
 def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
@@ -99,12 +110,12 @@ def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 
 
 def _after_first_line(
-    prefix: str, *, lines: int = 1
+    prefix: str, *, lines: int = 1, most: int | None = None
 ) -> Callable[[BinaryIO, BinaryIO, Stamp], None]:
     def write(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
         for _ in range(lines):
             target.write(source.readline())
-        target.write(f"{prefix} recon4 approval {stamp.json_line()}\n".encode("ascii"))
+        target.write(f"{prefix} recon4 approval {stamp.json_line(most)}\n".encode("ascii"))
         shutil.copyfileobj(source, target, 1 << 20)
 
     return write
@@ -147,7 +158,7 @@ def _html(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 _WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
     ".laz": _laz,
     # rply, of Open3D and CloudCompare, refuses a comment before the format.
-    ".ply": _after_first_line("comment", lines=2),
+    ".ply": _after_first_line("comment", lines=2, most=_PLY_LINE),
     ".g2o": _after_first_line("#"),
     ".pcd": _after_first_line("#"),
     ".xyz": _after_first_line("//"),

@@ -1,9 +1,11 @@
 """Files that say who approved them stay the files they were."""
 
 import json
+from dataclasses import replace
 
 import laspy
 import numpy as np
+import open3d
 import pytest
 from PIL import Image
 
@@ -57,6 +59,19 @@ def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
     assert lines == text.splitlines()
     prefix, _, words = said.partition(" recon4 approval ")
     assert prefix in ("#", "comment", "//") and json.loads(words)["hash"] == "ab"
+
+
+@pytest.mark.parametrize("why", ["ü" * 3000, "clear. " * 400, "😀" * 200])
+def test_a_ply_whose_approval_has_a_long_reason_is_opened_by_other_programs(tmp_path, why):
+    points = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(np.eye(3)))
+    open3d.io.write_point_cloud(str(tmp_path / "map.ply"), points)
+
+    stamp_file(tmp_path / "map.ply", tmp_path / "map.ply", replace(STAMP, why=why))
+
+    assert len(open3d.io.read_point_cloud(str(tmp_path / "map.ply")).points) == 3
+    line = (tmp_path / "map.ply").read_bytes().split(b"\n")[2]
+    said = json.loads(line.partition(b" approval ")[2])["why"]
+    assert said.endswith("…") and why.startswith(said[:-1]) and len(line) > 850
 
 
 @pytest.mark.parametrize(
