@@ -16,6 +16,7 @@ from typing import BinaryIO
 
 from recon4.errors import StoreError
 from recon4.report.approval import approved_block, replace_block
+from recon4.review.tuning import STAMPS
 from recon4.store.atomic import atomic_file
 
 NO_VERDICT = "unknown"
@@ -29,10 +30,6 @@ _PNG_HEADER_BYTES = 8 + 25
 """Signature and header chunk."""
 _HEADER_BYTES = 375
 """Of LAS 1.4, the only version `recon4.export.laz` writes."""
-_LONGEST_ESCAPE = 12
-"""Bytes of a character in JSON in ASCII, at most."""
-_PLY_LINE = 900
-"""Bytes of an approval in a PLY: rply, of Open3D and CloudCompare, refuses lines above 1024."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +61,7 @@ class Stamp:
         line = json.dumps(self.to_json())
         if most is None or len(line) <= most or not self.why:
             return line
-        left = len(self.why.removesuffix("…")) - 1 - (len(line) - most) // _LONGEST_ESCAPE
+        left = len(self.why.removesuffix("…")) - 1 - (len(line) - most) // STAMPS.escape_bytes
         return replace(self, why=self.why[: max(left, 0)] + "…" * (left > 0)).json_line(most)
 
 
@@ -158,7 +155,7 @@ def _html(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 _WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
     ".laz": _laz,
     # rply, of Open3D and CloudCompare, refuses a comment before the format.
-    ".ply": _after_first_line("comment", lines=2, most=_PLY_LINE),
+    ".ply": _after_first_line("comment", lines=2, most=STAMPS.ply_line_bytes),
     ".g2o": _after_first_line("#"),
     ".pcd": _after_first_line("#"),
     ".xyz": _after_first_line("//"),

@@ -15,6 +15,18 @@ class AcknowledgmentLimits(Struct, frozen=True, kw_only=True):
 ACKNOWLEDGMENTS = AcknowledgmentLimits()
 
 
+class StampLimits(Struct, frozen=True, kw_only=True):
+    """Approvals in files."""
+
+    ply_line_bytes: int = 900
+    """Of an approval in a PLY: rply, of Open3D and CloudCompare, refuses lines above 1024."""
+    escape_bytes: int = 12
+    """Of a character in JSON in ASCII, at most."""
+
+
+STAMPS = StampLimits()
+
+
 class ChangeTuning(Struct, frozen=True, kw_only=True):
     """What a decision changes."""
 
