@@ -30,7 +30,9 @@ class PacketOrder:
     step_ns: int = 0
     """Usual time from one packet to the next [ns]; 0 = not known, then all wait."""
     is_set_back: bool = False
-    """Whether the clocks were set back since a reader put this to False."""
+    """Whether packets after a clock was set back were given since a reader put this to False."""
+    _is_jump_held: bool = False
+    """Whether the first of these are still held."""
     _arrived_ns: int | None = None
 
     def push_arrived(
@@ -47,7 +49,6 @@ class PacketOrder:
         """
         row = self._set_together(t_ns, t_arrival_ns)
         if row is not None:
-            self.is_set_back = True
             return self._over_a_jump(t_ns, payloads, row)
         return self.push(t_ns, payloads)
 
@@ -116,7 +117,7 @@ class PacketOrder:
     def _over_a_jump(self, t_ns: Times, payloads: Payloads, row: int) -> tuple[Times, Payloads]:
         """All before a clock was set back at a row, then the rest in an order of its own."""
         parts = [self.push(t_ns[:row], payloads[:row]), self.flush()]
-        self._given = self._given[:0]
+        self._given, self._is_jump_held = self._given[:0], True
         parts.append(self.push(t_ns[row:], payloads[row:]))
         times, packets = zip(*parts, strict=True)
         return np.concatenate(times), np.concatenate(packets)
@@ -135,6 +136,8 @@ class PacketOrder:
 
     def _give(self, t_ns: Times, payloads: Payloads, ready: int) -> tuple[Times, Payloads]:
         self._t_ns, self._payloads = t_ns[ready:], payloads[ready:]
+        if ready and self._is_jump_held:
+            self._is_jump_held, self.is_set_back = False, True
         given = np.concatenate([self._given, t_ns[:ready]])
         keep_from = np.searchsorted(given, given[-1] - 20 * self.window_ns) if len(given) else 0
         self._given = given[keep_from:]
