@@ -36,7 +36,9 @@ KEPT = ("trajectory.npz", "georeference.json", "mirrors.npz", "uncertainty.npz")
 """Files of the map without decisions that a held one has, too."""
 
 
-def hold(leveled: LeveledMap, undecided: Path, out: Path) -> LevelFigures | None:
+def hold(
+    leveled: LeveledMap, undecided: Path, out: Path, *, moved: MovedFigures | None
+) -> LevelFigures | None:
     """Write a map at its place without decisions, if they move it by less than the limits.
 
     The graph is the decided one, with its residuals at these poses.
@@ -45,6 +47,7 @@ def hold(leveled: LeveledMap, undecided: Path, out: Path) -> LevelFigures | None
         leveled: The map with the decisions.
         undecided: Artifact of the stage ``level`` without decisions.
         out: Receives the files of `LeveledMap.save`.
+        moved: As `moved_by_decisions` found it.
 
     Returns:
         None if they move it: nothing was written.
@@ -52,8 +55,6 @@ def hold(leveled: LeveledMap, undecided: Path, out: Path) -> LevelFigures | None
     Raises:
         StoreError: If the artifact is damaged.
     """
-    before = load_trajectory(undecided / "trajectory.npz")
-    moved = moved_by_decisions(leveled, undecided)
     if moved is None or not _within(moved):
         return None
     if not _is_known_as_well(leveled.uncertainty, load_uncertainty(undecided)):
@@ -62,7 +63,7 @@ def hold(leveled: LeveledMap, undecided: Path, out: Path) -> LevelFigures | None
     for name in KEPT:
         if (undecided / name).is_file():
             copy_file(undecided / name, out / name)
-    graph = leveled.graph
+    graph, before = leveled.graph, load_trajectory(undecided / "trajectory.npz")
     save_graph(out, with_residuals(graph.with_poses(before.at(graph.t_ns))))
     return msgspec.structs.replace(figures, held=moved)
 

@@ -242,10 +242,10 @@ def _level(
     )
     if not isinstance(undecided, Path):
         return leveled.save(context.out)
-    held = hold(leveled, undecided, context.out)
+    moved = moved_by_decisions(leveled, undecided)
+    held = hold(leveled, undecided, context.out, moved=moved)
     if held is not None:
         return held
-    moved = moved_by_decisions(leveled, undecided)
     return msgspec.structs.replace(leveled.save(context.out), moved=moved)
 
 

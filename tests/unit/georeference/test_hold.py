@@ -8,7 +8,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.georeference.crs import GeodeticOrigin
 from recon4.georeference.gnss import GeoreferenceResult, LocalRecord
-from recon4.georeference.hold import KEPT, hold
+from recon4.georeference.hold import KEPT, hold, moved_by_decisions
 from recon4.georeference.level import Leveling
 from recon4.georeference.stage import LeveledMap
 from recon4.georeference.tuning import HOLD
@@ -70,6 +70,10 @@ def less_known(factor):
     return replace(found, cov=found.cov * factor)
 
 
+def held_at(walk, undecided, out):
+    return hold(walk, undecided, out, moved=moved_by_decisions(walk, undecided))
+
+
 @pytest.fixture(scope="module")
 def undecided(tmp_path_factory):
     """The artifact of the map without decisions."""
@@ -83,7 +87,7 @@ def test_a_map_that_hardly_moves_has_the_bytes_of_before_and_the_graph_of_now(un
     walk = moved(0.003)
     decided = GRAPH.with_edges(GRAPH.edges[:-1]).with_poses(walk.T_a_b)
 
-    figures = hold(leveled(trajectory=walk, graph=decided), undecided, tmp_path)
+    figures = held_at(leveled(trajectory=walk, graph=decided), undecided, tmp_path)
 
     assert {path.name for path in tmp_path.iterdir()} == {*KEPT, "graph.npz", "edges.json"}
     for name in KEPT:
@@ -109,7 +113,7 @@ def test_a_map_that_hardly_moves_has_the_bytes_of_before_and_the_graph_of_now(un
     ],
 )
 def test_a_map_that_moves_or_differs_is_not_held(changes, undecided, tmp_path):
-    assert hold(leveled(**changes), undecided, tmp_path) is None
+    assert held_at(leveled(**changes), undecided, tmp_path) is None
     assert not list(tmp_path.iterdir())
 
 
@@ -124,6 +128,6 @@ def test_positions_that_reject_another_edge_place_another_map(tmp_path):
         undecided = runner.run(stage, walk=walk).folder
     out.mkdir()
 
-    assert hold(leveled(georeference=other), undecided, out) is None
-    held = hold(leveled(georeference=placed), undecided, out)
+    assert held_at(leveled(georeference=other), undecided, out) is None
+    held = held_at(leveled(georeference=placed), undecided, out)
     assert isinstance(held, LevelFigures)
