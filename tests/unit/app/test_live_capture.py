@@ -13,39 +13,12 @@ POSE = pose()
 DONE = Done(frames=3, problem="")
 
 
-def test_why_there_is_no_map_is_said_in_the_language_of_who_looks(tmp_path):
-    session = CaptureSession(project=tmp_path / "walk")
-    session.folder.mkdir(parents=True)
-    session.outcome.write_text('{"why": "stopped"}')
-    why = StoredText.of(text_of(CorruptFile("walk.pcap: cut")))
-    ended = Done(frames=0, problem=why.text, code=why.code, values=why.values)
+def followed(session, connections):
+    """A capture whose mapper sent the messages of each connection, and ended."""
+    coming = iter(connections)
 
     async def serve(reader, writer):
-        writer.write(encode(ended))
-        writer.close()
-
-    async def run():
-        capture = Capture(session)
-        async with await asyncio.start_unix_server(serve, session.socket("mapper")):
-            await capture.follow()
-            while not capture.over:
-                await capture.stream.news(capture.stream.version, timeout_s=0.1)
-            await capture.leave()
-        return capture
-
-    (problem,) = asyncio.run(run()).problems
-
-    assert said(problem, "de") == said(text_of(CorruptFile("walk.pcap: cut")), "de") != problem
-
-
-def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
-    session = CaptureSession(project=tmp_path / "walk")
-    connections = iter([[POSE], [POSE], [POSE, DONE]])
-    session.folder.mkdir(parents=True)
-    session.outcome.write_text('{"why": "stopped"}')
-
-    async def serve(reader, writer):
-        for message in next(connections):
+        for message in next(coming):
             writer.write(encode(message))
         writer.close()
 
@@ -58,7 +31,28 @@ def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
             await capture.leave()
         return capture
 
-    capture = asyncio.run(run())
+    return asyncio.run(run())
+
+
+def test_why_there_is_no_map_is_said_in_the_language_of_who_looks(tmp_path):
+    session = CaptureSession(project=tmp_path / "walk")
+    session.folder.mkdir(parents=True)
+    session.outcome.write_text('{"why": "stopped"}')
+    why = StoredText.of(text_of(CorruptFile("walk.pcap: cut")))
+    ended = Done(frames=0, problem=why.text, code=why.code, values=why.values)
+
+    (problem,) = followed(session, [[ended]]).problems
+
+    assert said(problem, "de") == said(text_of(CorruptFile("walk.pcap: cut")), "de") != problem
+
+
+def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
+    session = CaptureSession(project=tmp_path / "walk")
+    connections = iter([[POSE], [POSE], [POSE, DONE]])
+    session.folder.mkdir(parents=True)
+    session.outcome.write_text('{"why": "stopped"}')
+
+    capture = followed(session, connections)
 
     assert next(connections, None) is None
     assert capture.problems == ()
