@@ -149,16 +149,16 @@ def test_an_imu_on_the_recorders_clock_goes_on_when_that_is_set(tmp_path, set_s)
 
 
 @pytest.mark.parametrize("size", [50, 100, 500, 3000])
-def test_the_packets_before_which_clocks_went_back_are_told_however_few_come_at_once(size):
+def test_the_packets_before_which_clocks_went_back_are_marked_however_few_come_at_once(size):
     t_ns = SECOND_NS + np.arange(3000) * 1_327_000
     t_ns[1520:] -= SECOND_NS // 3
-    order, last_ns, told = PacketOrder(SECOND_NS // 5, ImportReport(), step_ns=1_327_000), 0, []
+    order, last_ns, marked = PacketOrder(SECOND_NS // 5, ImportReport(), step_ns=1_327_000), 0, []
     for k in range(0, len(t_ns), size):
         part = t_ns[k : k + size]
         given, _ = order.push_arrived(part, np.zeros((len(part), 1), np.uint8), part + 2_000_000)
         goes_back = bool(np.any(np.diff(given, prepend=last_ns) < 0))
         assert order.is_set_back == goes_back
-        told.append(goes_back)
+        marked.append(goes_back)
         order.is_set_back, last_ns = False, given[-1] if len(given) else last_ns
 
-    assert sum(told) == 1
+    assert sum(marked) == 1
