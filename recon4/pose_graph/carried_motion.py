@@ -19,10 +19,11 @@ from recon4.geometry.se3 import Array, matrix_from_quat
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Times
 from recon4.model.tuning import OBSERVATION
+from recon4.pose_graph.lone_multiframes import bounds_by_neighbors
 from recon4.store.arrays import load_arrays
 
 _COLUMNS = [
-    "weak_direction", "weak_sd_m", "weak_motion_sd_m", "quat_xyzw",
+    "t_mid_ns", "weak_direction", "weak_sd_m", "weak_motion_sd_m", "quat_xyzw", "t_m",
     "converged", "lost", "bridged", "stationary", "piece", "motion_cov",
 ]  # fmt: skip
 
@@ -40,6 +41,9 @@ class CarriedMotion:
     motion_cov: Array
     """Covariance of turn and shift over each multiframe by the filter, in odom axes, (N, 6, 6);
     zero where it begins a piece, whose poses are relative to it, and where the body stands."""
+    bounds: Array
+    """How wrong the position of a lone multiframe may be beside those around it [m²], (N, 3, 3);
+    NaN = not lone."""
 
     def between(self, frame_ids: Times) -> Array:
         """The same between consecutive nodes, in axes of the body at the later one, (M - 1, 3, 3).
@@ -66,10 +70,14 @@ class CarriedMotion:
     def observed_between(self, frame_ids: Times) -> NDArray[np.bool_]:
         """Whether points observe the whole shift between consecutive nodes, (M - 1,).
 
+        Those that follow a lone multiframe are registered to the local map, not to it.
+
         Args:
             frame_ids: Multiframe of each node, (M,).
         """
-        unobserved = np.concatenate([[0], np.cumsum(~self.observed)])
+        unobserved = np.concatenate(
+            [[0], np.cumsum(~self.observed & np.isnan(self.bounds[:, 0, 0]))]
+        )
         return np.asarray(unobserved[frame_ids[1:] + 1] == unobserved[frame_ids[:-1] + 1])
 
 
@@ -85,11 +93,18 @@ def load_carried_motion(odometry: Path) -> CarriedMotion | None:
     along = np.nan_to_num(steps["weak_direction"]) * steps["weak_motion_sd_m"][:, None]
     new_piece = np.diff(steps["piece"], prepend=steps["piece"][:1]) != 0
     tracked = steps["converged"] & ~steps["lost"] & ~steps["bridged"] & ~new_piece
+    observed = tracked & (steps["stationary"] | (steps["weak_sd_m"] < OBSERVATION.observed_sd_m))
     motion_cov = steps["motion_cov"].copy()
     motion_cov[:1] = motion_cov[new_piece | steps["stationary"]] = 0.0
     return CarriedMotion(
         along[:, :, None] * along[:, None, :],
         matrix_from_quat(steps["quat_xyzw"]),
-        tracked & (steps["stationary"] | (steps["weak_sd_m"] < OBSERVATION.observed_sd_m)),
+        observed,
         motion_cov,
+        bounds_by_neighbors(
+            observed,
+            ~steps["lost"] & ~steps["bridged"] & ~new_piece,
+            t_ns=steps["t_mid_ns"],
+            p_odom=steps["t_m"],
+        ),
     )

@@ -27,7 +27,7 @@ def unseen_errors(
     """Covariance of what the registration of the multiframes around each knot left unknown.
 
     A knot speaks for the multiframes that are nearer to it than to others: the least known turn
-    and the least known shift among them count.
+    and the least known shift among them count. Those around a lone one bound its shift.
 
     Args:
         carried: What the filter states of each multiframe.
@@ -52,6 +52,8 @@ def unseen_errors(
         weak = weak_part(half_s * np.sqrt(values), limit)
         if part is TRANSLATION:
             weak[carried.observed] = 0.0
+            bounds = into_map @ carried.bounds @ np.swapaxes(into_map, 1, 2)
+            values = np.fmin(values, np.einsum("nia,nij,nja->na", V, bounds, V))
         unknown = np.minimum(weak * values, most**2)
         order = np.argsort(unknown.sum(axis=1))  # of several for a knot the last one is kept
         out[knot[order], part, part] = (V * unknown[:, None, :] @ np.swapaxes(V, 1, 2))[order]

@@ -157,3 +157,18 @@ class UncertaintyTuning(Struct, frozen=True, kw_only=True):
 
 
 UNCERTAINTY = UncertaintyTuning()
+
+
+class LoneTuning(Struct, frozen=True, kw_only=True):
+    """Multiframes that do not observe the motion, among others that do."""
+
+    around_ns: int = 1_000_000_000
+    """Others as long before and after one are asked [ns] …"""
+    ratio: float = 0.75
+    """… and at least this ratio of them, on each side, observes the motion."""
+    speeds_up_m_s2: float = 2.0
+    """Standard deviation of the acceleration of a carrier over tenths of a second [m/s²]: 1 to 2
+    on simulated walks, at most 4."""
+
+
+LONE = LoneTuning()

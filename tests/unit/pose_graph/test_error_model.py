@@ -77,7 +77,8 @@ def test_a_motion_that_is_stated_to_be_unsure_may_be_moved_by_as_much(
     along = np.linalg.eigh(plain[3:, 3:])[1][:, -1]
     cov = np.tile(stated_m**2 * np.outer(along, along), (NODES, 1, 1))
     observed, sure = np.ones(NODES, bool), np.zeros((NODES, 6, 6))
-    carried = CarriedMotion(cov, graph.T_map_body.R, observed, sure)
+    alone = np.full((NODES, 3, 3), np.nan)
+    carried = CarriedMotion(cov, graph.T_map_body.R, observed, sure, alone)
 
     known = agreement(graph, CALIBRATED, carried=carried).moved[30]
 

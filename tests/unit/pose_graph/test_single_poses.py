@@ -9,7 +9,7 @@ from recon4.geometry.se3 import SE3
 from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.known_errors import KnownErrors
 from recon4.pose_graph.uncertainty import pose_uncertainty
-from tests.unit.pose_graph.test_uncertainty import SURE, chain
+from tests.unit.pose_graph.test_uncertainty import NOT_LONE, SURE, chain
 
 
 @pytest.mark.parametrize(("observed", "shift_m"), [(True, 0.0), (False, 0.3)])
@@ -23,7 +23,7 @@ def test_a_turned_multiframe_stays_unknown_however_well_edges_hold_its_node(
     motion_cov = SURE.copy()
     motion_cov[6] = np.diag([0.0, 0.0, 0.2, 0.3, 0.0, 0.0]) ** 2  # in axes of the odometry
     turned = SE3.from_rpy(0.0, 0.0, 0.5 * np.pi, t=np.zeros(3)).R @ graph.T_map_body.R
-    carried = CarriedMotion(np.zeros((14, 3, 3)), turned, points, motion_cov)
+    carried = CarriedMotion(np.zeros((14, 3, 3)), turned, points, motion_cov, NOT_LONE)
 
     sure = replace(carried, motion_cov=SURE)
     plain, known = (

@@ -34,6 +34,7 @@ EXACT = ErrorModel(
 """The stated deviations are true, and correlated over 2 s."""
 SURE = np.zeros((14, 6, 6))
 """What the filter states of multiframes about which nothing is left to know."""
+NOT_LONE = np.full((14, 3, 3), np.nan)
 
 
 def walk(nodes: int) -> tuple[np.ndarray, SE3]:
@@ -285,7 +286,11 @@ def test_standard_deviations_of_carried_motions_add_up() -> None:
     along = np.outer([0.0, 0.6, 0.8], [0.0, 0.6, 0.8])
     sd_m = np.array([0.5, 0.01, 0.04, 0.001])
     carried = CarriedMotion(
-        sd_m[:, None, None] ** 2 * along, np.tile(np.eye(3), (4, 1, 1)), sd_m > 0, SURE[:4]
+        sd_m[:, None, None] ** 2 * along,
+        np.tile(np.eye(3), (4, 1, 1)),
+        sd_m > 0,
+        SURE[:4],
+        NOT_LONE[:4],
     )
 
     np.testing.assert_allclose(carried.between(np.array([0, 3]))[0], 0.051**2 * along, atol=1e-15)
@@ -297,7 +302,7 @@ def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> No
     R = graph.T_map_body.R
     shift = np.zeros((14, 3, 3))
     shift[6:11, 0, 0] = 0.005**2
-    carried = CarriedMotion(shift, R, np.ones(14, bool), SURE)
+    carried = CarriedMotion(shift, R, np.ones(14, bool), SURE, NOT_LONE)
     cov = np.diag(STEP_SD**2)
     with_shift = np.tile(cov, (13, 1, 1))
     with_shift[:, TRANSLATION, TRANSLATION] += carried.between(graph.frame_ids)
@@ -326,7 +331,7 @@ def test_a_step_that_points_observe_is_known_however_large_its_covariance(
     edges = [replace(e, information=wide) if e.i == 8 else e for e in graph.edges]
     points = np.ones(14, bool)
     points[9] = observed
-    carried = CarriedMotion(np.zeros((14, 3, 3)), graph.T_map_body.R, points, SURE)
+    carried = CarriedMotion(np.zeros((14, 3, 3)), graph.T_map_body.R, points, SURE, NOT_LONE)
 
     found = pose_uncertainty(replace(graph, edges=tuple(edges)), known=KnownErrors(carried=carried))
 
@@ -344,6 +349,7 @@ def test_points_observe_what_is_tracked_converged_and_not_weak(tmp_path: Path) -
     columns |= {"piece": np.array([0] * 7 + [1]), "weak_motion_sd_m": np.zeros(8)}
     columns |= {"weak_direction": np.zeros((8, 3)), "quat_xyzw": np.tile([0.0, 0, 0, 1], (8, 1))}
     columns |= {"motion_cov": np.tile(np.eye(6), (8, 1, 1))}
+    columns |= {"t_mid_ns": 100_000_000 * np.arange(8), "t_m": np.zeros((8, 3))}
     np.savez(tmp_path / "steps.npz", **columns)
 
     found = load_carried_motion(tmp_path)
