@@ -8,7 +8,6 @@ import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from functools import cache
-from typing import Any
 
 from fastapi import APIRouter, Depends, FastAPI, Request
 from fastapi.responses import HTMLResponse, JSONResponse
@@ -74,7 +73,8 @@ from recon4_app.network.listen import (
 )
 from recon4_app.network.streams import StreamLimits, Streams
 from recon4_app.openapi import description
-from recon4_app.pages import WEB, page_response
+from recon4_app.page_routes import add_page
+from recon4_app.pages import WEB, page_addresses, page_response
 from recon4_app.projects import report_file
 from recon4_app.projects import routes as project_routes
 from recon4_app.projects.import_folders import ImportFolders
@@ -186,13 +186,15 @@ def _routes() -> list[BaseRoute]:
     router.include_router(assistant_routes.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
-    for part in (review_routes, slice_routes, map_view_routes, rig_routes, storage_routes):
+    for part in (review_routes, slice_routes, map_view_routes, rig_routes):
         router.include_router(part.router)
         router.include_router(part.page)
-    for one in (live_routes.router, live_routes.page):
-        router.include_router(one)
+    for part in (live_routes, storage_routes):
+        router.include_router(part.router)
     for one in (upload_routes.files, upload_routes.router):
         router.include_router(one)
+    for address in page_addresses():
+        add_page(router, address)
     return router.routes
 
 
@@ -367,9 +369,8 @@ def _import_folders(settings: ServerSettings) -> ImportFolders:
 
 
 def _add_pages(app: FastAPI) -> None:
-    administer, anyone = [Depends(needs(Permission.ADMINISTER))], [Depends(allow_anonymous)]
 
-    @app.get("/healthz", tags=["server"], dependencies=anyone)
+    @app.get("/healthz", tags=["server"], dependencies=[Depends(allow_anonymous)])
     async def healthz() -> dict[str, str]:
         """Health check: whether the server answers."""
         return {"status": "ok", "version": __version__}
@@ -377,20 +378,6 @@ def _add_pages(app: FastAPI) -> None:
     @app.get("/openapi.json", include_in_schema=False, dependencies=REQUIRES_LOOK)
     def openapi(request: Request) -> JSONResponse:
         return JSONResponse(description(app, prefix_of(request.scope)))
-
-    def page(path: str, file: str, who: list[Any]) -> None:
-        @app.get(path, include_in_schema=False, dependencies=who, name=file)
-        def read(request: Request) -> HTMLResponse:
-            return page_response(file, request)
-
-    page("/", "projects/index.html", REQUIRES_LOOK)
-    page("/account", "account/account.html", REQUIRES_LOOK)
-    page("/phone", "account/phone.html", REQUIRES_LOOK)
-    page("/pair", "account/pair.html", anyone)
-    page("/login", "account/login.html", anyone)
-    page("/guest", "account/guest.html", anyone)
-    page("/people", "account/people.html", administer)
-    page("/api", "shared/api.html", REQUIRES_LOOK)
 
     @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=REQUIRES_LOOK)
     def project(project_id: str, request: Request, server: Server) -> HTMLResponse:

@@ -1,10 +1,18 @@
-"""The pages in `web/`: HTML files with a common head."""
+"""The pages in `web/`: HTML files with a common head, each with a line of what it is.
+
+    <!-- page /storage for process, link head-storage at 3 -->
+
+That is its address, the permission it needs (``anyone``: none) and, if the bar at the top of all
+pages has a link to it, the text and the place of that link. ``for`` after the place names another
+permission for the link. From this line follow the route, the link and the tests of all pages.
+"""
 
 from __future__ import annotations
 
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import cache
 from html import escape
 from os.path import normpath
@@ -30,6 +38,10 @@ def _folder() -> Path:
 WEB = _folder()
 HEAD_HERE = "<!-- shared/head.html -->"
 """Stands in each page where the common elements of the heads belong."""
+_PAGE = re.compile(
+    r"<!-- page (?P<path>/\S*) for (?P<needs>[a-z]+)"
+    r"(?:, link (?P<link>[a-z-]+) at (?P<place>\d+)(?: for (?P<link_needs>[a-z]+))?)? -->\n\s*"
+)
 _ADDRESS = re.compile(r"""(?<=\s)((?:href|src|action)=")(?=/)""")
 """In front of each address of this server in a page; all of them begin with a slash."""
 SHARED_TEXTS = "shared"
@@ -45,6 +57,63 @@ LANGUAGE_COOKIE = "recon4_language"
 """The choice on a page; `web/shared/texts.js` sets it."""
 
 
+@dataclass(frozen=True, slots=True)
+class PageAddress:
+    """Where a page is, who may see it, and its link in the bar at the top of all pages."""
+
+    path: str
+    """Begins with a slash; without the prefix of the server."""
+    file: str
+    """Relative to `web/`."""
+    needs: str
+    """Name of a permission; ``anyone`` = also who has not signed in."""
+    link: str = ""
+    """Name of the text of the link; empty = there is no link."""
+    place: int = 0
+    """Where the link stands among the others."""
+    link_needs: str = ""
+    """Permission of the people to whom the link is shown."""
+
+
+_DOCS = PageAddress("/docs/", "shared/lost.html", "look", "head-help", 5, "look")
+"""The documentation: not in `web/`, but in the bar."""
+
+
+@cache
+def page_addresses() -> tuple[PageAddress, ...]:
+    """The pages that are the same for all projects, in the order of their files."""
+    found = []
+    for path in sorted(WEB.rglob("*.html")):
+        line = _PAGE.search(path.read_text("utf-8"))
+        if line is not None:
+            said = line.groupdict("")
+            found.append(
+                PageAddress(
+                    path=said["path"],
+                    file=path.relative_to(WEB).as_posix(),
+                    needs=said["needs"],
+                    link=said["link"],
+                    place=int(said["place"] or 0),
+                    link_needs=said["link_needs"] or said["needs"],
+                )
+            )
+    return tuple(found)
+
+
+@cache
+def page_links(language: str) -> tuple[tuple[str, str, str], ...]:
+    """The links of the bar at the top of all pages, in order: permission, path, text."""
+    linked = [one for one in (*page_addresses(), _DOCS) if one.link]
+    return tuple(
+        (one.link_needs, one.path, texts(language, *text_files(_html(one.file)))(one.link))
+        for one in sorted(linked, key=lambda one: (one.place, one.path))
+    )
+
+
+def _html(file: str) -> str:
+    return (WEB / file).read_text("utf-8")
+
+
 def html_of(file: str, prefix: str = "") -> str:
     """A page as HTML, with the shared head.
 
@@ -53,7 +122,7 @@ def html_of(file: str, prefix: str = "") -> str:
         prefix: Path of the server on its host, as ``/recon4``; it is put in front of all addresses.
     """
     head = (WEB / "shared" / "head.html").read_text("utf-8")
-    page = (WEB / file).read_text("utf-8").replace(HEAD_HERE, head)
+    page = _PAGE.sub("", _html(file)).replace(HEAD_HERE, head)
     page = _SCRIPT.sub(lambda found: _preloads(found[1]) + found[0], page)
     return _ADDRESS.sub(rf"\g<1>{prefix}", page)
 
@@ -128,7 +197,8 @@ def _in_language(page: str, language: str) -> str:
     attributes = f'lang="{language}" data-languages="{" ".join(languages())}"'
     page = page.replace('lang="en"', attributes, 1)
     page = _TEXT.sub(lambda found: escape(say(found[1])), page)
-    return page.replace("</head>", f"{_texts_of_scripts(language, files)}</head>", 1)
+    data = _texts_of_scripts(language, files) + _data("links", page_links(language))
+    return page.replace("</head>", f"{data}</head>", 1)
 
 
 @cache
@@ -139,8 +209,13 @@ def _texts_of_scripts(language: str, files: tuple[str, ...]) -> str:
         for one in dict.fromkeys((language, ENGLISH))
         if one == language or texts(language, *files).lacks_some()
     ]
-    data = json.dumps(sources, ensure_ascii=False).replace("<", r"\u003c")
-    return f'<script type="application/json" id="texts">{data}</script>\n  '
+    return _data("texts", sources)
+
+
+def _data(name: str, content: object) -> str:
+    """An element whose content a script reads."""
+    data = json.dumps(content, ensure_ascii=False).replace("<", r"\u003c")
+    return f'<script type="application/json" id="{name}">{data}</script>\n  '
 
 
 def _source(language: str, file: str) -> str:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recon4_app.pages import WEB
+from recon4_app.pages import WEB, page_addresses
 from tests.e2e.axe import barriers, needs_axe
 from tests.e2e.conftest import both_looks, leave_out_viewer
 from tests.project_builder import build_project
@@ -11,14 +11,9 @@ from tests.service.running import SLOW, server_thread
 
 pytestmark = pytest.mark.e2e
 
-PAGES = {
-    "/": "projects/index.html",
-    "/storage": "storage/storage.html",
-    "/rigs": "rigs/rigs.html",
-    "/people": "account/people.html",
-    "/phone": "account/phone.html",
-    "/live": "live/live.html",
-    "/api": "shared/api.html",
+ELSEWHERE = {f"account/{name}.html" for name in ("account", "guest", "login", "pair")}
+"""Pages of a server with login: `test_login.py` judges them."""
+PAGES = {one.path: one.file for one in page_addresses() if one.file not in ELSEWHERE} | {
     "/projects/office/": "projects/project.html",
     "/projects/office/review/": "review/review.html",
     "/projects/office/slices/": "slices/slices.html",
@@ -26,8 +21,6 @@ PAGES = {
     "/nowhere": "shared/lost.html",
 }
 """Path -> its file in `web/`."""
-ELSEWHERE = {f"account/{name}.html" for name in ("account", "guest", "login", "pair")}
-"""Pages of a server with login: `test_login.py` judges them."""
 
 
 @pytest.fixture(scope="module")

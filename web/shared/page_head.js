@@ -18,7 +18,7 @@ import "./language_choice.js";
 import { t } from "./texts.js";
 
 /**
- * @import {Me} from "./http_types"
+ * @import {Me, Permission} from "./http_types"
  * @typedef {object} HeadState
  * @property {string} name of the project; empty outside of one
  * @property {string} problem with the link to the server
@@ -35,6 +35,11 @@ const PAGES = [
   ["slices/", t("head-slices")],
 ];
 
+/**
+ * Links to pages outside of projects, as these pages say: permission, path, text.
+ * @type {Array<[Permission, string, string]>}
+ */
+const LINKS = JSON.parse(document.getElementById("links")?.textContent ?? "[]");
 /** Begins the name of a guest, as the server has it in every language. */
 const GUEST_NAME = "guest: ";
 
@@ -184,16 +189,10 @@ function tabs(id, page, pages) {
  * @param {boolean} live
  */
 function links({ may }, live) {
-  /** @type {Array<[boolean, string, string]>} */
-  const all = [
-    [live, liveUrl, t("head-live")],
-    [true, at("/rigs"), t("head-rigs")],
-    [may.includes("process"), at("/storage"), t("head-storage")],
-    [may.includes("process"), at("/api"), t("head-api")],
-    [true, at("/docs/"), t("head-help")],
-    [may.includes("administer"), at("/people"), t("head-people")],
-  ];
-  return all.map(([shown, href, text]) => (shown ? html`<a href=${href}>${text}</a>` : nothing));
+  return LINKS.filter(([needs]) => may.includes(needs))
+    .map(([, path, text]) => ({ href: at(path), text }))
+    .filter(({ href }) => live || href !== liveUrl)
+    .map(({ href, text }) => html`<a href=${href}>${text}</a>`);
 }
 
 customElements.define("page-head", PageHead);

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Literal, Self
 
 from fastapi import APIRouter, Depends, WebSocket, WebSocketDisconnect
-from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
@@ -29,7 +28,7 @@ from recon4_app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
 from recon4_app.names import Name, Note
 from recon4_app.network.close_codes import CloseCode, close_reason
 from recon4_app.network.request_caller import CalledBy
-from recon4_app.pages import language_of, page_response
+from recon4_app.pages import language_of
 from recon4_app.rig_files import check_rig_file
 
 LOOK = [Depends(needs(Permission.LOOK))]
@@ -40,7 +39,6 @@ router = APIRouter(
     tags=["live capture"],
     responses=problems(404, 409),
 )
-page = APIRouter()
 
 
 class NewCapture(BaseModel):
@@ -96,11 +94,6 @@ class CaptureView(BaseModel):
     phones: int
     may_capture: bool
     """Whether the caller may control it."""
-
-
-@page.get("/live", include_in_schema=False, dependencies=LOOK)
-def live_page(request: Request) -> HTMLResponse:
-    return page_response("live/live.html", request)
 
 
 @router.get("", dependencies=LOOK, summary="State of the capture")

@@ -52,11 +52,6 @@ router = APIRouter(
 page = APIRouter()
 
 
-@page.get("/rigs", include_in_schema=False, dependencies=LOOK)
-def rigs_page(request: Request) -> HTMLResponse:
-    return page_response("rigs/rigs.html", request)
-
-
 @page.get("/rigs/{rig_id}/", include_in_schema=False, dependencies=LOOK)
 def rig_page(rig_id: str, request: Request, server: Server) -> HTMLResponse:
     if rig_id not in rig_presets():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from fastapi import APIRouter, Depends, Request
-from fastapi.responses import HTMLResponse
 from pydantic import BaseModel, ConfigDict, Field
 
 from recon4.archive.space import Freeable
@@ -11,7 +10,6 @@ from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
-from recon4_app.pages import page_response
 from recon4_app.projects.trash import Deleted
 from recon4_app.storage.model import ProjectSpace, ProjectStorage, StorageView
 from recon4_app.storage.storage_work import delete_recording, read_project_storage, read_storage
@@ -33,12 +31,6 @@ router = APIRouter(
     dependencies=PROCESS,
     responses=problems(404, 409),
 )
-page = APIRouter()
-
-
-@page.get("/storage", include_in_schema=False, dependencies=PROCESS)
-def storage_page(request: Request) -> HTMLResponse:
-    return page_response("storage/storage.html", request)
 
 
 @router.get("/storage", summary="What takes space")
