@@ -16,9 +16,7 @@ from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
 from recon4_app import server_routes
-from recon4_app.compute_pool import pool as compute_pool
 from tests.chromium import DRAW_LESS
-from tests.deadlines import HANG_S
 from tests.service.running import ROOT
 
 expect.set_options(timeout=45_000)  # two busy cores draw WebGL in software
@@ -42,16 +40,6 @@ EXPECTED_NOISE = (
 def room_on_the_disk(monkeypatch):
     """The free space of the machine that runs the tests does not matter."""
     monkeypatch.setattr(server_routes, "ROOM", structs.replace(server_routes.ROOM, little_room=0.0))
-
-
-@pytest.fixture(autouse=True)
-def no_child_in_advance(monkeypatch):
-    """No process is started before it is asked for: each server would end with one unused.
-
-    It imports for a second of the processor. Servers of the other tests start it as always.
-    """
-    later = structs.replace(compute_pool.POOL_TIMES, spare_after_s=HANG_S)
-    monkeypatch.setattr(compute_pool, "POOL_TIMES", later)
 
 
 @pytest.fixture(params=["desktop light", "desktop dark", "phone light", "phone dark"])

@@ -11,17 +11,20 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import httpx
 import numpy as np
 from fastapi import FastAPI
+from msgspec import structs
 
 from recon4.system.stopping import StopSignals, end_process
+from recon4_app.compute_pool import pool as compute_pool
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.main import create_app, serve
 from recon4_app.network.listen import (
@@ -92,6 +95,15 @@ class Running:
         return int((self.root / ".recon4" / "jobs" / job_id / "pid").read_text())
 
 
+def start_no_spare() -> AbstractContextManager[object]:
+    """No child is started before it is asked for: most servers would end with one unused.
+
+    It imports for a second of the processor; spares: ``tests/unit/app/test_compute_pool.py``.
+    """
+    later = structs.replace(compute_pool.POOL_TIMES, spare_after_s=HANG_S)
+    return patch.object(compute_pool, "POOL_TIMES", later)
+
+
 @contextmanager
 def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
     """A server on a free port, in this process; with ``lan=True`` one with TLS and login."""
@@ -99,7 +111,7 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
     make_state(chosen)
     certificate = certificate_of(chosen)
     app = create_app(chosen)
-    with listening(replace(chosen, host="127.0.0.1", port=0)) as listener:
+    with listening(replace(chosen, host="127.0.0.1", port=0)) as listener, start_no_spare():
         ready = threading.Event()
         server = AnnouncingServer(uvicorn_config(app, certificate), ready.set)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])))
@@ -187,17 +199,19 @@ def ran(recording: Path) -> list[str]:
 
 
 def _serve(stop: StopSignals) -> int:
-    serve(
-        ServerSettings(
-            root=Path(sys.argv[1]),
-            port=0,
-            recording_folders=recording_folders_from_environment(),
-            worker_module=sys.argv[2],
-            sensor_bind_address=sys.argv[3],
-        ),
-        stop,
-        on_ready=lambda url, notes: sys.stdout.write(url + "\n") and sys.stdout.flush(),
+    settings = ServerSettings(
+        root=Path(sys.argv[1]),
+        port=0,
+        recording_folders=recording_folders_from_environment(),
+        worker_module=sys.argv[2],
+        sensor_bind_address=sys.argv[3],
     )
+    with start_no_spare():
+        serve(
+            settings,
+            stop,
+            on_ready=lambda url, notes: sys.stdout.write(url + "\n") and sys.stdout.flush(),
+        )
     return 0
 
 
