@@ -12,7 +12,10 @@ from recon4.pipeline import remake
 from recon4.recording.formats.poses import read_tum
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import NAME, append
+from recon4.store.atomic import write_json
 from recon4.store.hashing import hash_file
+from recon4.store.project import SUMMARY, read_artifacts
+from recon4.store.seal import changing
 from recon4.workflows.map_results import RESULTS
 from tests.g2o_reader import read_g2o
 from tests.review_project import LOST, judge, make
@@ -152,9 +155,20 @@ def test_an_approval_is_not_given_while_a_job_waits(server, root):
     assert "job" in answer.json()["detail"]
 
 
-def test_conflicts_are_confirmed_with_a_reason_or_not_at_all(root, server):
+def accept_conflict(root):
+    """A decision that does not fit, taken into the project; its map is the earlier one."""
     append(root, Decision(kind=DecisionKind.ACCEPT, who="Eva", pair=(20, 90)))
-    make(root)
+    make(root, graph_only=True)
+    with changing(root, SUMMARY, compared=False):
+        summary = json.loads((root / SUMMARY).read_text("utf-8"))
+        reviewed = {"stage": "review", "key": read_artifacts(root)["review"].name}
+        summary["stages"].append(summary["stages"][0] | reviewed)
+        (root / SUMMARY).unlink()
+        write_json(root / SUMMARY, summary)
+
+
+def test_conflicts_are_confirmed_with_a_reason_or_not_at_all(root, server):
+    accept_conflict(root)
 
     refused = approve(server)
     without_reason = approve(server, confirmed=True, why=" ")
