@@ -94,12 +94,12 @@ def test_an_invalid_decision_is_rejected_and_not_stored(server, root, body):
     assert read_rows(root) == []
 
 
-def test_the_queue_and_a_pair_and_its_points(server):
-    queue = server.get("/queue").json()
+def test_the_queue_and_a_pair_and_its_points(unchanged):
+    queue = unchanged.get("/queue").json()
     first = dict(zip(queue["columns"], queue["rows"][0], strict=True))
     pair = {name: first[name] for name in ("frame_i", "frame_j")}
-    facts = server.get("/pair", params=pair).json()
-    points = server.get("/points", params=pair).content
+    facts = unchanged.get("/pair", params=pair).json()
+    points = unchanged.get("/points", params=pair).content
 
     assert {(20, 90), (41, 70)} == {tuple(row[:2]) for row in queue["rows"][:2]}
     assert facts["apart_m"] > 0.4
@@ -114,9 +114,9 @@ def test_the_queue_and_a_pair_and_its_points(server):
     assert np.abs(xyz).max() < 12.0  # the room, seen from inside it
 
 
-def test_the_points_of_both_lie_on_each_other_where_the_graph_says(server):
-    facts = server.get("/pair", params=RIGHT).json()
-    data = server.get("/points", params=RIGHT).content
+def test_the_points_of_both_lie_on_each_other_where_the_graph_says(unchanged):
+    facts = unchanged.get("/pair", params=RIGHT).json()
+    data = unchanged.get("/points", params=RIGHT).content
     n_i = int(np.frombuffer(data[8:12], "<u4")[0])
     xyz = np.frombuffer(data[16:], "<f4").reshape(-1, 3).astype(float)
 
@@ -129,8 +129,8 @@ def test_the_points_of_both_lie_on_each_other_where_the_graph_says(server):
     assert np.median(distance_m) < 0.06
 
 
-def test_a_pair_of_moments_that_are_no_nodes_is_refused(server):
-    answer = server.get("/points", params={"frame_i": 3, "frame_j": 4000})
+def test_a_pair_of_moments_that_are_no_nodes_is_refused(unchanged):
+    answer = unchanged.get("/points", params={"frame_i": 3, "frame_j": 4000})
 
     assert answer.status_code == 422
     assert "no node" in answer.json()["detail"]
@@ -175,10 +175,10 @@ def test_an_unknown_measurement_is_rejected(server, root):
     assert read_rows(root) == []
 
 
-def test_a_predicted_pose_far_off_does_not_become_an_edge(server):
+def test_a_predicted_pose_far_off_does_not_become_an_edge(unchanged):
     pair = {"frame_i": 30, "frame_j": 60}
 
-    found = server.post("/align", json={**pair, "T_i_j": [80, 0, 0, 0, 0, 0, 1]}).json()
+    found = unchanged.post("/align", json={**pair, "T_i_j": [80, 0, 0, 0, 0, 0, 1]}).json()
 
     assert not found["converged"]
     assert found["measurement"] == ""
