@@ -150,6 +150,19 @@ def short_project(short_recording, tmp_path_factory) -> Path:
     return made_once(tmp_path_factory, "short-project", make)
 
 
+@pytest.fixture(scope="module")
+def undrawn() -> Iterator[None]:
+    """Charts are empty in reports that this process writes: they take a second of it for each map.
+
+    For tests that make one map many times; charts: ``tests/unit/report``.
+    """
+    from recon4.report.figures import Chart
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Chart, "svg", lambda *_, **__: '<svg class="chart"></svg>')
+        yield
+
+
 @pytest.fixture(scope="session")
 def browser() -> Iterator[Browser]:
     """One browser for all tests of pages: Playwright can be started once only."""
