@@ -2,12 +2,10 @@
 
 import base64
 
-import httpx
 import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from tests.deadlines import HANG_S
 from tests.project_builder import build_project, room_points
 from tests.served import served
 
@@ -25,12 +23,11 @@ def projects(root):
 server = served(projects)
 
 
-@pytest.fixture
+@pytest.fixture(scope="module")
 def reference(server):
+    """Added once; what tests lay elsewhere they undo, or begin from there."""
     path = str(server.root / "turned.xyz")
-    added = server.post(BASE + "/references", json={"path": path}).json()
-    yield added["id"]
-    httpx.delete(f"{server.url}{BASE}/references/{added['id']}", timeout=HANG_S)
+    return server.post(BASE + "/references", json={"path": path}).json()["id"]
 
 
 def aligned(server, reference, **how):
