@@ -1,6 +1,7 @@
 """From packets to a finished project folder, by the command line."""
 
 import json
+import shutil
 
 import laspy
 import numpy as np
@@ -12,25 +13,23 @@ from recon4.evaluation.evaluate import evaluate
 from recon4.settings import preset, to_json
 from recon4.store.hashing import hash_file
 from recon4.workflows.map_results import RESULTS
-
-FEW = ["--set", "map.voxel_m=0.05", "--set", "graph.node_stride=10"]
+from tests.short_capture import process_short
 
 
 @pytest.fixture(scope="module")
-def process(office_recording):
+def project(short_project, tmp_path_factory):
+    """A copy of the finished project of a short recording."""
+    return shutil.copytree(short_project, tmp_path_factory.mktemp("project") / "office")
+
+
+@pytest.fixture(scope="module")
+def process(short_recording):
+    """Runs the command that made it."""
+
     def run(out, *more):
-        walk = office_recording
-        recording = [str(walk / "recording.pcap"), "--imu", str(walk / "imu.csv")]
-        return main(["process", *recording, "--out", str(out), *FEW, *more])
+        return main([*process_short(short_recording, out), *more])
 
     return run
-
-
-@pytest.fixture(scope="module")
-def project(process, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("project") / "office"
-    assert process(folder) == 0
-    return folder
 
 
 def test_every_result_is_there_and_vouched_for_by_its_hash(project):
@@ -46,7 +45,7 @@ def test_the_summary_has_inputs_settings_and_stages(project):
 
     assert summary["rig"] == "4RECON"
     assert summary["preset"] == "indoor"
-    assert summary["settings"]["map"]["voxel_m"] == 0.05
+    assert summary["settings"]["map"]["voxel_m"] == 0.1
     assert summary["settings"]["odometry"] == to_json(preset("indoor"))["odometry"]
     assert set(summary["hashes"]["inputs"]) == {"recording.pcap", "imu.csv"}
     assert [stage["stage"] for stage in summary["stages"]] == [
@@ -80,7 +79,7 @@ def test_the_map_is_level_and_has_the_points_it_says(project):
     slope = np.linalg.lstsq(A, z[on_floor], rcond=None)[0][:2]
 
     assert len(points) == summary["points"]
-    assert np.rad2deg(np.linalg.norm(slope)) < 2.0  # six seconds do not tell a bias from a tilt
+    assert np.rad2deg(np.linalg.norm(slope)) < 2.0  # seconds do not tell a bias from a tilt
 
 
 def test_running_again_reuses_every_stage_and_gives_the_same_bytes(project, process):
@@ -96,7 +95,7 @@ def test_running_again_reuses_every_stage_and_gives_the_same_bytes(project, proc
 
 @pytest.mark.study
 def test_a_changed_map_setting_reruns_the_map_only(project, process):
-    assert process(project, "--set", "map.voxel_m=0.1") == 0
+    assert process(project, "--set", "map.voxel_m=0.2") == 0
 
     summary = json.loads((project / "summary.json").read_text())
     assert [s["stage"] for s in summary["stages"] if not s["reused"]] == ["map", "audit"]
