@@ -298,7 +298,8 @@ def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.int64]]
     known = _LINK_TYPES[kind] == records.link_type
     at = records.start + _IP_STARTS[kind]
     plain = _ETHERTYPES[kind] < 0
-    ethertype = np.where(plain, 0x0800, _word(records, records.start + _ETHERTYPES[kind]))
+    by_version = np.where(_byte(records, at) >> 4 == 6, 0x86DD, 0x0800)
+    ethertype = np.where(plain, by_version, _word(records, records.start + _ETHERTYPES[kind]))
     for _ in range(2):
         tagged = ~plain & ((ethertype == 0x8100) | (ethertype == 0x88A8))
         ethertype = np.where(tagged, _word(records, at + 2), ethertype)

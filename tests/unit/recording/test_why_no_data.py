@@ -195,6 +195,18 @@ def test_a_capture_of_other_protocols_names_them(tmp_path):
     assert "20 of 20 captured packets: no UDP over IPv4, not read (TCP)" in why(path)
 
 
+@pytest.mark.parametrize(
+    ("link_type", "head"), [(0, b"\x1e\0\0\0"), (108, b"\0\0\0\x1e"), (101, b"")]
+)
+def test_packets_of_ipv6_are_named_on_links_without_ethertype(tmp_path, link_type, head):
+    packet = head + struct.pack(">IHBB", 0x60000000, 20, 17, 64) + bytes(32 + 20)
+    record = struct.pack("<IIII", 1_700_000_000, 0, len(packet), len(packet)) + packet
+    path = tmp_path / "ipv6.pcap"
+    path.write_bytes(struct.pack("<IHHiIII", 0xA1B2C3D4, 2, 4, 0, 0, 65535, link_type) + 5 * record)
+
+    assert "5 of 5 captured packets: no UDP over IPv4, not read (IPv6)" in why(path)
+
+
 def test_a_counter_that_runs_past_the_hour_is_read_and_said(tmp_path):
     off_ns = 3_599_900_000_000 - T0_NS % 3_600_000_000_000
     t_ns, payloads = spin(700)
