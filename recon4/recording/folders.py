@@ -20,7 +20,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times, Trajectory
-from recon4.recording.assembly.assembler import TimeGap
+from recon4.recording.assembly.assembler import TimeGap, moved
 from recon4.recording.assembly.range_limits import drop_invalid
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
@@ -33,8 +33,9 @@ from recon4.recording.formats.cloud_files import (
 )
 from recon4.recording.formats.point_messages import POINTS
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
+from recon4.recording.frame_clock import FrameClock
 from recon4.recording.frame_numbers import without_strangers
-from recon4.recording.frame_times import frame_times
+from recon4.recording.frame_times import first_words, frame_times
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport, warning
 from recon4.recording.tuning import LISTED
@@ -61,6 +62,8 @@ class FrameFiles:
     """How many numbers the names lack; their time is left empty."""
     derived: tuple[Derived, ...] = ()
     """Which files are left out, and which numbers are missing."""
+    clock: FrameClock | None = None
+    """Where the clock of the times was set back."""
 
     @property
     def rate_hz(self) -> float:
@@ -114,6 +117,7 @@ def list_frames(path: Path) -> FrameFiles:
         times.out_of_order,
         absent,
         derived,
+        times.clock,
     )
 
 
@@ -124,7 +128,7 @@ def _absent(files: Sequence[Path], absent: int) -> Derived:
 
 def time_warnings(frames: FrameFiles) -> tuple[Finding, ...]:
     """What the operator must know of the times; the shape of the map depends on them."""
-    found = [*frames.findings, *_several_sensors(frames)]
+    found = [*frames.findings, *_several_sensors(frames), *_set_back(frames)]
     if not frames.times_from and len(frames.files) > 1:
         rate_hz = 1e9 / FRAME_TIMES.assumed_ns
         found.append(warning(FindingKind.FRAMES_UNTIMED, rate_hz=rate_hz))
@@ -133,12 +137,23 @@ def time_warnings(frames: FrameFiles) -> tuple[Finding, ...]:
 
 def _several_sensors(frames: FrameFiles) -> Iterator[Finding]:
     """A finding if the names of the files seem to be those of several sensors."""
-    starts = {
-        re.split(r"\d", file.stem, maxsplit=1)[0].strip("-_. ").lower() for file in frames.files
-    }
+    starts = first_words(frames.files)
     if len(starts) > 1:
-        some = ", ".join(repr(name) for name in sorted(starts)[: LISTED.few])
+        some = ", ".join(repr(name) for name in starts[: LISTED.few])
         yield warning(FindingKind.FRAMES_MIXED, ways=len(starts), some=some)
+
+
+def _set_back(frames: FrameFiles) -> Iterator[Finding]:
+    """A finding for each time the clock was set back."""
+    for step in frames.clock.steps if frames.clock else ():
+        since_s = (step.t_ns - int(frames.t_ns[0])) / 1e9
+        yield warning(
+            FindingKind.CLOCK_BACK,
+            sensor=frames.files[0].parent.name,
+            start_s=since_s,
+            end_s=since_s,
+            seconds=step.back_ns / 1e9,
+        )
 
 
 def read_frames(
@@ -153,16 +168,13 @@ def read_frames(
     """
     read_as = replace(settings, deskewed=True) if frames.are_static else settings
     decoder = CloudDecoder(0, sensor, report=report, points_lead=True, settings=read_as)
-    for found in time_warnings(frames):
-        report.add(found)
-    report.count("files", len(frames.files))
-    report.count("files_out_of_order", frames.out_of_order)
-    report.count("files_absent", frames.absent)
+    _say_files(frames, report)
+    later = frames.clock.shift_ns if frames.clock else np.zeros_like(frames.t_ns)
     frame_id, last_ns, failed = 0, None, None
     offset_ns = round(sensor.time_offset_s * 1e9)
-    for file, stamp in zip(frames.files, frames.t_ns, strict=True):
+    for file, stamp, shift_ns in zip(frames.files, frames.t_ns, later, strict=True):
         try:
-            at_ns = int(stamp) + offset_ns
+            at_ns = int(stamp - shift_ns) + offset_ns
             table = read_points(file, sensor.fields)
             shots = _shots(decoder, table, file.name, t_ns=at_ns, period_ns=frames.period_ns)
         except RecordingError as error:
@@ -171,6 +183,8 @@ def read_frames(
             report.outcome = "lossy"
             report.warn(FindingKind.FILE_LEFT_OUT, error=error)
             continue
+        goes_on = decoder.absolute and _is_later(shots, last_ns, frames.period_ns)
+        shots = shots if goes_on else moved(shots, int(shift_ns))
         start_ns = int(stamp) + offset_ns
         if len(shots) and (decoder.absolute or shots.t_ns[0] < start_ns):
             start_ns = int(shots.t_ns[0])
@@ -192,6 +206,20 @@ def read_frames(
         raise failed
 
 
+def _say_files(frames: FrameFiles, report: ImportReport) -> None:
+    for found in time_warnings(frames):
+        report.add(found)
+    report.count("files", len(frames.files))
+    report.count("files_out_of_order", frames.out_of_order)
+    report.count("files_absent", frames.absent)
+    report.count("clock_jumps_back", len(frames.clock.steps) if frames.clock else 0)
+
+
+def _is_later(shots: Shots, last_ns: int | None, period_ns: int) -> bool:
+    """Whether the own times of points go on, whatever the clock of the stamps does."""
+    return not len(shots) or last_ns is None or int(shots.t_ns[0]) > last_ns + period_ns // 2
+
+
 def frames_label(frames: FrameFiles) -> CodedText:
     """Description of the files, for example ``PCD files, times from times.txt``."""
     kind = frames.files[0].suffix[1:].upper()
@@ -201,15 +229,18 @@ def frames_label(frames: FrameFiles) -> CodedText:
 
 
 def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[TimeGap]:
-    """Gaps between timestamps that exceed the usual step by more than ``gap_s``."""
+    """Gaps between times that exceed the usual step by more than ``gap_s``, and clocks set back."""
     if len(frames.t_ns) < 2:
         return []
     steps = np.diff(frames.t_ns)
     usual = int(np.median(steps))
-    return [
+    gaps = [
         TimeGap(name, int(frames.t_ns[k]), float(steps[k]) / 1e9)
         for k in np.flatnonzero(steps > usual + gap_s * 1e9)
     ]
+    back = frames.clock.steps if frames.clock else ()
+    gaps += [TimeGap(name, step.t_ns, -step.back_ns / 1e9) for step in back]
+    return sorted(gaps, key=lambda gap: gap.t_ns)
 
 
 def read_points(file: Path, fields: PointRecipe | None) -> Table:

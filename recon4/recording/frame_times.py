@@ -26,6 +26,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.cloud_files import CLOUD_SUFFIXES
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
+from recon4.recording.frame_clock import FrameClock, clock_by_order, clock_by_time
 from recon4.recording.frame_numbers import numbers_of, places_by_number
 from recon4.recording.frame_order import moved_back, order_of_times, times_by_text
 from recon4.recording.limits import LIMITS
@@ -61,6 +62,8 @@ class FrameTimes:
     """How many files had an earlier time than one before them."""
     absent: int = 0
     """How many numbers of files are missing, where the times are those of the numbers."""
+    clock: FrameClock | None = None
+    """Where their clock was set back, and by how much the times are later for that."""
 
 
 def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
@@ -72,8 +75,8 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
     """
     named = [name_time_ns(_stem(file)) for file in files]
     known = np.array([t for t in named if t is not None], np.int64)
-    if len(known) == len(files) and (in_names := _in_any_order(known, "the file names")):
-        return in_names
+    if len(known) == len(files) and (in_names := _in_any_order(known, "the file names", files)):
+        return in_names if in_names.clock else _on_one_clock(in_names, files)
     found = list[Finding]()
     for beside in [place / name for place in (folder, folder.parent) for name in TIME_FILES]:
         if folder.is_dir() and beside.is_file():
@@ -99,6 +102,8 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     if count != len(files):
         found.append(warning(FindingKind.TIMES_NUMBER, name=name, times=count, files=len(files)))
         return None
+    if len(first_words(files)) == 1 and (clock := clock_by_order(times)) is not None:
+        return _going_on(times, name, clock)
     sound = _in_order(times)
     damaged = np.flatnonzero(~sound)
     if not len(damaged):
@@ -111,7 +116,7 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     by_text = times_by_text(times, files)
     if np.all(np.diff(by_text) > 0):
         return FrameTimes(by_text, name, out_of_order=moved_back(times))
-    if (sorted_times := _in_any_order(times, name)) is None:
+    if (sorted_times := _in_any_order(times, name, files)) is None:
         found.append(warning(FindingKind.TIMES_UNSORTED, **values))
     return sorted_times
 
@@ -128,14 +133,40 @@ def _of_numbers(times: Times, files: Sequence[Path]) -> Times:
     return times[numbers - first] if numbers.min() >= first else times
 
 
-def _in_any_order(t_ns: Times, source: str) -> FrameTimes | None:
+def _in_any_order(t_ns: Times, source: str, files: Sequence[Path]) -> FrameTimes | None:
     """The times in their order, and the files with them; None if they are no times of a walk."""
     if np.all(np.diff(t_ns) > 0):
         return FrameTimes(t_ns, source)
+    if len(first_words(files)) == 1 and (clock := clock_by_order(t_ns)) is not None:
+        return _going_on(t_ns, source, clock)
     order = order_of_times(t_ns)
     if order is None:
         return None
     return FrameTimes(t_ns[order], source, order=order, out_of_order=moved_back(t_ns))
+
+
+def _on_one_clock(times: FrameTimes, files: Sequence[Path]) -> FrameTimes:
+    """Files that are only in order of the times in their names, whose clock may be set back."""
+    if len(first_words(files)) > 1:
+        return times
+    order = np.arange(len(files)) if times.order is None else times.order
+    clock = clock_by_time(times.t_ns, lambda: [files[row].stat().st_size for row in order])
+    if clock is None:
+        return times
+    there = replace(clock, order=order[clock.order])
+    t_ns = np.empty_like(times.t_ns)
+    t_ns[order] = times.t_ns
+    return replace(_going_on(t_ns, times.source, there), out_of_order=times.out_of_order)
+
+
+def _going_on(t_ns: Times, source: str, clock: FrameClock) -> FrameTimes:
+    """The times where the clock was set back, in the order of recording."""
+    return FrameTimes(t_ns[clock.order] + clock.shift_ns, source, order=clock.order, clock=clock)
+
+
+def first_words(files: Sequence[Path]) -> list[str]:
+    """What the names of files begin with, before any number: those of several sensors differ."""
+    return sorted({re.split(r"\d", f.stem, maxsplit=1)[0].strip("-_. ").lower() for f in files})
 
 
 def _stem(file: Path) -> str:

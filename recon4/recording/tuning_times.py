@@ -148,6 +148,36 @@ class FrameTimeTuning(Struct, frozen=True, kw_only=True):
     of it."""
     earliest_ns: int = 300_000_000 * 1_000_000_000
     """Times before 1979 do not count from 1970."""
+    pair_ratio: float = 0.25
+    """Two steps that are the usual one together, within this ratio of it: frames of two clocks."""
+    fewest_between: int = 2
+    """Fewer pairs of such steps in a row are frames that came unevenly."""
+    alone_ratio: float = 0.1
+    """With a larger ratio of short steps that are no pair, frames are missing all along."""
+    more_frames: float = 0.7
+    """Two clocks have more frames than fit into the time: at least this ratio of the second's."""
+    smaller_ratio: float = 0.75
+    """Twice as many frames that are smaller than this ratio of the others: a faster rotation."""
+    phase_frames: int = 8
+    """The phase of a clock is that of this many frames."""
+    missing_steps: int = 3
+    """Stretches of two clocks are one, if no more steps are between them: a frame is missing."""
+    skipped_cost: float = 0.1
+    """A frame that is missing counts as much as this ratio of a step off the phase."""
+    between_ratio: float = 0.75
+    """Times nearer to earlier ones than this ratio of a step lie between them."""
+    joined_steps: float = 2.5
+    """Parts nearer than this many steps are one recording, given in another order."""
+    pause_ratio: float = 0.9
+    """A clock that pauses for this ratio of the length of another was set to it, and back."""
+    fewest_set_back: int = 4
+    """Fewer frames in a row are no clock that goes on."""
+    most_set_back: int = 16
+    """Times that go back more often are in no order."""
+    even_steps: float = 1.6
+    """With a usual step that is longer than the median by this, frames are missing."""
+    long_step_percent: float = 90.0
+    """Where most frames lie between others, the usual step is among the longest."""
 
 
 FRAME_TIMES = FrameTimeTuning()

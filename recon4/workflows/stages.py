@@ -351,7 +351,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
     return save_findings(context.out, check_walk(read_walk(artifacts, context.settings)))
 
 
-FRAMES = Stage("frames", 38, ImportReads, _frames, FrameFigures)
+FRAMES = Stage("frames", 39, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     51,

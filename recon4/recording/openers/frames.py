@@ -40,7 +40,7 @@ def open_frames(request: OpenRequest) -> Recording:
     _require_one_lidar(rig, paths[0])
     sensor = rig.sensors[0]
     gaps = folder_gaps(frames, sensor.name, tuned(IngestTuning, settings).gap_s)
-    for gap in gaps[: LISTED.names]:
+    for gap in [gap for gap in gaps if gap.seconds > 0.0][: LISTED.names]:
         since_s = (gap.t_ns - int(frames.t_ns[0])) / 1e9
         report.warn(
             FindingKind.TIME_GAP,
