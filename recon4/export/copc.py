@@ -133,12 +133,11 @@ def _sort_into(
     low_s, high_s = np.inf, -np.inf
     header.partial_reset()
     for block in stream:
-        points = las_points(block, header, las_records(len(block.xyz), header))
+        points = las_points(block, header, las_records(len(block.xyz), header), account=meant)
         header.grow(points)
         low_s = min(low_s, float(points.gps_time.min()))
         high_s = max(high_s, float(points.gps_time.max()))
         files.add(points.array)
-        meant.add(block.xyz, block.columns["classification"])
     return low_s, high_s
 
 

@@ -16,6 +16,7 @@ from recon4.errors import GeoreferenceError
 from recon4.export.account import PointAccount
 from recon4.export.points import Block, PointSource
 from recon4.export.tuning import LAZ
+from recon4.kernels.las import whole_steps
 from recon4.mapping.tile import DEVIATION
 from recon4.model.gps_time import day_of, is_absolute, point_time_s
 from recon4.progress import Progress
@@ -100,20 +101,24 @@ def las_records(count: int, header: Any) -> NDArray[np.void]:
     return np.zeros(count, header.point_format.dtype())
 
 
-def las_points(block: Block, header: Any, records: NDArray[np.void]) -> Any:
+def las_points(
+    block: Block, header: Any, records: NDArray[np.void], *, account: PointAccount
+) -> Any:
     """Points of the map as records of a file.
 
     Args:
-        block: The points.
+        block: The points, at least one.
         header: Of `las_header`.
         records: Receives the records, (N,): of `las_records`, or of other points.
+        account: Accounts for them, but for their stored bytes.
 
     Raises:
         GeoreferenceError: If they are too far from the header's offset for its steps.
     """
     absolute = header.global_encoding.gps_time_type == laspy.header.GpsTimeType.STANDARD
-    steps = np.rint((block.xyz - header.offsets) / header.scales)
-    if not (np.abs(steps) < 2**31 - 1).all():
+    xyz, steps = np.ascontiguousarray(block.xyz), np.empty((3, len(records)), np.int32)
+    corners = np.empty((2, 3))
+    if not whole_steps(xyz, header.offsets, header.scales, steps, corners):
         wide_km = round(4e6 * header.scales[0])
         raise GeoreferenceError(
             f"the map is wider than {wide_km} km or has coordinates without meaning"
@@ -122,7 +127,8 @@ def las_points(block: Block, header: Any, records: NDArray[np.void]) -> Any:
         records, header.point_format, header.scales, header.offsets
     )
     columns = block.columns
-    points.X[:], points.Y[:], points.Z[:] = steps.T.astype(np.int32)
+    account.add_summary(len(xyz), corners, columns["classification"])
+    points.X[:], points.Y[:], points.Z[:] = steps
     points.intensity[:] = columns["intensity"]
     # The number of returns is the smallest it can be: a map does not store how many a shot had.
     number = (columns["echo"] + 1) & 0xF

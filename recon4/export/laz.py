@@ -188,10 +188,9 @@ def _together(
     records = las_records(LAZ.together, header)
 
     def fill(part: _BatchPart) -> PointAccount:
-        xyz, begin = part.block.xyz, part.first % LAZ.together
-        las_points(part.block, header, records[begin : begin + len(xyz)])
-        account = PointAccount()
-        account.add(xyz, part.block.columns["classification"])
+        begin, account = part.first % LAZ.together, PointAccount()
+        rows = slice(begin, begin + len(part.block.xyz))
+        las_points(part.block, header, records[rows], account=account)
         return account
 
     for batch, parts in groupby(_parts(stream), lambda part: part.batch):
