@@ -7,7 +7,8 @@ spawned.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Iterator, Mapping
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
@@ -49,12 +50,21 @@ class ErrorKeepingWriter(io.BufferedWriter):
 
     write_error: OSError | None = None
 
+    def __init__(self, raw: io.FileIO) -> None:
+        super().__init__(raw)
+        self.written: dict[int, tuple[int, int]] = {}
+        """First byte of each write -> how many bytes, and their CRC-32."""
+
     def write(self, data: Any) -> int:
+        at = self.tell()
         try:
-            return super().write(data)
+            count = super().write(data)
         except OSError as error:
             self.write_error = error
             raise
+        if count:
+            self.written[at] = count, zlib.crc32(data)
+        return count
 
 
 @contextmanager
@@ -118,28 +128,46 @@ def export_laz(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
+    source = PointSource.of(map_, output, selection)
+    return _export(source, path, progress, whole=True)
+
+
+def export_map_laz(
+    map_: Path | TileSet, path: Path, output: OutputCrs, *, progress: Progress | None = None
+) -> int:
+    """Write a map as `export_laz` does, with the same bytes, but expand a part of it only.
+
+    All bytes are read back and compared with what the compression gave. The first chunk of each
+    `LAZ.together` points is expanded and compared with what was meant.
+    """
+    check_name(path, ".laz")
+    source = PointSource.of(map_, output)
+    return _export(source, path, progress, whole=False)
+
+
+def _export(source: PointSource, path: Path, progress: Progress | None, *, whole: bool) -> int:
+    """Write and check a file; ``whole`` = all of its points are expanded again."""
     with ThreadPoolExecutor(LAZ.workers) as pool, atomic_file(path) as temporary:
         each = partial(in_order, pool)
-        source = replace(PointSource.of(map_, output, selection), each=each)
+        source = replace(source, each=each)
         header = las_header(source, scale_m=LAZ.scale_m)
         meant = PointAccount(crs=crs_text(header))
         stream = las_blocks(source, progress)
         with writing_las(temporary, path.name) as file:
-            _write(file, header, stream, meant=meant, each=each)
+            for points in _written(file, header, _together(stream, header, meant, each=each)):
+                meant.add_stored(points if whole else points[: POINT_EXPORT.summed], each)
+        if not whole:
+            _check_bytes(temporary, file.written, path.name)
         source.seal(temporary)
         with reading_las(path.name):
-            _check(temporary, meant, path.name, each=each)
+            _check(temporary, meant, path.name, each=each if whole else None)
     return meant.count
 
 
-def _write(
-    file: ErrorKeepingWriter,
-    header: Any,
-    stream: Iterable[Block],
-    *,
-    meant: PointAccount,
-    each: Each,
-) -> None:
+def _written(
+    file: ErrorKeepingWriter, header: Any, batches: Iterable[Any]
+) -> Iterator[NDArray[np.void]]:
+    """Compress batches of points; the records of each when they are."""
     with laspy.open(
         file,
         mode="w",
@@ -147,9 +175,9 @@ def _write(
         laz_backend=laspy.LazBackend.LazrsParallel,
         closefd=False,
     ) as out:
-        for points in _together(stream, header, meant, each=each):
+        for points in batches:
             out.write_points(points)
-            meant.add_stored(points.array, each)
+            yield points.array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -204,22 +232,70 @@ def _together(
         )
 
 
-def _check(path: Path, meant: PointAccount, name: str, *, each: Each) -> None:
-    """Read every point back, and compare with what was meant.
+def _check_bytes(path: Path, written: Mapping[int, tuple[int, int]], name: str) -> None:
+    """Read the bytes of a file back, and compare them with those that were written.
+
+    Raises:
+        StoreError: If they differ.
+    """
+    at = 0
+    with path.open("rb") as file:
+        for first, (count, crc) in sorted(written.items()):
+            if first != at or zlib.crc32(file.read(count)) != crc:
+                raise StoreError(f"{name} reads back wrong: {count} bytes from byte {first} on")
+            at += count
+        if file.read(1):
+            raise StoreError(f"{name} reads back wrong: more than {at} bytes")
+
+
+def _check(path: Path, meant: PointAccount, name: str, *, each: Each | None) -> None:
+    """Read points back, and compare with what was meant.
+
+    Args:
+        path: The file.
+        meant: What it shall hold.
+        name: Of the file, for errors.
+        each: Threads for all points; None = the first ones of each batch, to which the checksums
+            belong.
 
     Raises:
         StoreError: If the file differs.
     """
     with laspy.open(path) as file:
-        found = PointAccount(crs=crs_text(file.header))
-        for points in file.chunk_iterator(LAZ.together):
-            _account(found, points.array, file.header, each=each)
-        stated = PointAccount(found.crs, file.header.point_count)
+        stated = PointAccount(crs_text(file.header), file.header.point_count)
         stated.low_m, stated.high_m = file.header.mins, file.header.maxs
-    stated.classes, stated.sums = found.classes, found.sums
+        if each is None:
+            stated.classes, stated.sums = meant.classes, meant.sums
+            found = stated
+            _check_first(file, meant.sums, name)
+        else:
+            found = _account_of_all(file, each)
+            stated.classes, stated.sums = found.classes, found.sums
     rounded_m = LAZ.scale_m / 2.0 + REREAD.bounds_m
     for one in (stated, found):
         meant.compare(one, name, within_m=rounded_m)
+
+
+def _check_first(file: Any, sums: Sequence[int], name: str) -> None:
+    """Compare the first points of each batch with their checksums.
+
+    Raises:
+        StoreError: If they differ.
+    """
+    for batch, expected in enumerate(sums):
+        first, read = batch * LAZ.together, PointAccount()
+        file.seek(first)
+        read.add_stored(file.read_points(POINT_EXPORT.summed).array)
+        if read.sums != [expected]:
+            raise StoreError(f"{name} reads back wrong: points from number {first} on")
+
+
+def _account_of_all(file: Any, each: Each) -> PointAccount:
+    """Account for all points of a file."""
+    found = PointAccount(crs=crs_text(file.header))
+    for points in file.chunk_iterator(LAZ.together):
+        _account(found, points.array, file.header, each=each)
+    return found
 
 
 def _account(found: PointAccount, records: NDArray[np.void], header: Any, *, each: Each) -> None:

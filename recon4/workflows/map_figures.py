@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.evaluation.thickness import plane_thickness
-from recon4.export.laz import export_laz
+from recon4.export.laz import export_map_laz
 from recon4.export.points import CRS_OF_MAP, OutputCrs
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
@@ -34,4 +34,4 @@ def write_map_laz(folder: Path, level: Path, *, progress: Progress) -> None:
     """Write ``map.laz`` beside the tiles of a map, in the CRS of the stage ``level``."""
     crs = read_crs(level)
     out = OutputCrs(crs.wkt, crs.to_crs) if crs else CRS_OF_MAP
-    export_laz(folder, folder / "map.laz", out, progress=progress)
+    export_map_laz(folder, folder / "map.laz", out, progress=progress)

@@ -230,14 +230,14 @@ def test_a_crs_that_is_none_and_coordinates_that_do_not_fit_are_refused(folder, 
 
 
 def test_a_file_that_reads_back_wrong_never_gets_its_name(folder, tmp_path, monkeypatch):
-    write = laz._write
+    check = laz._check
 
-    def lose_a_point(*args, meant, each):
-        write(*args, meant=meant, each=each)
+    def lose_a_point(path, meant, *args, **named):
         meant.count += 1
+        check(path, meant, *args, **named)
 
     (tmp_path / "map.laz").write_text("the one before")
-    monkeypatch.setattr(laz, "_write", lose_a_point)
+    monkeypatch.setattr(laz, "_check", lose_a_point)
 
     with pytest.raises(StoreError):
         export_laz(folder, tmp_path / "map.laz")

@@ -3,9 +3,12 @@
 import laspy
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.errors import ConfigError, StoreError
+from recon4.export import account, laz
 from recon4.export.clouds import cloud_writer
+from recon4.export.laz import export_laz, export_map_laz
 from recon4.export.options import ExportOptions, classes_named
 from recon4.export.points import OutputCrs, PointSource
 from recon4.export.selection import EVERY_CLASS, PointSelection
@@ -112,6 +115,53 @@ def test_a_file_of_which_a_byte_changes_before_it_is_read_again_is_refused(tiles
     with pytest.raises(StoreError, match="reads back wrong"):
         cloud_writer(tmp_path / name)(tiles, tmp_path / name, output)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_any_byte_of_the_file_beside_the_tiles_that_changes_is_noticed(
+    tiles, tmp_path, monkeypatch
+):
+    check, out = laz._check_bytes, tmp_path / "map.laz"
+    assert export_map_laz(tiles, out, IN_A_GRID) == len(tiles)
+    length = out.stat().st_size
+    export_laz(tiles, tmp_path / "whole.laz", IN_A_GRID)
+    assert out.read_bytes() == (tmp_path / "whole.laz").read_bytes()
+    for at in (0, 100, length // 3, length - 1, length):
+        monkeypatch.setattr(laz, "_check_bytes", damaging(check, at))
+        with pytest.raises(StoreError, match="reads back wrong"):
+            export_map_laz(tiles, tmp_path / "other.laz", IN_A_GRID)
+    assert not (tmp_path / "other.laz").exists()
+
+
+def damaging(check, at):
+    """Change a byte of a file before it is checked, or add one behind its last."""
+
+    def changed(path, *arguments):
+        data = bytearray(path.read_bytes())
+        data[at : at + 1] = bytes([data[at] ^ 1 if at < len(data) else 0])
+        path.write_bytes(data)
+        check(path, *arguments)
+
+    return changed
+
+
+@pytest.mark.parametrize("batch", [0, 2, -1])
+def test_of_the_file_beside_the_tiles_the_first_points_of_each_batch_are_expanded(
+    tiles, tmp_path, monkeypatch, batch
+):
+    check = laz._check
+
+    def other_points_were_meant(path, meant, *arguments, **named):
+        assert len(meant.sums) == 4
+        meant.sums[batch] ^= 1
+        check(path, meant, *arguments, **named)
+
+    monkeypatch.setattr(laz, "_check", other_points_were_meant)
+    monkeypatch.setattr(laz, "LAZ", structs.replace(laz.LAZ, together=-(-len(tiles) // 4)))
+    small = structs.replace(laz.POINT_EXPORT, summed=100)
+    monkeypatch.setattr(laz, "POINT_EXPORT", small)
+    monkeypatch.setattr(account, "POINT_EXPORT", small)
+    with pytest.raises(StoreError, match="reads back wrong: points from number"):
+        export_map_laz(tiles, tmp_path / "map.laz", IN_A_GRID)
 
 
 def test_coordinates_are_kept_to_a_tenth_of_a_millimeter_far_from_zero(tiles, tmp_path):
