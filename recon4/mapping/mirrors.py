@@ -220,22 +220,15 @@ def _fitted(sight: Sight, normal: Array, angle_rad: float) -> Wall:
 
 def _mirror(wall: Wall, steep: _Steep, every: Sight) -> Mirror | None:
     """The part of a wall that shows the room before it; None = less than counts."""
-    sight, normal = steep.sight, steep.normal
-    before, behind = wall.height(sight.origin_m), -wall.height(sight.point_m)
-    beams = np.flatnonzero((before > MIRRORS.before_m) & (behind > MIRRORS.behind_m))
-    beams = beams[np.abs(normal[beams] @ wall.normal) > MIRRORS.facing]
-    beams = beams[:: 1 + len(beams) // MIRRORS.most_beams]
+    beams = _through(wall, steep)
     if len(beams) * MIRRORS.grid_m**2 < MIRRORS.min_area_m2:
         return None
+    wall = Wall(wall.normal, wall.offset_m + _hangs_before_m(wall, steep, beams))
+    sight = steep.sight
     point, origin = sight.point_m[beams], sight.origin_m[beams]
-    reach, nearest = steep.tree.query(wall.reflected(point), distance_upper_bound=MIRRORS.same_m)
-    met = np.isfinite(reach)
-    turned = normal[beams] - 2.0 * (normal[beams] @ wall.normal)[:, None] * wall.normal
-    like = np.einsum("ni,ni->n", turned, normal[np.where(met, nearest, 0)])
-    # A mirror shows the side that faces it. In a row of columns, each as far from the next, a plane
-    # of their fronts maps columns onto columns, but onto their other sides.
-    met &= like > MIRRORS.same_cosine
-    part = before[beams] / (before[beams] + behind[beams])
+    before, behind = wall.height(origin), -wall.height(point)
+    met = np.abs(_match(wall, steep, beams).off_m) < MIRRORS.same_m
+    part = before / (before + behind)
     at = origin + part[:, None] * (point - origin)
     cells, which, count = np.unique(wall.cells(at), axis=0, return_inverse=True, return_counts=True)
     which = which.ravel()
@@ -255,6 +248,55 @@ def _mirror(wall: Wall, steep: _Steep, every: Sight) -> Mirror | None:
         _whole(wall, every[np.flatnonzero(crossing)], cells[mirrored], but=cells[other]),
         figures,
     )
+
+
+def _through(wall: Wall, steep: _Steep) -> NDArray[np.intp]:
+    """Rows of points that face a wall and whose beams cross it, (M,)."""
+    crossing = wall.height(steep.sight.origin_m) > MIRRORS.before_m
+    crossing &= wall.height(steep.sight.point_m) < -MIRRORS.behind_m
+    beams = np.flatnonzero(crossing)
+    beams = beams[np.abs(steep.normal[beams] @ wall.normal) > MIRRORS.facing]
+    return beams[:: 1 + len(beams) // MIRRORS.most_beams]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Match:
+    """Surfaces near points that a wall reflects. M points."""
+
+    off_m: Array
+    """From the plane of the surface to the reflected point, inf = there is none like it, (M,)."""
+    facing: Array
+    """Cosine between the normals of surface and wall, (M,)."""
+
+
+def _match(wall: Wall, steep: _Steep, beams: NDArray[np.intp]) -> _Match:
+    """The surfaces that points (M,) would be on if the wall were a mirror."""
+    normal, reflected = steep.normal[beams], wall.reflected(steep.sight.point_m[beams])
+    reach, nearest = steep.tree.query(reflected, distance_upper_bound=MIRRORS.near_m)
+    met = np.isfinite(reach)
+    nearest = np.where(met, nearest, 0)
+    surface = steep.normal[nearest]
+    turned = normal - 2.0 * (normal @ wall.normal)[:, None] * wall.normal
+    # A mirror shows the side that faces it. In a row of columns, each as far from the next, a plane
+    # of their fronts maps columns onto columns, but onto their other sides.
+    met &= np.einsum("ni,ni->n", turned, surface) > MIRRORS.same_cosine
+    off_m = np.einsum("ni,ni->n", reflected - steep.sight.point_m[nearest], surface)
+    return _Match(np.where(met, off_m, np.inf), surface @ wall.normal)
+
+
+def _hangs_before_m(wall: Wall, steep: _Steep, beams: NDArray[np.intp]) -> float:
+    """How far before its wall a mirror hangs [m]: half of what its reflections are off.
+
+    No mirror is inside of a wall, nor far before it: two like flights of stairs on both sides of
+    a wall or of a well mirror each other there. Then it is 0.
+    """
+    side = steep.normal[np.abs(wall.height(steep.sight.point_m)) < MIRRORS.offset_m] @ wall.normal
+    match = _match(wall, steep, beams)
+    met = np.isfinite(match.off_m)
+    if not met.any() or np.median(side[np.abs(side) > np.cos(2.0 * MIRRORS.angle_rad)]) < 0.0:
+        return 0.0
+    before_m = -0.5 * float(np.median(match.off_m[met] / match.facing[met]))
+    return before_m if 0.0 < before_m < MIRRORS.hangs_m else 0.0
 
 
 def _whole(
@@ -311,5 +353,5 @@ def _is_entered(wall: Wall, steep: _Steep, reflected: Array) -> bool:
     if not len(inside):
         return False
     tree = cKDTree(steep.sight.point_m[inside], balanced_tree=False, compact_nodes=False)
-    reach, _ = tree.query(reflected, distance_upper_bound=MIRRORS.same_m)
+    reach, _ = tree.query(reflected, distance_upper_bound=MIRRORS.entered_m)
     return bool(np.isfinite(reach).mean() > MIRRORS.entered_ratio)

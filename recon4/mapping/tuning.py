@@ -53,9 +53,14 @@ class MirrorTuning(Struct, frozen=True, kw_only=True):
     """Beams count that begin and end this far from the wall."""
     facing: float = 0.5
     """Cosine between a surface's normal and that of the wall above which it faces it."""
-    same_m: float = 0.12
+    near_m: float = 0.3
+    same_m: float = 0.08
     same_cosine: float = 0.85
-    """A reflected point lies on a surface within this, with the same normal."""
+    """A reflected point is this near to one of a surface, this near to its plane, and has the same
+    normal: far walls have few points."""
+    hangs_m: float = 0.06
+    """No mirror hangs farther before its wall [m]: the showroom's hangs 0.04, the middle between
+    like flights of stairs is 0.13 before a rail."""
     min_beams: int = 3
     min_ratio: float = 0.75
     """A cell is mirrored if this many beams cross it, and this ratio of them shows the room before
@@ -65,8 +70,9 @@ class MirrorTuning(Struct, frozen=True, kw_only=True):
     mirrors, 0.47 over the wall of a staircase."""
     min_area_m2: float = 2.5
     """A smaller wall is no mirror [m²]."""
+    entered_m: float = 0.12
     entered_ratio: float = 0.5
-    """A room is real if this ratio of it was seen from behind the wall, too."""
+    """A room is real if this ratio of it was seen from behind the wall, too, within this [m]."""
     reflected_m: float = 0.1
     """A reflection lies at least this far behind the mirror."""
     most_beams: int = 20_000
