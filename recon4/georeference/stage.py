@@ -259,6 +259,7 @@ def _uncertainty(
             gnss_m=float(np.hypot(model.gnss_m, known_m)),
             gnss_turn_rad=abs(turn_by_antenna(nodes, antenna)) if len(nodes) > 1 else 0.0,
         )
+    known = replace(known, rig=known.rig.seen_at(frames.rig.sensors[0].T_body_sensor.t))
     return pose_uncertainty(graph, positions=placed.positions, model=model, known=known)
 
 

@@ -76,6 +76,9 @@ class RigErrorTuning(Struct, frozen=True, kw_only=True):
     either: float = float(np.sqrt(0.5 / 3.0))
     """A turn between the only LiDAR and the IMU is an error of one of them, as likely of either:
     half of its square, on three axes."""
+    exchanged_rad: float = 0.35
+    """A larger turn against the only LiDAR is one of exchanged axes of an IMU, not of a mount
+    [rad]."""
     walk_m_s: float = 1.3
     turn_rad_s: float = 1.0
     """Speeds by which an error of a LiDAR's clock becomes one of the pose."""
