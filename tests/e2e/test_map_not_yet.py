@@ -11,7 +11,9 @@ from tests.served import served
 
 pytestmark = pytest.mark.e2e
 
-server = served(lambda root: build_project(root / "young", with_map=False))
+server = served(
+    lambda root: [build_project(root / "young", with_map=False), build_project(root / "old")]
+)
 
 
 @looks("desktop light")
@@ -56,3 +58,40 @@ def test_a_map_appears_once_its_job_is_done_also_one_that_failed_before(server, 
     expect(news).to_contain_text("A job is making this map")
     with page.expect_event("domcontentloaded"):
         state.update(finished="done", map=200)
+
+
+@looks("desktop light")
+def test_slices_show_a_map_that_is_made_again_and_lose_no_work_by_it(server, page):
+    state = {"finished": "", "key": "before"}
+
+    def view():
+        job = {"id": "j", "project": "old", "created": "1", "finished": state["finished"]}
+        return json.dumps({"job": job})
+
+    def facts(route):
+        answer = route.fetch()
+        route.fulfill(response=answer, json=answer.json() | {"key": state["key"]})
+
+    page.route("**/api/jobs/j", lambda route: route.fulfill(body=view()))
+    stream = "text/event-stream"
+    page.route(
+        "**/api/events",
+        lambda route: route.fulfill(
+            body=f"retry: 200\nevent: job\ndata: {view()}\n\n", content_type=stream
+        ),
+    )
+    page.route("**/api/projects/old/slices", facts)
+    page.route("**/api/projects/old/slices?*", facts)
+    page.goto(f"{server.url}/projects/old/slices/")
+    news = page.locator("#news")
+    expect(news).to_have_text("This map is being made again. You see the one before.")
+
+    with page.expect_event("domcontentloaded"):
+        state.update(finished="done", key="after")
+    state.update(finished="")
+    expect(news).to_contain_text("is being made again")
+    page.locator("#findings summary").first.focus()
+    state.update(finished="done", key="newest")
+    expect(news).to_contain_text("The map was made again.")
+    with page.expect_event("domcontentloaded"):
+        news.get_by_role("button", name="Show the new map").click()

@@ -20,6 +20,7 @@ import { distanceText, imageText, planeText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
 import { help } from "./help.js";
 import { likingOf } from "./liking.js";
+import { followJobs } from "./made_again.js";
 import { nextColor, nextSurface } from "./next_choice.js";
 import { pageMarks } from "./page_marks.js";
 import { isPlan, showPlan } from "./plan.js";
@@ -372,6 +373,7 @@ async function begin() {
   const begun = await attempt(byId("message"), async () => {
     const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
     if (!isGuest(me)) Object.assign(found, fillFindings());
+    if (!isGuest(me)) followJobs();
     only("page-head").name = project.name;
     only("map-verdict").facts = factsIn(project.summary);
     document.title = t("title-of", { project: project.name });

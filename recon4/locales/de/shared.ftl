@@ -281,3 +281,10 @@ password = Passwort
 password-again = Passwort noch einmal
 password-why = Dies wird mit dem eigenen Namen gezeichnet, und die Anmeldung ist eine Weile her
 confirm = Bestätigen
+
+## A map that is made, or made again
+
+map-was-remade = Die Karte wurde neu gerechnet.
+show-new = Die neue Karte zeigen
+being-made = Ein Auftrag rechnet diese Karte. Sie erscheint hier, sobald sie fertig ist.
+being-remade = Diese Karte wird neu gerechnet. Sie sehen die vorherige.

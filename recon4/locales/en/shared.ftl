@@ -281,3 +281,10 @@ password = Password
 password-again = Your password again
 password-why = This is signed with your name, and you signed in a while ago
 confirm = Confirm
+
+## A map that is made, or made again
+
+map-was-remade = The map was made again.
+show-new = Show the new map
+being-made = A job is making this map. It appears here once it is made.
+being-remade = This map is being made again. You see the one before.
