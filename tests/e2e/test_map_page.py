@@ -36,11 +36,16 @@ def rested(page):
 
 def drawn(page):
     """Pixels of the map's canvas that are not of its background."""
+    return int(is_drawn(page).sum())
+
+
+def is_drawn(page):
+    """Which pixels of the map's canvas are not of its background, (height, width)."""
     page.evaluate(SHOW, "hidden")
     png = page.locator("#map").screenshot()
     page.evaluate(SHOW, "")
     rgb = np.asarray(Image.open(io.BytesIO(png)).convert("RGB")).astype(int)
-    return int((np.abs(rgb - rgb[2, 2]).max(axis=2) > 12).sum())
+    return np.abs(rgb - rgb[2, 2]).max(axis=2) > 12
 
 
 def at(page, x, y):
@@ -307,6 +312,13 @@ def test_fit_shows_all_of_the_map_again_from_where_one_looks(server, page):
         expect(page).not_to_have_url(whole)
         way()
         expect(page).to_have_url(whole)
+
+    rested(page)
+    canvas, bars, caption = (
+        page.locator(one).bounding_box() for one in ("#map", "#bar", "#status")
+    )
+    rows = canvas["y"] + np.flatnonzero(is_drawn(page).any(axis=1))
+    assert rows[0] >= bars["y"] + bars["height"] and rows[-1] < caption["y"]
 
 
 @looks("desktop light")

@@ -78,7 +78,7 @@ const camera = () => page.state.camera ?? all("oblique", false);
 const all = (name, parallel) => fitted(VIEWS[name], parallel);
 
 /**
- * All of the map beside the panel, seen from there.
+ * All of the map between bars, panel and caption, seen from there.
  * @param {{yaw: number, pitch: number}} look
  * @param {boolean} parallel
  */
@@ -86,11 +86,11 @@ function fitted(look, parallel) {
   const [{ index }, { width, height }] = [page, screen()];
   if (!index) throw new Error("the map has not been read");
   const covered = page.panel && width > 2 * PANEL_PX ? PANEL_PX : 0;
-  const bars = Math.min(byId("bar").offsetHeight, height / 3);
-  const free = { width: width - covered, height: height - bars };
+  const [bars, under] = ["bar", "status"].map((one) => byId(one).offsetHeight);
+  const free = { width: width - covered, height: Math.max(height - bars - under, height / 2) };
   const made = viewOf(look, { index, screen: free, heights: shown.heightsShown(), parallel });
   made.distance *= height / free.height; // as high as `free`, not as the image
-  return panned(made, screen(), [-covered / 2, bars / 2]);
+  return panned(made, screen(), [-covered / 2, (bars - under) / 2]);
 }
 
 /** Changes the state, the address, and what depends on them. */
