@@ -28,7 +28,7 @@ import { withPassword } from "./recent_login.js";
 import { showTrustedKeys } from "./trusted_keys.js";
 import { showWebhooks } from "./webhooks.js";
 import { showWorkers } from "./workers.js";
-import { t } from "../shared/texts.js";
+import { t, wordOf } from "../shared/texts.js";
 
 /** @import {Account, Changes, Entry, Role} from "../shared/http_types" */
 
@@ -103,7 +103,7 @@ function entry(/** @type {Entry} */ { time, person: who, address, action, object
     <td data-label=${t("who")}>${who}</td>
     <td data-label=${t("from-address")}>${address}</td>
     <td data-label=${t("what")}>
-      <span><b>${action}</b>${" "}<code>${object}</code></span>
+      <span><b>${wordOf("audit", action)}</b>${" "}<code>${object}</code></span>
     </td>
     <td data-label=${t("outcome")} class=${outcome === "done" ? "" : "bad"}>
       ${OUTCOMES[outcome] ?? outcome}
