@@ -80,18 +80,16 @@ async def address_of(target: Target, networks: Sequence[Network]) -> str:
             target.host, target.port, type=socket.SOCK_STREAM
         )
     except (OSError, UnicodeError) as error:
-        raise NotReachable(f"{target.host} is not known: {error}") from error
+        text = CodedText("host-unknown", host=target.host, reason=str(error))
+        raise NotReachable(text) from error
     addresses = [ipaddress.ip_address(str(one[4][0]).partition("%")[0]) for one in found]
     for address in addresses:
         if _is_named(address, networks) or (target.secure and is_public(address)):
             return str(address)
     if any(is_public(address) for address in addresses):
-        raise NotReachable(f"{target.host} is in the internet: https is required")
+        raise NotReachable(CodedText("host-needs-https", host=target.host))
     shown = ", ".join(dict.fromkeys(map(str, addresses)))
-    raise NotReachable(
-        f"{target.host} ({shown}) is not in the internet: the person who runs the server may allow "
-        "its network with RECON4_WEBHOOK_NETWORKS"
-    )
+    raise NotReachable(CodedText("host-not-public", host=target.host, addresses=shown))
 
 
 def is_public(address: IpAddress) -> bool:

@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import Recon4Error
+from recon4.locales.coded import CodedText, StoredText, text_of
 from recon4.review.decisions import DecisionKind
 from recon4.review.journal import read_rows
 from recon4.review.newest_approval import APPROVALS
-from recon4.untrusted.names import visible
 from recon4_app.access.audit import AuditLog
 from recon4_app.errors import AppError
 from recon4_app.jobs.model import Job
@@ -116,14 +116,14 @@ class Webhooks:
             status = await post(target, one.body, headers, networks=self.networks)
             problem = "" if 200 <= status < 300 else _status_problem(status)
         except NotReachable as error:
-            problem = str(error)
+            problem = text_of(error)
         await in_thread(self._note, one, problem)
 
     def _note(self, one: Waiting, problem: str) -> None:
         if problem:
             grown_s = WEBHOOKS.first_retry_s * WEBHOOKS.growth ** min(one.attempts, WEBHOOKS.batch)
             self.store.failed(
-                one.number, visible(problem), again_s=min(grown_s, WEBHOOKS.longest_retry_s)
+                one.number, StoredText.of(problem), again_s=min(grown_s, WEBHOOKS.longest_retry_s)
             )
         else:
             self.store.delivered(one.number)
@@ -168,6 +168,6 @@ def _approval_event(project: Path) -> WebhookEvent | None:
     return WebhookEvent(id=event, kind=EventKind.APPROVAL_SIGNED, time=row.time, data=data)
 
 
-def _status_problem(status: int) -> str:
-    moved = "; redirects are not followed, change the address" if 300 <= status < 400 else ""
-    return f"the receiver answered {status}{moved}"
+def _status_problem(status: int) -> CodedText:
+    code = "host-moved" if 300 <= status < 400 else "host-refused"
+    return CodedText(code, status=str(status))

@@ -9,6 +9,8 @@ from collections.abc import Mapping, Sequence
 import h11
 
 from recon4 import __version__
+from recon4.locales.coded import CodedText
+from recon4.untrusted.names import visible
 from recon4_app.settings import Network
 from recon4_app.webhooks.addresses import NotReachable, Target, address_of
 from recon4_app.webhooks.tuning import WEBHOOKS
@@ -30,9 +32,11 @@ async def post(
             address = await address_of(target, networks)
             return await _exchange(address, target, _request(target, body, headers))
     except TimeoutError as error:
-        raise NotReachable(f"no answer within {WEBHOOKS.answer_s:.0f} s") from error
+        text = CodedText("host-no-answer", seconds=round(WEBHOOKS.answer_s))
+        raise NotReachable(text) from error
     except (OSError, h11.ProtocolError) as error:  # errors of TLS are of the system's, too
-        raise NotReachable(str(error) or type(error).__name__) from error
+        reason = visible(str(error) or type(error).__name__, most=WEBHOOKS.max_problem)
+        raise NotReachable(CodedText("host-unreachable", reason=reason)) from error
 
 
 def _request(target: Target, body: str, headers: Mapping[str, str]) -> tuple[h11.Event, ...]:
@@ -72,4 +76,4 @@ async def _status(connection: h11.Connection, reader: asyncio.StreamReader) -> i
         if event is h11.NEED_DATA:
             connection.receive_data(await reader.read(1 << 14))
         elif not isinstance(event, h11.InformationalResponse):
-            raise NotReachable("the connection ended before a response")
+            raise NotReachable(CodedText("host-ended"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import secrets
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Annotated
 
 from fastapi import APIRouter, Depends, Path, Request
@@ -12,13 +13,14 @@ from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import ConfigError
-from recon4.locales.coded import CodedText, text_of
+from recon4.locales.coded import CodedText, said, text_of
 from recon4_app.access.audit import audit
 from recon4_app.access.login.routes import Text, Wire
 from recon4_app.access.people import Permission, Who, needs, recent_login
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.jobs.supervisor import now
+from recon4_app.pages import Language
 from recon4_app.settings import Network
 from recon4_app.webhooks.addresses import NotReachable, address_of, target_of
 from recon4_app.webhooks.deliver import trial_event
@@ -49,9 +51,11 @@ class NewWebhook(Wire):
 
 
 @router.get("", summary="Webhooks")
-def list_webhooks(server: Server) -> list[Webhook]:
+def list_webhooks(server: Server, language: Language) -> list[Webhook]:
     """List the webhooks with how many events wait, and why."""
-    return server.webhooks.store.all()
+    return [
+        replace(one, problem=said(one.problem, language)) for one in server.webhooks.store.all()
+    ]
 
 
 @router.post("", status_code=201, dependencies=[RECENT_LOGIN], summary="Add a webhook")
@@ -78,13 +82,18 @@ def remove_webhook(webhook_id: WebhookId, request: Request, server: Server) -> N
 
 
 @router.get("/{webhook_id}/deliveries", summary="Deliveries")
-def list_deliveries(webhook_id: WebhookId, server: Server) -> list[WebhookDelivery]:
+def list_deliveries(
+    webhook_id: WebhookId, server: Server, language: Language
+) -> list[WebhookDelivery]:
     """List the newest events of a webhook: delivered, or when and why they are sent again."""
-    return server.webhooks.store.deliveries(webhook_id)
+    found = server.webhooks.store.deliveries(webhook_id)
+    return [replace(one, problem=said(one.problem, language)) for one in found]
 
 
 @router.post("/{webhook_id}/test", status_code=201, summary="Send a test")
-def send_test(webhook_id: WebhookId, request: Request, server: Server) -> Webhook:
+def send_test(
+    webhook_id: WebhookId, request: Request, server: Server, *, language: Language
+) -> Webhook:
     """Post a test, and everything that waits, now."""
     store = server.webhooks.store
     store.try_now(webhook_id)
@@ -92,7 +101,7 @@ def send_test(webhook_id: WebhookId, request: Request, server: Server) -> Webhoo
     tested = store.get(webhook_id)
     audit(request, "test webhook", _named(tested))
     server.webhooks.wake()
-    return tested
+    return replace(tested, problem=said(tested.problem, language))
 
 
 def _named(webhook: Webhook) -> str:

@@ -6,15 +6,17 @@ A server that is killed in between sends it again.
 
 from __future__ import annotations
 
+import json
 import secrets
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import asdict
 from datetime import UTC, datetime
 
 import sqlalchemy as sa
 
 from recon4.errors import ConfigError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, StoredText, stored_text
 from recon4_app.access.database import DELIVERIES, WEBHOOKS_TABLE, writing
 from recon4_app.errors import Conflict, NotFound
 from recon4_app.webhooks.addresses import target_of
@@ -105,7 +107,7 @@ class WebhookStore:
                 created=_iso(row.created_s),
                 by=row.by,
                 waiting=counts.get(row.id, 0),
-                problem=last.get(row.id, ""),
+                problem=_read(last.get(row.id, "")),
             )
             for row in rows
         ]
@@ -177,12 +179,12 @@ class WebhookStore:
         """Mark what a receiver took."""
         self._change(number, delivered_s=self._clock(), attempts=_SENT.attempts + 1, problem="")
 
-    def failed(self, number: int, problem: str, *, again_s: float) -> None:
-        """Note a failed attempt; the next one is due after ``again_s``."""
+    def failed(self, number: int, problem: StoredText, *, again_s: float) -> None:
+        """Note a failed attempt and why; the next one is due after ``again_s``."""
         self._change(
             number,
             attempts=_SENT.attempts + 1,
-            problem=problem[: WEBHOOKS.max_problem],
+            problem=_written(problem),
             due_s=self._clock() + again_s,
         )
 
@@ -229,8 +231,21 @@ def _delivery(row: sa.Row[tuple[object, ...]]) -> WebhookDelivery:
         attempts=row.attempts,
         delivered="" if row.delivered_s is None else _iso(row.delivered_s),
         next_attempt=_iso(row.due_s) if row.delivered_s is None else "",
-        problem=row.problem,
+        problem=_read(row.problem),
     )
+
+
+def _written(problem: StoredText) -> str:
+    """A problem as its column has it: in English, and with code and values if it has a code."""
+    return json.dumps(asdict(problem)) if problem.code else problem.text[: WEBHOOKS.max_problem]
+
+
+def _read(column: str) -> str:
+    """The problem that `_written` kept, or an earlier version, which kept only the text."""
+    if not column.startswith("{"):
+        return column
+    kept = StoredText(**json.loads(column))
+    return stored_text(kept.code, kept.values, kept.text)
 
 
 def _began_s(webhook: Webhook) -> float:

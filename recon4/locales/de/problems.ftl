@@ -231,6 +231,14 @@ webhook-secret = secret: erwartet werden { $prefix } und { $least } bis { $most 
 webhook-no-event = events: erwartet wird mindestens eines
 webhook-unknown = kein Webhook { QUOTED($webhook) }
 webhooks-too-many = es gibt schon { $limit } Webhooks: einen entfernen
+host-unknown = { $host } ist nicht bekannt: { $reason }
+host-needs-https = { $host } liegt im Internet: https ist nötig
+host-not-public = { $host } ({ $addresses }) liegt nicht im Internet: Wer den Server betreibt, kann das Netz mit RECON4_WEBHOOK_NETWORKS erlauben
+host-no-answer = keine Antwort innerhalb von { $seconds } s
+host-unreachable = nicht erreichbar: { $reason }
+host-ended = Die Verbindung endete vor einer Antwort
+host-refused = Der Empfänger antwortete { $status }
+host-moved = Der Empfänger antwortete { $status }; Weiterleitungen wird nicht gefolgt, ändern Sie die Adresse
 
 ## Der Server im Ganzen
 

@@ -231,6 +231,14 @@ webhook-secret = secret: expected { $prefix } and { $least } to { $most } bytes 
 webhook-no-event = events: expected at least one
 webhook-unknown = no webhook { QUOTED($webhook) }
 webhooks-too-many = there are { $limit } webhooks already: remove one
+host-unknown = { $host } is not known: { $reason }
+host-needs-https = { $host } is in the internet: https is required
+host-not-public = { $host } ({ $addresses }) is not in the internet: the person who runs the server may allow its network with RECON4_WEBHOOK_NETWORKS
+host-no-answer = no answer within { $seconds } s
+host-unreachable = not reachable: { $reason }
+host-ended = the connection ended before a response
+host-refused = the receiver answered { $status }
+host-moved = the receiver answered { $status }; redirects are not followed, change the address
 
 ## The server as a whole
 

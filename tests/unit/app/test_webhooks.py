@@ -15,6 +15,7 @@ import pytest
 from msgspec import structs
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import said
 from recon4.review.newest_approval import record_newest
 from recon4_app.access.audit import AuditLog
 from recon4_app.access.database import open_database
@@ -167,6 +168,7 @@ def test_what_is_not_taken_is_sent_again_after_longer_and_longer(started, receiv
 
     assert waits_s == [5.0, 20.0, 80.0]
     assert "answered 503" in problems[0] and "redirects are not followed" in problems[1]
+    assert said(problems[0], "de") == "Der Empfänger antwortete 503"
     assert len(receiver.got) == 4 and len({body for *_, body in receiver.got}) == 1
     assert delivery.delivered and delivery.attempts == 4 and not delivery.problem
     assert len(failures) == 1  # the log is not flooded by a receiver that is away
