@@ -36,7 +36,7 @@ from recon4.cli.products import products
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
 from recon4.cli.storage import space
-from recon4.cli.terminal import write
+from recon4.cli.terminal import complaint_of, write
 from recon4.cli.workers import (
     SchedulerOption,
     TlsOption,
@@ -349,7 +349,7 @@ def _run(arguments: list[str], stop: StopSignals) -> tuple[int, str]:
     except Cancelled as stop:
         return _INTERRUPTED, str(stop)
     except Recon4Error as error:
-        return 1, str(error)
+        return 1, complaint_of(error)
     except MemoryError as error:
         return 1, f"not enough memory: a command may use 70 % of this computer's ({error})"
     except typer.TyperException as error:
@@ -368,7 +368,7 @@ def _settings(preset_name: str, assignments: list[str] | None) -> Settings:
     try:
         return override(preset(preset_name), assignments or [])
     except Recon4Error as error:
-        raise typer.BadParameter(str(error)) from error
+        raise typer.BadParameter(complaint_of(error)) from error
 
 
 def _show_settings(chosen: Settings) -> None:

@@ -9,6 +9,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO, cast
 
+from recon4.errors import ConfigError, Recon4Error
+from recon4.locales.coded import coded
+from recon4.locales.languages import of_terminal
+
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
@@ -25,6 +29,14 @@ _MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
 def write(text: str, end: str = "\n") -> None:
     """Say something on standard output."""
     sys.stdout.write(text + end)
+
+
+def complaint_of(error: Recon4Error) -> str:
+    """The message of an error in the language of the terminal, if that is known."""
+    try:
+        return coded(error).said(of_terminal())
+    except ConfigError:  # of the language itself
+        return str(error)
 
 
 class PlainLines:

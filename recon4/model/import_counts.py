@@ -36,12 +36,12 @@ class Loss:
         return self.said(ENGLISH)
 
     def said(self, language: str) -> str:
-        """The same in a language; the detail as it is."""
+        """The same in a language; a detail without a code as it is."""
         texts = _texts(language)
         number = str(self.number)
         if self.total:
             number = texts("counts-of", number=self.number, total=self.total)
-        detail = f" ({self.detail})" if self.detail else ""
+        detail = f" ({_said(self.detail, language)})" if self.detail else ""
         return f"{number} {count_label(self.name, language)}{detail}"
 
     @property
@@ -187,6 +187,12 @@ def _own_noun(listed: str, language: str) -> str:
 
 def _text(listed: str, language: str) -> str:
     return _texts(language)(f"count-{listed}")
+
+
+def _said(detail: str, language: str) -> str:
+    from recon4.locales.coded import said
+
+    return said(detail, language)
 
 
 def _texts(language: str) -> Texts:

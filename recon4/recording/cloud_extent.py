@@ -7,24 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Value
 from recon4.recording.tuning_topics import CLOUDS
-
-_LOOKS = {
-    "map": (
-        "coordinates of a map or of the earth, not a scan with the sensor at the origin. A "
-        "finished map is no recording; give it as a reference"
-    ),
-    "unit": (
-        "half of them are farther than {usual_m:.0f} m. If they are in millimeters, give "
-        "ingest.points_unit_m=0.001; a map whose origin is no sensor is no recording"
-    ),
-    "range": (
-        "half of them are farther than {usual_m:.0f} m. If the sensor measures that far, give a "
-        "larger ingest.max_range_m"
-    ),
-}
-"""As messages of errors name them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,9 +26,9 @@ class CloudExtent:
     """What it looks like: coordinates of a ``map``, another ``unit``, or a large ``range``."""
 
     @property
-    def text(self) -> str:
+    def text(self) -> CodedText:
         """In words, with the remedy."""
-        return f"{self._axes}: {_LOOKS[self.looks].format(usual_m=self.usual_m)}"
+        return CodedText(f"extent-{self.looks}", axes=self._axes, usual_m=self.usual_m)
 
     @property
     def values(self) -> dict[str, Value]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
@@ -55,7 +56,7 @@ class ExactClock:
             self._report.count("clouds_wrong_times")
             self._report.details.setdefault(
                 "clouds_wrong_times",
-                f"{self._name}: all points of a cloud have one time: spread in their order",
+                CodedText("detail-one-time", sensor=self._name),
             )
             values = first + (np.arange(len(values)) * period_ns) // len(values)
         return values + self.offset_ns(first, t_ns), sound

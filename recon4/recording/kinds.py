@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -25,6 +24,13 @@ from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
 from recon4.recording.gnss.files import is_gnss_file
+from recon4.recording.kind_problems import (
+    known_kinds,
+    none_inside,
+    several_kinds,
+    several_recordings,
+    unrecognized,
+)
 from recon4.recording.laser_tables import LASER_COLUMNS
 from recon4.recording.limits import LIMITS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
@@ -70,7 +76,6 @@ _KIND_OF_COLUMNS = {
     frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
     frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_FILE,
 }
-_PACKED = frozenset({".gz", ".xz", ".zst", ".bz2", ".zip", ".7z"})
 _KIND_OF_SUFFIX = {
     **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
     **dict.fromkeys(CLOUD_SUFFIXES, RecordingKind.FRAMES),
@@ -78,25 +83,6 @@ _KIND_OF_SUFFIX = {
     **dict.fromkeys((".lvx", ".lvx2"), RecordingKind.LVX),
 }
 """In folders, where not every file is opened."""
-
-_OTHERS = {
-    b"\xff\xd8\xff": "a JPEG image",
-    b"\x89PNG": "a PNG image",
-    b"PK\x03\x04": "a zip archive: unpack it first",
-    b"\x1f\x8b": "gzip compressed: unpack it first",
-    b"\xfd7zXZ": "xz compressed: unpack it first",
-    b"\x28\xb5\x2f\xfd": "zstd compressed: unpack it first",
-    b"BZh": "bzip2 compressed: unpack it first",
-    b"7z\xbc\xaf": "a 7z archive: unpack it first",
-    b"%PDF": "a PDF document",
-    b"LASF": "a LAS/LAZ point cloud: a finished map, not a recording",
-    b"ASTM-E57": "an E57 point cloud: a finished scan, not a recording",
-    b"\x7fELF": "a program",
-}
-
-
-_PTX = re.compile(rb"\d+\s*\n\d+\s*\n(?:\S+[ \t]+\S+[ \t]+\S+\s*\n){4}")
-"""Columns, rows, position and axes of the scanner, a line each."""
 
 
 @dataclass(frozen=True)
@@ -150,11 +136,13 @@ def recognize(path: Path) -> RecordingKind:
         RecordingError: If there is no such path.
     """
     if not path.exists():
-        raise RecordingError(f"{path} does not exist")
+        raise RecordingError(CodedText("no-path", path=str(path)))
     try:
         return contents_of(path).kind if path.is_dir() else _file_kind(path)
     except OSError as error:
-        raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
+        reason = error.strerror or str(error)
+        text = CodedText("path-unreadable", path=str(path), reason=reason)
+        raise RecordingError(text) from error
 
 
 def bag_paths(path: Path) -> list[Path]:
@@ -173,7 +161,7 @@ def capture_files(path: Path) -> list[Path]:
     if path.is_file():
         return [path]
     if not path.is_dir():
-        raise RecordingError(f"{path} does not exist")
+        raise RecordingError(CodedText("no-path", path=str(path)))
     return sorted(filter(_is_capture_file, path.iterdir()), key=natural)
 
 
@@ -181,11 +169,12 @@ def _file_kind(path: Path) -> RecordingKind:
     with path.open("rb") as file:
         head = file.read(4096)
     if not head:
-        raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+        raise EmptyRecording(CodedText("file-empty", name=path.name))
     if is_mesh(path):
-        raise UnknownFormat(f"{path.name}: a mesh: a finished model, not a recording; {_known()}")
+        text = CodedText("recording-is-mesh", name=path.name, known=known_kinds())
+        raise UnknownFormat(text)
     if is_points_file(path.name) and head.startswith(b"LASF"):
-        raise UnknownFormat(f"{path.name}: a part of a walk of a MANDEYE device: give its folder")
+        raise UnknownFormat(CodedText("recording-is-part", name=path.name))
     for has_content, kind in _BY_CONTENT:
         if has_content(path):
             return kind
@@ -196,15 +185,7 @@ def _file_kind(path: Path) -> RecordingKind:
     for reads, kind in _BY_LINES:
         if reads(path):
             return kind
-    raise UnknownFormat(f"{path.name}: no reader recognizes it ({_looks(head)}); {_known()}")
-
-
-def _looks(head: bytes) -> str:
-    """What an unknown file may be, by its first bytes."""
-    if _PTX.match(head):
-        return "looks like PTX scans: finished scans, not a recording"
-    what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
-    return f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
+    raise UnknownFormat(unrecognized(path.name, head))
 
 
 def _begins(*magic: bytes) -> Callable[[Path], bool]:
@@ -312,27 +293,15 @@ def _no_single_recording(contents: FolderContents) -> RecordingError:
     path, kinds = contents.folder, contents.kinds
     names = sorted(child.name for child in path.iterdir())
     if not names:
-        return EmptyRecording(f"{path.name}: the folder is empty")
+        return EmptyRecording(CodedText("folder-empty", name=path.name))
     candidates = contents.candidates()
     if kinds:
-        held = ", ".join(f"{files[0]} ({kind})" for kind, files in kinds.items())
-        return UnknownFormat(
-            f"{path.name}: holds recordings of {len(kinds)} kinds: {held}; give one",
-            candidates=candidates,
-        )
+        held = {kind.text: files[0] for kind, files in kinds.items()}
+        return UnknownFormat(several_kinds(path.name, held), candidates=candidates)
     if candidates:
-        held = ", ".join(str(one.relative_to(path)) for one in candidates[:8])
-        return UnknownFormat(
-            f"{path.name}: holds {len(candidates)} recordings: {held}"
-            f"{' …' if len(candidates) > 8 else ''}; give one",
-            candidates=candidates,
-        )
-    packed = [name for name in names if Path(name).suffix.lower() in _PACKED]
-    remedy = f"unpack its {len(packed)} compressed files first" if packed else _known()
-    return UnknownFormat(
-        f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
-        f"{' …' if len(names) > 8 else ''}; {remedy}"
-    )
+        inside = [str(one.relative_to(path)) for one in candidates]
+        return UnknownFormat(several_recordings(path.name, inside), candidates=candidates)
+    return UnknownFormat(none_inside(path.name, names))
 
 
 def _kinds_in(path: Path) -> tuple[dict[RecordingKind, list[str]], list[str]]:
@@ -365,7 +334,3 @@ def _is_pcap_file(path: Path) -> bool:
 
 def _is_capture_file(path: Path) -> bool:
     return path.is_file() and is_datagram_file(path)
-
-
-def _known() -> str:
-    return f"known: {', '.join(RecordingKind)}"

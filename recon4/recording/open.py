@@ -7,9 +7,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.recording.clock_jumps import with_jumps_removed
 from recon4.recording.clock_rates import with_clock_rates
+from recon4.recording.kind_problems import held_kinds
 from recon4.recording.kinds import PLANAR, FolderContents, RecordingKind, contents_of, recognize
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
 from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
@@ -71,7 +73,7 @@ def open_recording(request: OpenRequest, kinds: Kinds = KINDS) -> Recording:
             named = replace(recording, kind=recording.kind or str(kind))
             rated = with_clock_rates(named, request.report)
             return with_jumps_removed(rated, request.jumps)
-    raise UnknownFormat(f"{paths[0].name}: {kind}: no reader knows the sensor that made it")
+    raise UnknownFormat(CodedText("recording-no-sensor", name=paths[0].name, kind=kind.text))
 
 
 def _say_passed_over(contents: FolderContents, report: ImportReport) -> None:
@@ -95,18 +97,18 @@ def _one_kind(
         ConfigError: If there are none.
     """
     if not paths:
-        raise ConfigError("no recording given")
+        raise ConfigError(CodedText("recording-not-given"))
     for kind in found:
         if kind in kinds and kinds[kind].beside and set(found) <= {kind, *kinds[kind].beside}:
             return kind
     kind = found[0]
     if kind in PLANAR:
-        raise UnknownFormat(
-            f"{paths[0].name}: {kind}: it has no points of a LiDAR; process it alone"
-        )
+        text = CodedText("recording-planar-alone", name=paths[0].name, kind=kind.text)
+        raise UnknownFormat(text)
     if kind not in kinds:
-        raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
+        text = CodedText("recording-without-points", name=paths[0].name, kind=kind.text)
+        raise UnknownFormat(text)
     if any(other is not kind for other in found):
-        names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, found, strict=True))
-        raise UnknownFormat(f"recordings of one kind expected, got {names}")
+        held = held_kinds([(path.name, k.text) for path, k in zip(paths, found, strict=True)])
+        raise UnknownFormat(CodedText("recording-one-kind", held=held))
     return kind

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText, text_of
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import offset_values
@@ -112,7 +113,8 @@ class PointClock:
         except _UnusableTimes as reason:
             self._report.count("clouds_wrong_times")
             self._report.details.setdefault(
-                "clouds_wrong_times", f"{self._name}, {key!r}: {reason}"
+                "clouds_wrong_times",
+                CodedText("detail-times", sensor=self._name, field=repr(key), why=text_of(reason)),
             )
             return None
 
@@ -125,14 +127,14 @@ class PointClock:
             _UnusableTimes: If none is plausible.
         """
         if full_turn and numbers.span == 0.0:
-            raise _UnusableTimes(f"all points of a revolution have the time {numbers.middle:g}")
+            raise _UnusableTimes(CodedText("times-all-one", time=f"{numbers.middle:g}"))
         unit = 1.0
         if not is_known:
             unit = self._detected_unit(numbers, t_ns, period_ns, full_turn=full_turn)
         # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
         if full_turn and numbers.span * unit < 1e9 * POINT_TIMES.turn_s[0]:
             raise _UnusableTimes(
-                f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
+                CodedText("times-within", span_ms=f"{numbers.span * unit * 1e-6:.3g}")
             )
         return unit
 
@@ -148,9 +150,7 @@ class PointClock:
         if not unit and not full_turn:
             unit = self._known_unit or _unit_of_few(numbers)
         if not unit:
-            raise _UnusableTimes(
-                f"from first to last point {numbers.span:g}, no revolution in any unit"
-            )
+            raise _UnusableTimes(CodedText("times-no-unit", span=f"{numbers.span:g}"))
         return unit
 
     def _placed(
@@ -160,15 +160,12 @@ class PointClock:
         near = numbers.finite & (np.abs(numbers.around) * unit <= near_ns)
         damaged = len(near) - int(near.sum())
         if abs(numbers.middle) * unit > POINT_TIMES.largest_ns:
-            raise _UnusableTimes(f"{numbers.middle:g} is no time in any unit")
+            raise _UnusableTimes(CodedText("times-none", time=f"{numbers.middle:g}"))
         if damaged > POINT_TIMES.most_damaged * len(near):
-            raise _UnusableTimes(
-                f"{damaged} of {len(near)} points of a cloud are more than two revolutions from "
-                "the others"
-            )
+            raise _UnusableTimes(CodedText("times-far", damaged=damaged, total=len(near)))
         if numbers.resolution * unit > revolution_ns / POINT_TIMES.steps:
             raise _UnusableTimes(
-                f"steps of {numbers.resolution * unit * 1e-6:.3g} ms are too coarse"
+                CodedText("times-coarse", step_ms=f"{numbers.resolution * unit * 1e-6:.3g}")
             )
         self._report.count("points_wrong_time", damaged)
         around_ns = _scaled(np.where(near, numbers.around, 0), unit)
@@ -234,7 +231,7 @@ def _numbers(values: Values) -> _Numbers:
     finite = np.isfinite(values)
     missing = len(values) - int(finite.sum())
     if missing > POINT_TIMES.most_damaged * len(values):
-        raise _UnusableTimes(f"{missing} of {len(values)} points of a cloud have no number")
+        raise _UnusableTimes(CodedText("times-missing", missing=missing, total=len(values)))
     rows = np.flatnonzero(finite)
     half = len(rows) // 2
     middle = values[rows[np.argpartition(values[rows], half)[half]]]

@@ -166,13 +166,13 @@ class ImportReport:
 
 
 def _known(values: Mapping[str, Value | Exception]) -> dict[str, Value]:
-    coded_errors = {
-        name + CODE: coded(one).code for name, one in values.items() if isinstance(one, Exception)
-    }
+    errors = {name: coded(one) for name, one in values.items() if isinstance(one, Exception)}
+    known_kinds = {name: one for name, one in errors.items() if one.code in KINDS.values()}
+    values = {**values, **{n: one for n, one in errors.items() if n not in known_kinds}}
     coded_texts = {name: one for name, one in values.items() if isinstance(one, CodedText)}
     every: dict[str, Value | Exception] = {**values, **flat_values(coded_texts)}
     known = {name: _bounded(one) for name, one in every.items() if one == one}
-    return known | {name: code for name, code in coded_errors.items() if code in KINDS.values()}
+    return known | {name + CODE: one.code for name, one in known_kinds.items()}
 
 
 def _bounded(value: Value | Exception) -> Value:

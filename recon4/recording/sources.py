@@ -8,6 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from recon4.errors import RecordingError
+from recon4.locales.coded import CodedText
 from recon4.model.clock_jump import ClockJump
 from recon4.model.rig import Rig, load_rig
 
@@ -67,7 +68,7 @@ class Sources:
             RecordingError: If no recording is given, or a file or folder does not exist.
         """
         if not self.recordings:
-            raise RecordingError("no recording given")
+            raise RecordingError(CodedText("recording-not-given"))
         require_files(self.paths)
 
     @property
@@ -84,4 +85,4 @@ def require_files(paths: Iterable[Path]) -> None:
     """
     for path in paths:
         if not path.exists():
-            raise RecordingError(f"cannot read {path}: there is no such file or folder")
+            raise RecordingError(CodedText("no-file", path=str(path)))

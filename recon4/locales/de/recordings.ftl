@@ -138,3 +138,72 @@ word-field-ring = Ring
 word-field-time = Zeit je Punkt
 word-sensor-kind-profiler = Profiler
 word-sensor-kind-laser2d = 2-D-Laser
+
+## What is no recording
+
+no-path = { $path } gibt es nicht
+no-file = { $path } ist nicht lesbar: Eine solche Datei oder einen solchen Ordner gibt es nicht
+path-unreadable = { $path } ist nicht lesbar: { $reason }
+file-empty = { $name }: Die Datei ist leer (0 Byte)
+folder-empty = { $name }: Der Ordner ist leer
+recording-not-given = keine Aufzeichnung angegeben
+recording-is-mesh = { $name }: ein Dreiecksnetz: ein fertiges Modell, keine Aufzeichnung; { $known }
+recording-is-part = { $name }: ein Teil einer Begehung mit einem MANDEYE-Gerät: geben Sie deren Ordner an
+recording-unrecognized = { $name }: von keinem Leser erkannt ({ $looks }); { $known }
+recording-of-kinds = { $name }: enthält Aufzeichnungen von { $number } Arten: { $held }; geben Sie eine davon an
+recording-of-several = { $name }: enthält { $number } Aufzeichnungen: { $held }; geben Sie eine davon an
+recording-none-inside = { $name }: keine Aufzeichnung in diesem Ordner; er enthält { $held }; { $remedy }
+recording-unpack = entpacken Sie zuerst die { $number } komprimierten Dateien
+recording-no-sensor = { $name }: { $kind }: Kein Leser kennt den Sensor, von dem sie ist
+recording-planar-alone = { $name }: { $kind }: ohne Punkte eines LiDARs; verarbeiten Sie sie allein
+recording-without-points = { $name }: { $kind } ist allein keine Aufzeichnung: Punkte fehlen
+recording-one-kind = Aufzeichnungen einer Art erwartet, angegeben sind { $held }
+recordings-known = bekannt: { recording-pcap }, { recording-lvx }, { recording-bag1 }, { recording-bag2 }, { recording-frames }, { recording-imu_csv }, { recording-gnss_file }, { recording-poses }, { recording-carmen }, { recording-line_tables }, { recording-laser_table }, { recording-mandeye }, { recording-lidar_file }
+held-one = { $file } ({ $kind })
+held-more = { $first }, { $next }
+looks-unknown = erste Bytes { $bytes }
+looks-like = sieht aus wie { WORDS($what, of: "looks") }
+word-looks-ptx = Scans im Format PTX: fertige Scans, keine Aufzeichnung
+word-looks-jpeg = ein JPEG-Bild
+word-looks-png = ein PNG-Bild
+word-looks-zip = ein ZIP-Archiv: zuerst entpacken
+word-looks-gzip = mit gzip komprimiert: zuerst entpacken
+word-looks-xz = mit xz komprimiert: zuerst entpacken
+word-looks-zstd = mit zstd komprimiert: zuerst entpacken
+word-looks-bzip2 = mit bzip2 komprimiert: zuerst entpacken
+word-looks-7z = ein 7z-Archiv: zuerst entpacken
+word-looks-pdf = ein PDF-Dokument
+word-looks-las = eine Punktwolke im Format LAS/LAZ: eine fertige Karte, keine Aufzeichnung
+word-looks-e57 = eine Punktwolke im Format E57: ein fertiger Scan, keine Aufzeichnung
+word-looks-elf = ein Programm
+
+## What is known of a count besides
+
+detail-first = zuerst: { $problem }
+detail-of-files = zu { $names }
+detail-cut = auf { $sizes } Byte
+detail-cut-ports = auf { $sizes } Byte, { $ports }
+detail-port = an Port { $ports }
+detail-ports = an die Ports { $ports }
+detail-protocols = { WORDS($names, of: "protocol") }
+word-protocol-no-ipv4-header = kein ganzer IPv4-Header
+word-protocol-link-type = ein anderer Link-Typ
+detail-one-time = { $sensor }: Alle Punkte einer Punktwolke haben eine Zeit: in ihrer Reihenfolge verteilt
+detail-times = { $sensor }, { $field }: { $why }
+times-all-one = Alle Punkte einer Umdrehung haben die Zeit { $time }
+times-within = Die Punkte einer Umdrehung liegen innerhalb von { $span_ms } ms
+times-no-unit = vom ersten zum letzten Punkt { $span }, in keiner Einheit eine Umdrehung
+times-none = { $time } ist in keiner Einheit eine Zeit
+times-far = { $damaged } von { $total } Punkten einer Punktwolke sind mehr als zwei Umdrehungen von den anderen entfernt
+times-coarse = Schritte von { $step_ms } ms sind zu grob
+times-missing = { $missing } von { $total } Punkten einer Punktwolke haben keine Zahl
+extent-map = { $axes }: Koordinaten einer Karte oder der Erde, kein Scan mit dem Sensor im Ursprung. Eine fertige Karte ist keine Aufzeichnung; geben Sie sie als Referenz an
+extent-unit = { $axes }: Die Hälfte von ihnen ist weiter als { DECIMAL($usual_m, digits: 0) } m entfernt. Sind es Millimeter, geben Sie ingest.points_unit_m=0.001 an; eine Karte, deren Ursprung kein Sensor ist, ist keine Aufzeichnung
+extent-range = { $axes }: Die Hälfte von ihnen ist weiter als { DECIMAL($usual_m, digits: 0) } m entfernt. Misst der Sensor so weit, geben Sie ein größeres ingest.max_range_m an
+
+## Damaged bags
+
+db3-rows-order = Zeile { $row } steht nach Zeile { $before }
+db3-cut-off = { $name }: abgeschnitten, keine einzige Nachricht ist übrig
+db3-damaged = { $name }: beschädigt ({ $damage }), keine einzige Nachricht ist übrig
+db3-too-short = { $name }: erwartet eine SQLite-Datenbank mit mindestens einer Seite von { $page } Byte; es sind { $size } Byte, die mit { $bytes } beginnen; keine einzige Nachricht ist übrig

@@ -138,3 +138,72 @@ word-field-ring = ring
 word-field-time = time per point
 word-sensor-kind-profiler = profiler
 word-sensor-kind-laser2d = 2-D laser
+
+## What is no recording
+
+no-path = { $path } does not exist
+no-file = cannot read { $path }: there is no such file or folder
+path-unreadable = { $path } cannot be read: { $reason }
+file-empty = { $name }: the file is empty (0 bytes)
+folder-empty = { $name }: the folder is empty
+recording-not-given = no recording given
+recording-is-mesh = { $name }: a mesh: a finished model, not a recording; { $known }
+recording-is-part = { $name }: a part of a walk of a MANDEYE device: give its folder
+recording-unrecognized = { $name }: no reader recognizes it ({ $looks }); { $known }
+recording-of-kinds = { $name }: holds recordings of { $number } kinds: { $held }; give one
+recording-of-several = { $name }: holds { $number } recordings: { $held }; give one
+recording-none-inside = { $name }: no recording in this folder; it has { $held }; { $remedy }
+recording-unpack = unpack its { $number } compressed files first
+recording-no-sensor = { $name }: { $kind }: no reader knows the sensor that made it
+recording-planar-alone = { $name }: { $kind }: it has no points of a LiDAR; process it alone
+recording-without-points = { $name }: { $kind } alone is no recording: it has no points
+recording-one-kind = recordings of one kind expected, got { $held }
+recordings-known = known: { recording-pcap }, { recording-lvx }, { recording-bag1 }, { recording-bag2 }, { recording-frames }, { recording-imu_csv }, { recording-gnss_file }, { recording-poses }, { recording-carmen }, { recording-line_tables }, { recording-laser_table }, { recording-mandeye }, { recording-lidar_file }
+held-one = { $file } ({ $kind })
+held-more = { $first }, { $next }
+looks-unknown = first bytes { $bytes }
+looks-like = looks like { WORDS($what, of: "looks") }
+word-looks-ptx = PTX scans: finished scans, not a recording
+word-looks-jpeg = a JPEG image
+word-looks-png = a PNG image
+word-looks-zip = a zip archive: unpack it first
+word-looks-gzip = gzip compressed: unpack it first
+word-looks-xz = xz compressed: unpack it first
+word-looks-zstd = zstd compressed: unpack it first
+word-looks-bzip2 = bzip2 compressed: unpack it first
+word-looks-7z = a 7z archive: unpack it first
+word-looks-pdf = a PDF document
+word-looks-las = a LAS/LAZ point cloud: a finished map, not a recording
+word-looks-e57 = an E57 point cloud: a finished scan, not a recording
+word-looks-elf = a program
+
+## What is known of a count besides
+
+detail-first = first: { $problem }
+detail-of-files = of { $names }
+detail-cut = to { $sizes } bytes
+detail-cut-ports = to { $sizes } bytes, { $ports }
+detail-port = to port { $ports }
+detail-ports = to ports { $ports }
+detail-protocols = { WORDS($names, of: "protocol") }
+word-protocol-no-ipv4-header = no whole IPv4 header
+word-protocol-link-type = another link type
+detail-one-time = { $sensor }: all points of a cloud have one time: spread in their order
+detail-times = { $sensor }, { $field }: { $why }
+times-all-one = all points of a revolution have the time { $time }
+times-within = the points of a revolution are within { $span_ms } ms
+times-no-unit = from first to last point { $span }, no revolution in any unit
+times-none = { $time } is no time in any unit
+times-far = { $damaged } of { $total } points of a cloud are more than two revolutions from the others
+times-coarse = steps of { $step_ms } ms are too coarse
+times-missing = { $missing } of { $total } points of a cloud have no number
+extent-map = { $axes }: coordinates of a map or of the earth, not a scan with the sensor at the origin. A finished map is no recording; give it as a reference
+extent-unit = { $axes }: half of them are farther than { DECIMAL($usual_m, digits: 0) } m. If they are in millimeters, give ingest.points_unit_m=0.001; a map whose origin is no sensor is no recording
+extent-range = { $axes }: half of them are farther than { DECIMAL($usual_m, digits: 0) } m. If the sensor measures that far, give a larger ingest.max_range_m
+
+## Damaged bags
+
+db3-rows-order = row { $row } comes after row { $before }
+db3-cut-off = { $name }: cut off, not one message is left
+db3-damaged = { $name }: damaged ({ $damage }), not one message is left
+db3-too-short = { $name }: expected an SQLite database of at least one page of { $page } bytes, got { $size } bytes that start with { $bytes }; not one message is left

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from recon4.errors import CorruptFile, Recon4Error
+from recon4.locales.coded import CodedText, text_of
 from recon4.recording.report import ImportReport
 
 MAX_RATIO = 0.05
@@ -24,7 +25,7 @@ class DamagedLines:
 
     def add(self, error: Recon4Error) -> None:
         """Drop a line."""
-        self.first = self.first or str(error)
+        self.first = self.first or text_of(error)
         self.number += 1
 
     def check(self, sound: int) -> None:
@@ -52,4 +53,4 @@ class DamagedLines:
         self.check(sound)
         if self.number:
             self.report.count(self.count, self.number)
-            self.report.details[self.count] = f"first: {self.first}"
+            self.report.details[self.count] = CodedText("detail-first", problem=self.first)

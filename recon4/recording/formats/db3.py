@@ -20,6 +20,7 @@ import apsw
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText, coded
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.chunks import BagIndex, RawMessage, Topic
@@ -174,7 +175,7 @@ class Db3:
         try:
             for row, topic, time in rows:
                 if row_id and row <= row_id[-1]:
-                    self._damage = f"row {row} comes after row {row_id[-1]}"
+                    self._damage = CodedText("db3-rows-order", row=row, before=row_id[-1])
                     break
                 if isinstance(topic, int) and isinstance(time, int) and 0 <= time < 2**62:
                     t_ns.append(time)
@@ -183,7 +184,7 @@ class Db3:
                 else:
                     bad += 1
         except (apsw.Error, MemoryError, ValueError) as error:
-            self._damage = str(error) or type(error).__name__
+            self._damage = coded(CorruptFile(str(error) or type(error).__name__))
         if bad:
             self._corrupt(bad)
         return tuple(np.frombuffer(column, np.int64) for column in (t_ns, row_id, number))
@@ -202,10 +203,10 @@ class Db3:
 
     def _salvaged(self, whole: bool) -> None:
         count = len(self._rows[0])
-        why = "cut off" if not whole else f"damaged ({self._damage})"
         if not count:
             self.report.outcome = "nothing"
-            raise CorruptFile(f"{self._name}: {why}, not one message is left")
+            damaged = CodedText("db3-damaged", name=self._name, damage=self._damage)
+            raise CorruptFile(damaged if whole else CodedText("db3-cut-off", name=self._name))
         self.report.outcome = "lossy"
         self.report.count("files_cut")
         self.report.count("messages_salvaged", count)
@@ -226,14 +227,14 @@ class Db3:
             query = "SELECT data FROM messages NOT INDEXED WHERE rowid = ?"
             found = next(self._execute(query, (row,)), (None,))[0]
         except (apsw.Error, MemoryError, ValueError) as error:
-            self._corrupt(1, row=row, error=str(error))
+            self._corrupt(1, row=row, error=CorruptFile(str(error) or type(error).__name__))
             return None
         if not isinstance(found, bytes):
             self._corrupt(1)
             return None
         return found
 
-    def _corrupt(self, count: int, **where: Value) -> None:
+    def _corrupt(self, count: int, **where: Value | Exception) -> None:
         self.report.outcome = "lossy"
         self.report.count("messages_corrupt", count)
         self.report.warn(FindingKind.MESSAGES_DAMAGED, name=self._name, **where)
@@ -313,12 +314,13 @@ def _pages(path: Path) -> tuple[bool, int]:
         header = file.read(100)
         size = os.fstat(file.fileno()).st_size
     if not header:
-        raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+        raise EmptyRecording(CodedText("file-empty", name=path.name))
     page = _page_bytes(header)
     if not header.startswith(MAGIC) or page < 512 or size < page:
         raise CorruptFile(
-            f"{path.name}: expected an SQLite database of at least one page of {page} bytes, "
-            f"got {size} bytes that start with {header[:8].hex(' ')}; not one message is left"
+            CodedText(
+                "db3-too-short", name=path.name, page=page, size=size, bytes=header[:8].hex(" ")
+            )
         )
     return int.from_bytes(header[28:32], "big") * page <= size, page
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
 from recon4.geometry.distinct import distinct
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.folders import natural
@@ -148,7 +149,9 @@ def _note_missing(folder: Path, parts: Sequence[WalkPart], report: ImportReport)
     without = [part.path.name for part in parts if part.imu is None]
     report.count("imu_files_missing", len(without))
     if without and len(without) < len(parts):
-        report.details["imu_files_missing"] = f"of {', '.join(without[:5])}"
+        report.details["imu_files_missing"] = CodedText(
+            "detail-of-files", names=", ".join(without[:5])
+        )
         report.outcome = "lossy"
 
 

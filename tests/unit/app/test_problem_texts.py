@@ -33,7 +33,7 @@ from recon4_app.network.close_codes import close_reason
 OTHERS = languages()[1:]
 SAME = {"webhook-url", "recording-bag1", "recording-bag2", "missing-contents", "missing-imu-table"}
 SAME |= {"missing-topic", "samples-sender", "samples-topic", "word-topic-imu"}
-SAME |= {"info-head", "info-start"}
+SAME |= {"info-head", "info-start", "held-one", "held-more", "detail-times", "detail-protocols"}
 """Codes whose text is the same in German."""
 
 

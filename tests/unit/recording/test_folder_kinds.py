@@ -3,10 +3,13 @@
 import pytest
 import trimesh
 
+from recon4.cli.main import main
 from recon4.errors import UnknownFormat
+from recon4.locales.languages import ENVIRONMENT
 from recon4.recording import kinds
 from recon4.recording.folders import list_frames
 from recon4.recording.info import describe
+from recon4.recording.kind_problems import known_kinds
 from recon4.recording.kinds import (
     RecordingKind,
     located,
@@ -165,3 +168,26 @@ def test_a_folder_of_many_files_is_listed_few_times(tmp_path, monkeypatch, comma
         run(folder, out=tmp_path / "frames")
 
     assert len(listed) <= (2 if command == "info" else 1)
+
+
+def test_what_is_no_recording_is_said_in_the_language_of_the_terminal(
+    tmp_path, pcap, capsys, monkeypatch
+):
+    monkeypatch.setenv(ENVIRONMENT, "de")
+    (tmp_path / "photo.pcap").write_bytes(b"\xff\xd8\xff\xe0 photo")
+    two = frame_folder(tmp_path / "two", ["map.pcd"])
+    (two / "walk.pcap").write_bytes(pcap.read_bytes())
+    complaints = {
+        tmp_path
+        / "photo.pcap": "photo.pcap: von keinem Leser erkannt (sieht aus wie ein JPEG-Bild",
+        tmp_path / "nothing": "nothing gibt es nicht",
+        two: "two: enthält Aufzeichnungen von 2 Arten: map.pcd (Einzelscans",
+    }
+
+    for path, said in complaints.items():
+        assert main(["info", str(path)]) == 1
+        assert said in capsys.readouterr().err
+
+
+def test_all_kinds_are_named_where_no_reader_recognizes_a_file():
+    assert known_kinds() == f"known: {', '.join(RecordingKind)}"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError, EmptyRecording
+from recon4.findings.wording import whole_text
 from recon4.model.rig import parse_rig
 from recon4.recording.info import describe
 from recon4.recording.packets.capture import PacketCapture
@@ -77,7 +78,11 @@ def test_one_lidar_that_is_cut_is_a_warning_beside_the_other(tmp_path):
     assert points[0] > 0 and set(points) == {0}
     report.warn_of_losses()
     assert warned(report, K.DATA_LOST, count="records_cut", number=100, total=200)
-    assert any("to port 2369" in loss.text for loss in describe(path).lost)
+    lost = describe(path).lost
+    assert any("(to 900 bytes, to port 2369)" in loss.text for loss in lost)
+    assert any("(auf 900 Byte, an Port 2369)" in loss.said("de") for loss in lost)
+    (finding,) = (one for one in report.findings if one.kind is K.DATA_LOST)
+    assert "(auf 900 Byte, an Port 2369)" in whole_text(finding, "de")
 
 
 def test_damaged_flags_are_the_reason_and_not_the_length(tmp_path):
