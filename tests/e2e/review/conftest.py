@@ -1,11 +1,13 @@
 """A project to review, and its page."""
 
 import shutil
+from functools import partial
 
 import pytest
 from playwright.sync_api import expect
 
 from tests.review_fixtures import made, running
+from tests.service.running import wait_for
 
 __all__ = ["made", "opened", "root", "running"]
 
@@ -18,9 +20,19 @@ def office(made, running):
     return folder
 
 
+def idle(server):
+    """Whether no job and no child process works on a project any more."""
+    queues = server.app.state.parts.compute_pool.queues.values()
+    jobs = server.get("/api/jobs").json()
+    return not any(q.waiting or q.running for q in queues) and all(
+        v["job"]["finished"] for v in jobs
+    )
+
+
 @pytest.fixture
-def root(made, office):
+def root(made, office, running):
     """The project as it was made: what a test decided, judged or signed is gone."""
+    wait_for(partial(idle, running), "what the test before asked for ends")
     for path in office.iterdir():
         if path.is_dir() and path.name != "artifacts":
             shutil.rmtree(path)
