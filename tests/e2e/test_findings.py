@@ -12,7 +12,7 @@ from recon4.findings.wording import remedy_of, said, text_of, title_of
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.store.seal import changing
-from tests.e2e.conftest import leave_out_viewer, looks
+from tests.e2e.conftest import leave_out_viewer, looks, one_look
 from tests.project_builder import add_multiframes, build_project, loop_walk, write_summary
 from tests.service.running import server_thread
 
@@ -104,7 +104,7 @@ def kept_stretch(viewer):
     return view["stretch"] and view["stretch"]["span_s"]
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_finding_flies_to_its_stretch_in_the_viewer_and_marks_it(found, page, screenshot):
     page.goto(f"{found.url}/projects/office/")
     for finding, times in ((WEAK, "40.0 s to 44.0 s"), (LOST, "20.0 s to 25.0 s")):
@@ -216,7 +216,7 @@ def test_the_findings_are_downloaded_as_a_table_and_for_a_gis(found, page):
         assert text in download.value.path().read_text("utf-8")
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_reviewer_acknowledges_a_finding_with_a_note_that_stays(found, page, screenshot):
     leave_out_viewer(page)
     page.goto(f"{found.url}/projects/office/")
@@ -247,7 +247,7 @@ def test_findings_are_filtered_by_level_and_kind_with_the_keyboard(found, page):
     expect(entry(page, FAST)).to_be_visible()
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_finding_is_cut_and_marked_in_the_slices(found, page, screenshot):
     page.goto(f"{found.url}/projects/office/slices/")
     page.locator("map-verdict summary").first.click()

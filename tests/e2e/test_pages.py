@@ -204,7 +204,7 @@ def test_a_job_known_before_the_stream_has_its_outcome_shown_too(server, context
     page.close()
 
 
-@looks("desktop dark", "phone light")
+@looks("desktop dark")
 def test_a_rejected_request_shows_its_message(server, page, look):
     page.goto(server.url)
 

@@ -108,7 +108,7 @@ def test_a_rig_is_seen_as_drawing_and_numbers(server, page, look, screenshot):
     expect(canvas).to_have_attribute("data-view", " ".join(f"{one:.3f}" for one in before))
 
 
-@looks("desktop light", "phone dark")
+@looks("desktop light")
 def test_a_pointer_turns_the_drawing(server, page):
     page.goto(f"{server.url}/rigs/4recon/")
     before = camera(page)

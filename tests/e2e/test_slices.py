@@ -225,7 +225,7 @@ def test_a_reference_is_compared_and_shown(server, page):
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
 
-@looks("desktop dark", "phone light")
+@looks("phone light")
 def test_a_reference_is_uploaded_and_shown(server, page):
     rows = "\n".join(f"0.03 {y / 20:.2f} {z / 10:.1f}" for y in range(200) for z in range(30))
     opened(page, server, "?kind=horizontal&z=1.5")

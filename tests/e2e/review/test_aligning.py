@@ -4,13 +4,13 @@ import pytest
 from playwright.sync_api import expect
 
 from recon4.review.journal import read_rows
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import looks, one_look
 from tests.e2e.review.review_page import colored, nearest_pixel, settled
 
 pytestmark = pytest.mark.e2e
 
 
-@looks("desktop dark", "phone light")
+@looks("phone light")
 def test_views_and_comparison_show_different_images(opened):
     page = opened
     page.keyboard.press("j")
@@ -29,7 +29,7 @@ def test_views_and_comparison_show_different_images(opened):
     expect(page.locator(".view-words")).to_contain_text("at 0.20 m")
 
 
-@looks("desktop dark", "phone light")
+@one_look
 def test_the_difference_colors_only_what_one_place_has_alone(opened, screenshot):
     page = opened
     page.keyboard.press("j")

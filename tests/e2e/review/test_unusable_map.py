@@ -3,7 +3,7 @@
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import leave_out_viewer, looks
+from tests.e2e.conftest import leave_out_viewer, looks, on_both_screens, one_look
 from tests.e2e.review.review_page import fits, page_fits
 from tests.review_project import LOST, judge
 
@@ -49,7 +49,7 @@ def test_an_unusable_map_looks_so_and_is_signed_only_with_a_reason(unusable, ope
     assert REASON in (unusable / "report.html").read_text()
 
 
-@looks("desktop dark", "phone light")
+@one_look
 def test_slices_and_project_say_that_a_map_is_unusable(running, unusable, page, screenshot):
     leave_out_viewer(page)
     page.goto(f"{running.url}/projects/{unusable.name}/slices/")
@@ -57,7 +57,7 @@ def test_slices_and_project_say_that_a_map_is_unusable(running, unusable, page, 
     expect(bar).to_contain_text("Do not use this map")
     bar.locator("summary").click()
     expect(bar).to_contain_text("Hardly observable")
-    page_fits(page)
+    on_both_screens(page, page_fits)
     screenshot(page, "slices-unusable")
 
     page.goto(f"{running.url}/projects/{unusable.name}/")
