@@ -122,12 +122,14 @@ def _size(path: Path) -> int:
 
 
 def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
-    with Bag(bag_paths(request.paths[0]), request.report) as bag:
-        bag.use_sources(shared_topics(bag, request.report))
+    # What is counted while it is described is counted again where its head is read.
+    seen = ImportReport()
+    with Bag(bag_paths(request.paths[0]), seen) as bag:
+        bag.use_sources(shared_topics(bag, seen))
         bag.use_recipes(declared_recipes(bag, None, request.fields, report=ImportReport()))
         packets = BagPackets(bag, companions_of(request.paths))
         try:
-            streams = lidar_streams(packets, None, request.settings, report=request.report)
+            streams = lidar_streams(packets, None, request.settings, report=seen)
         except (RigToComplete, EmptyRecording):
             streams = []  # what is missing is said when the recording is opened, once
         topics = {topic.name: topic for topic in bag.topics}

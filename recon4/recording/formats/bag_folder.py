@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 from typing import Any
 
 from recon4.errors import CorruptFile
 from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.folders import natural
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning import LISTED
 
 METADATA = "metadata.yaml"
 MAX_METADATA_BYTES = 512 << 10
@@ -68,6 +70,45 @@ def storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:
     if not files:
         raise CorruptFile(f"{folder.name}: no readable rosbag2: {error}") from error
     return tuple(files)
+
+
+def with_files_there(folder: Path, metadata: BagMetadata, report: ImportReport) -> BagMetadata:
+    """The description with the files that are there: those it lists, and those it does not.
+
+    Args:
+        folder: Where they lie.
+        metadata: Its description; it has the earlier names of files that were renamed.
+        report: Receives which are missing, and which it does not list.
+
+    Raises:
+        CorruptFile: If there is no file at all.
+    """
+    missing = [file.name for file in metadata.files if not file.is_file()]
+    there = tuple(file for file in metadata.files if file.is_file())
+    names = ", ".join(missing[: LISTED.few])
+    if missing:
+        report.outcome = "lossy"
+        report.count("files_missing", len(missing))
+        values: dict[str, Value] = {"files": len(missing), "missing": names}
+        report.warn(FindingKind.FILES_MISSING, name=folder.name, **values)
+    if not there:
+        absent = CorruptFile(f"no file of {METADATA} is there: {names}")
+        return replace(metadata, files=storage_files(folder, absent))
+    more = _unlisted(folder, metadata)
+    if more:
+        listed = ", ".join(file.name for file in more[: LISTED.few])
+        error = CorruptFile(f"{METADATA} does not list {listed}")
+        report.warn(FindingKind.FOLDER_DESCRIPTION, name=folder.name, error=error)
+    return replace(metadata, files=(*there, *more))
+
+
+def _unlisted(folder: Path, metadata: BagMetadata) -> tuple[Path, ...]:
+    """Other storage files, in the order of their numbers; a player leaves copies of packed ones."""
+    if metadata.compression == "file":
+        return ()
+    listed = {file.name for file in metadata.files}
+    more = (f for f in folder.iterdir() if f.suffix in STORAGE_SUFFIXES and f.name not in listed)
+    return tuple(sorted(more, key=natural))
 
 
 def say_undescribed(folder: Path, error: CorruptFile, report: ImportReport) -> None:

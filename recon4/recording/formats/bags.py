@@ -27,6 +27,7 @@ from recon4.recording.formats.bag_folder import (
     read_metadata,
     say_undescribed,
     storage_files,
+    with_files_there,
 )
 from recon4.recording.formats.chunks import BagIndex, RawMessage
 from recon4.recording.formats.cloud_tables import cloud_lists
@@ -241,19 +242,8 @@ class Bag:
         except CorruptFile as error:
             say_undescribed(path, error, self.report)
             metadata, described = BagMetadata(storage_files(path, error), "", 0), False
-        missing = [file.name for file in metadata.files if not file.is_file()]
-        if missing:
-            self.report.outcome = "lossy"
-            self.report.count("files_missing", len(missing))
-            self.report.warn(
-                FindingKind.FILES_MISSING,
-                name=path.name,
-                files=len(missing),
-                missing=", ".join(missing[:5]),
-            )
-            absent = CorruptFile(f"no file of metadata.yaml is there: {', '.join(missing[:5])}")
-            there = tuple(file for file in metadata.files if file.is_file())
-            metadata = replace(metadata, files=there or storage_files(path, absent))
+        if described:
+            metadata = with_files_there(path, metadata, self.report)
         files = metadata.files
         if metadata.compression == "file":
             files = self._decompressed(files)

@@ -15,6 +15,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import BagRecording
 from recon4.recording.formats.bags import CLOUD, Bag
+from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud, room_packets, storage_file, write_room_bag
@@ -79,6 +80,37 @@ def test_a_folder_without_its_description_is_read_file_by_file(rooms, tmp_path):
     assert len(messages(folder, report)) == len(messages(rooms["db3"]))
     assert any("no metadata.yaml" in text for text in derivations(report))
     assert not report.findings
+
+
+@pytest.mark.parametrize("listed", ["other.db3", "same"])
+def test_files_that_the_description_does_not_list_are_read_too(rooms, tmp_path, listed):
+    folder = tmp_path / "bag"
+    shutil.copytree(rooms["db3"], folder)
+    whole = storage_file(folder)
+    if listed == "other.db3":
+        whole.rename(folder / "renamed.db3")
+        shutil.copy(storage_file(rooms["mcap"]), folder / whole.name)
+    else:
+        shutil.copy(storage_file(rooms["mcap"]), folder / "more.mcap")
+    report = ImportReport()
+
+    assert len(messages(folder, report)) == 2 * len(messages(rooms["db3"]))
+    name = "renamed.db3" if listed == "other.db3" else "more.mcap"
+    assert warned(report, K.FOLDER_DESCRIPTION, error=f"metadata.yaml does not list {name}")
+
+
+def test_what_a_folder_lacks_is_counted_once(rooms, tmp_path):
+    folder = tmp_path / "bag"
+    shutil.copytree(rooms["db3"], folder)
+    text = (folder / "metadata.yaml").read_text()
+    name = storage_file(folder).name
+    listed = text.replace(f"  - {name}\n", f"  - {name}\n  - lost_1.db3\n")
+    (folder / "metadata.yaml").write_text(listed)
+
+    found = describe(folder)
+
+    assert [(loss.name, loss.number) for loss in found.lost] == [("files_missing", 1)]
+    assert warned(found, K.FILES_MISSING, files=1, missing="lost_1.db3")
 
 
 def test_compressed_messages_are_read_without_their_description_beside_others(rooms, tmp_path):
