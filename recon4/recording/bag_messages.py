@@ -91,7 +91,8 @@ def set_clock(bag: Bag, topic: str, head: Sequence[tuple[int, int]]) -> StampClo
         topic: Its name.
         head: Stamps and times of recording of its first messages [ns].
     """
-    return StampClock(head, lambda ns: bag.stamp_jumps.exact_ns(topic, ns, bag.report))
+    jumps = bag.stamp_jumps
+    return StampClock(head, lambda ns: jumps.exact_ns(topic, ns, bag.report), jumps.of_recorder_ns)
 
 
 def first_stamps(bag: Bag, topic: str) -> list[tuple[int, int]]:

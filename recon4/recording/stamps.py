@@ -39,6 +39,8 @@ class StampJumps:
 
     def __init__(self) -> None:
         self._known_ns: list[int] = []
+        self.of_recorder_ns: list[int] = []
+        """Jumps of the recorder's clock, which may be that of the stamps, too [ns]."""
 
     def exact_ns(self, topic: str, measured_ns: int, report: ImportReport) -> int:
         """A jump as measured by one topic [ns]: the same for all topics, or a known difference.
@@ -48,7 +50,7 @@ class StampJumps:
             measured_ns: Later stamps minus earlier ones, less the time between them.
             report: Receives the count ``clock_jumps`` and a warning, once for all topics.
         """
-        for known_ns in self._known_ns:
+        for known_ns in (*self.of_recorder_ns, *self._known_ns):
             if abs(known_ns - measured_ns) < STAMPS.same_jump_ns:
                 return known_ns
         jump_s = known_offset_s(measured_ns / SECOND_NS)
@@ -78,6 +80,7 @@ class StampClock:
         self,
         head: Sequence[tuple[int, int]] = (),
         exact_ns: Callable[[int], int] = lambda measured_ns: measured_ns,
+        of_recorder_ns: Sequence[int] = (),
     ) -> None:
         """Prepare.
 
@@ -85,6 +88,8 @@ class StampClock:
             head: Stamp and time of recording of the first messages [ns]; the first one alone may
                 be wrong.
             exact_ns: A jump of the bag from one that was measured (`StampJumps`) [ns].
+            of_recorder_ns: Jumps of the recorder's clock that the times of recording lack [ns]:
+                stamps by that clock show them.
         """
         known = [stamp - recorded for stamp, recorded in head if stamp > 0]
         self.offset_ns: int | None = int(np.median(known)) if known else None
@@ -93,7 +98,7 @@ class StampClock:
         """Whether the last stamp began another clock."""
         self.shift_ns = 0
         """To be added to stamps, because their clock was set."""
-        self._exact_ns = exact_ns
+        self._exact_ns, self._of_recorder_ns = exact_ns, of_recorder_ns
         self._last: tuple[int, int] | None = None
         """The last sound stamp, and when it was recorded [ns]."""
         self._run, self._run_ns = 0, 0
@@ -104,7 +109,10 @@ class StampClock:
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
-        if self.offset_ns is not None and abs(offset_ns - self.offset_ns) > STAMPS.other_ns:
+        if self.offset_ns is not None and self._is_recorders(offset_ns - self.offset_ns):
+            self.was_set = True
+            self.shift_ns -= self._exact_ns(offset_ns - self.offset_ns)
+        elif self.offset_ns is not None and abs(offset_ns - self.offset_ns) > STAMPS.other_ns:
             again = self._run and abs(offset_ns - self._run_ns) <= STAMPS.other_ns
             self._run, self._run_ns = (self._run + 1 if again else 1), offset_ns
             goes_on = self._goes_on(stamp_ns)
@@ -118,6 +126,13 @@ class StampClock:
         self.offset_ns, self._run = offset_ns, 0
         self._last = stamp_ns, recorded_ns
         return True
+
+    def _is_recorders(self, jump_ns: int) -> bool:
+        """Whether stamps jump as the recorder did; short jumps are of transport."""
+        return any(
+            known < -STAMPS.recorder_ns and abs(jump_ns - known) < -known / 2
+            for known in self._of_recorder_ns
+        )
 
     def _goes_on(self, stamp_ns: int) -> bool:
         return self._last is not None and 0 <= stamp_ns - self._last[0] <= STAMPS.other_ns

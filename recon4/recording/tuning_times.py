@@ -112,6 +112,8 @@ class StampTuning(Struct, frozen=True, kw_only=True):
     """Stamps in a row that must agree on another clock: fewer are wrong ones."""
     same_jump_ns: int = 500_000_000
     """Jumps of two topics that differ by less are one: messages travel for different times [ns]."""
+    recorder_ns: int = 200_000_000
+    """Stamps that jump by more than this with the recorder are by its clock [ns]."""
     strays_ratio: float = 0.05
     """A larger ratio of stamps that are far from their neighbors is no set of wrong ones."""
     head: int = 120
@@ -123,6 +125,26 @@ class StampTuning(Struct, frozen=True, kw_only=True):
 
 
 STAMPS = StampTuning()
+
+
+class RecorderStepTuning(Struct, frozen=True, kw_only=True):
+    """Recorders of bags that were set back (`formats/bag_clock.py`)."""
+
+    least_ns: int = 100_000_000
+    """Messages are written in the order of their times to within this [ns]."""
+    joined_ns: int = 500_000_000
+    """Parts of a file that are nearer are one recording, joined in another order [ns]."""
+    whole_bytes: int = 64 << 20
+    """Smaller files are looked at as a whole: a chunk of theirs may last for seconds."""
+    messages: int = 4
+    """A topic tells it with this many messages on both sides."""
+    window: int = 1000
+    """Messages before a step that are looked at for the next one."""
+    most: int = 32
+    """More steps are none of a clock."""
+
+
+RECORDER_STEPS = RecorderStepTuning()
 
 
 class FrameTimeTuning(Struct, frozen=True, kw_only=True):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from recon4.errors import CorruptFile
+from recon4.recording.formats.bag_clock import chunks_going_on
 from recon4.recording.formats.chunks import (
     BagIndex,
     ChunkMessages,
@@ -65,13 +66,17 @@ class Bag1:
 
     def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
-
-        def load(chunk: ChunkRef) -> ChunkMessages:
-            return _load(self._file, chunk, self.index.topics)
-
         self._file.restart_budget()
-        stream = ChunkStream(self._file.name, self.index, load, report=self.report)
+        stream = ChunkStream(self._file.name, self.index, self._read, report=self.report)
         return stream.messages(topics)
+
+    def go_on(self) -> None:
+        """Continue the times where the recorder was set back."""
+        self._file.restart_budget()
+        self.index = chunks_going_on(self.index, self._read)
+
+    def _read(self, chunk: ChunkRef) -> ChunkMessages:
+        return _load(self._file, chunk, self.index.topics)
 
 
 def is_bag1(path: Path) -> bool:

@@ -22,6 +22,7 @@ from recon4.recording.copied_files import is_new
 from recon4.recording.formats import db3
 from recon4.recording.formats.backward import turn_round
 from recon4.recording.formats.bag1 import Bag1, is_bag1
+from recon4.recording.formats.bag_clock import say_steps
 from recon4.recording.formats.bag_folder import (
     BagMetadata,
     read_metadata,
@@ -103,6 +104,10 @@ class StorageFile(Protocol):
 
     def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
+        ...
+
+    def go_on(self) -> None:
+        """Continue the times where the recorder was set back."""
         ...
 
 
@@ -291,6 +296,9 @@ class Bag:
             self._sources.append(database)
         else:
             self._sources.append(self._mcap(self._stack.enter_context(RecordFile(path))))
+        self._sources[-1].go_on()
+        jumps_ns = say_steps(path.name, self._sources[-1].index.steps, self.report)
+        self.stamp_jumps.of_recorder_ns += jumps_ns
         self._origins.append(path)
         self._stored_bytes += path.stat().st_size
 

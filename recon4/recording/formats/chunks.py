@@ -53,6 +53,18 @@ class Topic:
 
 
 @dataclass(frozen=True, slots=True)
+class RecorderStep:
+    """Where the clock of the recorder was set back."""
+
+    offset: int
+    """Of the chunk in the file; of a table, the row."""
+    first: int
+    """Number in the chunk of the first message after it."""
+    shift_ns: int
+    """What is added to this and all later times, so that they go on [ns]."""
+
+
+@dataclass(frozen=True, slots=True)
 class ChunkRef:
     """Location of a chunk and its index entry."""
 
@@ -98,6 +110,18 @@ class ChunkMessages:
         self.start.append(start)
         self.stop.append(stop)
 
+    def go_on(self, offset: int, steps: Sequence[RecorderStep]) -> None:
+        """Move the times behind places where the recorder was set back.
+
+        Args:
+            offset: Of this chunk.
+            steps: In the order of the file.
+        """
+        times = np.frombuffer(self.t_ns, np.int64)
+        for step in steps:
+            if offset >= step.offset:
+                times[step.first if offset == step.offset else 0 :] += step.shift_ns
+
     @property
     def bytes_held(self) -> int:
         return len(self.data) + MESSAGE_BYTES * len(self.t_ns)
@@ -135,6 +159,9 @@ class BagIndex:
     mirror_ns: int = 0
     """Messages are given from the last to the first, at this time less their own [ns]; 0 = in their
     order."""
+
+    steps: tuple[RecorderStep, ...] = ()
+    """Where the recorder was set back; the times of the chunks go on."""
 
     @classmethod
     def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> BagIndex:
@@ -272,6 +299,7 @@ class ChunkStream:
         except CorruptFile as error:
             self._damaged(error)
             return None
+        messages.go_on(chunk.offset, self._index.steps)
         self._loaded += 1
         found = Counter(messages.connection)
         self._found += found

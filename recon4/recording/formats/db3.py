@@ -12,17 +12,20 @@ from array import array
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import apsw
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.locales.coded import CodedText, coded
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
+from recon4.recording.formats.bag_clock import rows_going_on
 from recon4.recording.formats.chunks import BagIndex, RawMessage, Topic
 from recon4.recording.formats.limits import (
     MAX_MESSAGE_BYTES,
@@ -116,6 +119,14 @@ class Db3:
                 at_ns = int(mirror_ns - t_ns[k]) if mirror_ns else int(t_ns[k])
                 yield topic.topic, topic.msgtype, at_ns, data
 
+    def go_on(self) -> None:
+        """Continue the times where the recorder was set back."""
+        t_ns, row_id, number = self._rows
+        t_ns, steps = rows_going_on(t_ns, number)
+        self._rows = t_ns, row_id, number
+        self.index = replace(self.index, steps=steps)
+        self.index.start_time, self.index.end_time = _span(t_ns)
+
     # -- opening
 
     def _open(self, path: Path, *, whole: bool) -> apsw.Connection:
@@ -198,8 +209,7 @@ class Db3:
             self._corrupt(sum(counts.values()))
             kept = np.isin(number, list(topics))
             self._rows = t_ns, row_id, number = t_ns[kept], row_id[kept], number[kept]
-        span = (int(t_ns.min()), int(t_ns.max()) + 1) if len(t_ns) else (2**63 - 1, 0)
-        return BagIndex(topics, [], *span)
+        return BagIndex(topics, [], *_span(t_ns))
 
     def _salvaged(self, whole: bool) -> None:
         count = len(self._rows[0])
@@ -238,6 +248,11 @@ class Db3:
         self.report.outcome = "lossy"
         self.report.count("messages_corrupt", count)
         self.report.warn(FindingKind.MESSAGES_DAMAGED, name=self._name, **where)
+
+
+def _span(t_ns: NDArray[np.int64]) -> tuple[int, int]:
+    """First time, and the end of the last one [ns]."""
+    return (int(t_ns.min()), int(t_ns.max()) + 1) if len(t_ns) else (2**63 - 1, 0)
 
 
 @contextmanager

@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from recon4.errors import CorruptFile
+from recon4.recording.formats.bag_clock import chunks_going_on
 from recon4.recording.formats.chunks import (
     BagIndex,
     ChunkMessages,
@@ -80,15 +81,19 @@ class Mcap:
 
     def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
+        self._file.restart_budget()
+        stream = ChunkStream(self._file.name, self.index, self._read, report=self.report)
+        return stream.messages(topics)
+
+    def go_on(self) -> None:
+        """Continue the times where the recorder was set back."""
+        self._file.restart_budget()
+        self.index = chunks_going_on(self.index, self._read)
+
+    def _read(self, chunk: ChunkRef) -> ChunkMessages:
         known = _Topics()
         known.channels = self.index.topics
-
-        def load(chunk: ChunkRef) -> ChunkMessages:
-            return _load(self._file, chunk, known)
-
-        self._file.restart_budget()
-        stream = ChunkStream(self._file.name, self.index, load, report=self.report)
-        return stream.messages(topics)
+        return _load(self._file, chunk, known)
 
 
 class _Topics:
