@@ -93,6 +93,8 @@ def status_of(server, name, *, method, path):
     client = client_of(server, name)
     body = {"json": {}} if method not in SAFE_METHODS else {}
     with client.stream(method, path, **body) as answer:
+        if "content-length" in answer.headers:  # else it may be a stream without an end
+            answer.read()  # a connection with an unread answer is closed: the next shakes hands
         return answer.status_code
 
 
