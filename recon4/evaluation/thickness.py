@@ -11,8 +11,9 @@ from math import ceil
 import numpy as np
 
 from recon4.evaluation.tuning import THICKNESS
-from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import Array
+from recon4.kernels.cube_sums import add_to_cubes, sort_into_cubes
+from recon4.kernels.normals import bounds
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaceThickness, PlaneThickness
 
@@ -55,17 +56,20 @@ def _variances(p: Array) -> Array:
     """Eigenvalues of the covariances of the cubes with enough points, ascending, (C, 3) [m²]."""
     if not len(p):
         return np.empty((0, 3))
-    cell = cubes_of(p, THICKNESS.cell_m)
-    key = cube_keys(cell)
-    n = np.bincount(key)
+    low, high = np.empty((2, 3))
+    bounds(p, low, high)
+    grid = np.floor(np.stack([low, high]) / THICKNESS.cell_m).astype(np.int64)
+    grid[1] -= grid[0] - 1
+    local_m, key = np.empty_like(p), np.empty(len(p), np.int64)
+    n = np.zeros(int(grid[1].prod()), np.int64)
+    sort_into_cubes(p, THICKNESS.cell_m, grid, local_m, key, n)
     used = np.flatnonzero(n >= THICKNESS.min_points)
-    local = p - (cell + 0.5) * THICKNESS.cell_m  # small numbers: sums of squares keep their digits
-    local -= local.mean(axis=0)
-    first = np.stack([np.bincount(key, local[:, i])[used] for i in range(3)], axis=1)
-    second = np.empty((len(used), 3, 3))
-    for i in range(3):
-        for j in range(i, 3):
-            second[:, i, j] = second[:, j, i] = np.bincount(key, local[:, i] * local[:, j])[used]
+    row = np.full(len(n), -1, np.int32)
+    row[used] = np.arange(len(used))
+    sums = np.zeros((len(used), 9))
+    # Small numbers: sums of squares keep their digits.
+    add_to_cubes(local_m, local_m.mean(axis=0), row, key, sums)
+    first, second = sums[:, :3], sums[:, [[3, 4, 5], [4, 6, 7], [5, 7, 8]]]
     count = n[used, None]
     mean = first / count
     covariance = second / count[:, :, None] - mean[:, :, None] * mean[:, None, :]
