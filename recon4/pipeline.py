@@ -42,10 +42,11 @@ from recon4.workflows.choice import (
     of_frames,
     of_project,
 )
-from recon4.workflows.line_stages import LINE_ODOMETRY
+from recon4.workflows.lidar import ODOMETRY
 from recon4.workflows.planar import PLANAR
+from recon4.workflows.profiler import LINE_ODOMETRY
 from recon4.workflows.publish import publish
-from recon4.workflows.stages import CALIBRATION, FRAMES, ODOMETRY
+from recon4.workflows.stages import CALIBRATION, FRAMES
 from recon4.workflows.summary import About, RunSummary
 from recon4.workflows.workflow import Run, Workflow
 
@@ -244,4 +245,4 @@ def _publish(
 ) -> RunSummary:
     about = About(ProjectDescription.read(out), settings)
     return_freed_memory()
-    return publish(out, workflow.results, run.runner.runs, about=about, progress=progress)
+    return publish(out, workflow.results(), run.runner.runs, about=about, progress=progress)

@@ -79,7 +79,7 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         LIDAR.run_from_review(run)
         about = About(ProjectDescription.read(root), SETTINGS)
         watcher = progress or Silent()
-        publish(root, LIDAR.results, runner.runs, about=about, progress=watcher)
+        publish(root, LIDAR.results(), runner.runs, about=about, progress=watcher)
 
 
 def judge(root: Path, **verdict: object) -> None:

@@ -20,8 +20,8 @@ from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, is_project
 from recon4.store.stage import Input, StageContext, StageRunner, figures_of
-from recon4.workflows import planar_stages as stages_2d
 from recon4.workflows import stages
+from recon4.workflows.planar import SCANS_2D, laser_input
 
 
 def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
@@ -128,6 +128,6 @@ def finish_scans(session: CaptureSession, settings: Settings) -> int:
         }
         project.describe(preset=session.preset, rig="", inputs=[about])
         runner = StageRunner(project, settings, progress)
-        laser = stages_2d.laser_input(load_rig(session.rig))
-        runner.run(stages_2d.SCANS_2D, recordings=recordings, laser=laser)
-        return figures_of(runner.runs, stages_2d.SCANS_2D).scans
+        laser = laser_input(load_rig(session.rig))
+        runner.run(SCANS_2D, recordings=recordings, laser=laser)
+        return figures_of(runner.runs, SCANS_2D).scans

@@ -16,8 +16,7 @@ from recon4.store.inputs import input_file, input_files
 from recon4.store.ledger import Ledger
 from recon4.store.stage import Input
 from recon4.workflows.lidar import LIDAR
-from recon4.workflows.planar import PLANAR
-from recon4.workflows.planar_stages import laser_input
+from recon4.workflows.planar import PLANAR, laser_input
 from recon4.workflows.profiler import PROFILER
 from recon4.workflows.workflow import Workflow
 

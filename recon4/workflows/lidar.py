@@ -2,22 +2,15 @@
 
 from __future__ import annotations
 
-from recon4.workflows.make_map import make_map
-from recon4.workflows.map_results import MAP_RESULTS
-from recon4.workflows.stages import (
-    AUDIT,
-    CALIBRATION,
-    CLASSES,
-    FRAMES,
-    GRAPH,
-    INTENSITY,
-    LEVEL,
-    MAP,
-    ODOMETRY,
-    REFINE,
-    REVIEW,
-    VERIFICATION,
-)
+from pathlib import Path
+
+from recon4.model.figures import GraphFigures, RefineFigures
+from recon4.model.odometry_figures import OdometryFigures
+from recon4.semi_rigid.graph_nodes import GraphNodes
+from recon4.settings.reads import GraphReads, OdometryReads, RefineReads
+from recon4.store.stage import Stage, StageContext
+from recon4.workflows.make_map import TO_MAP, make_map, map_results
+from recon4.workflows.stages import AUDIT, CALIBRATION, FRAMES, LEVEL, REVIEW, VERIFICATION
 from recon4.workflows.workflow import Run, Workflow
 
 
@@ -51,13 +44,87 @@ def from_review(run: Run) -> None:
     make_map(run, to_trajectory, **run.measurements)
 
 
+def _odometry(
+    context: StageContext[OdometryReads],
+    *,
+    frames: Path,
+    calibration: Path | None = None,
+    earlier: Path | None = None,
+) -> OdometryFigures:
+    from recon4.georeference.gnss_aiding import make_gnss_aiding
+    from recon4.registration.stage import earlier_walks, run_odometry
+    from recon4.registration.walk import WalkInputs
+    from recon4.store.frames import open_frames
+
+    store = open_frames(frames, calibration)
+    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=store.imu)
+    recording = WalkInputs(
+        store,
+        context.settings,
+        context.progress,
+        aiding,
+        earlier_walks(earlier) if earlier else None,
+    )
+    return run_odometry(recording, context.out)
+
+
+def _graph(
+    context: StageContext[GraphReads],
+    *,
+    frames: Path,
+    odometry: Path,
+    calibration: Path | None = None,
+) -> GraphFigures:
+    from recon4.orders.confined import workers_of_this_process
+    from recon4.pose_graph.ordered_pairs import OrderedPairs
+    from recon4.pose_graph.pair_files import SearchInputs
+    from recon4.pose_graph.search import SearchMeans, build_graph
+    from recon4.store.frame_folders import FrameFolders
+
+    folders = FrameFolders.of(frames, odometry, calibration)
+    inputs = SearchInputs(folders=folders, settings=context.settings)
+    ordered = OrderedPairs.of(workers_of_this_process(), inputs)
+    return build_graph(
+        folders.open(),
+        odometry,
+        SearchMeans(context.out, ordered),
+        settings=context.settings,
+        progress=context.progress,
+    )
+
+
+def _refine(
+    context: StageContext[RefineReads],
+    *,
+    frames: Path,
+    odometry: Path,
+    nodes: GraphNodes,
+    calibration: Path | None = None,
+) -> RefineFigures:
+    from recon4.semi_rigid.carry import carry
+    from recon4.semi_rigid.refine import refine
+    from recon4.store.frames import open_frames
+
+    carried = carry(nodes, settings=context.settings)
+    if carried is not None:
+        return carried.save(context.out)
+    store = open_frames(frames, calibration, odometry)
+    found = refine(
+        store, odometry, nodes.nodes, settings=context.settings, progress=context.progress
+    )
+    return found.save(context.out)
+
+
+ODOMETRY = Stage("odometry", 51, OdometryReads, _odometry, OdometryFigures, percent=14.0)
+GRAPH = Stage("graph", 11, GraphReads, _graph, GraphFigures, percent=25.0)
+REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures, percent=8.0)
 LIDAR = Workflow(
     "lidar",
     imports=FRAMES,
     before_review=before_review,
     from_review=from_review,
     kept=(FRAMES, ODOMETRY, CALIBRATION, GRAPH, VERIFICATION),
-    remade=(REVIEW, REFINE, LEVEL, INTENSITY, CLASSES, MAP),
+    remade=(REVIEW, REFINE, LEVEL, *TO_MAP),
     audit=AUDIT,
-    results=MAP_RESULTS,
+    results=map_results,
 )

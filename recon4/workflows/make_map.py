@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from recon4.model.figures import ClassFigures, Figures, MapFigures
+from recon4.review.decisions import StandingCorrection
+from recon4.settings.reads import IntensityReads, MapReads, ReadsNothing
 from recon4.store.contents import files_of
-from recon4.workflows.stages import CLASSES, INTENSITY, MAP
+from recon4.store.stage import Stage, StageContext
 from recon4.workflows.workflow import Run
+
+if TYPE_CHECKING:
+    from recon4.workflows.publish import Results
 
 POSES = ("trajectory.npz",)
 """What `INTENSITY` reads of the stage ``level``."""
@@ -30,3 +38,114 @@ def make_map(run: Run, to_trajectory: Callable[[Run], None], **measurements: str
     run.stage(CLASSES, **points, level=files_of(seen, SIGHT))
     made = {"intensity": "intensity", "classes": "classes"}
     run.stage(MAP, **points, **run.corrections, **made, level=run.files("level", PLACE))
+
+
+def map_results() -> Results[Any]:
+    """What a finished run leaves in the project folder."""
+    from recon4.workflows.map_results import MAP_RESULTS
+
+    return MAP_RESULTS
+
+
+def _intensity(
+    context: StageContext[IntensityReads],
+    *,
+    frames: Path,
+    odometry: Path,
+    level: Path,
+    calibration: Path | None = None,
+) -> None:
+    from recon4.intensity.normalize import write_intensity
+    from recon4.intensity.tuning import IntensityTuning
+    from recon4.settings.tuning import tuned
+    from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import open_frames
+
+    write_intensity(
+        open_frames(frames, calibration, odometry),
+        load_trajectory(level / "trajectory.npz"),
+        context.out,
+        settings=tuned(IntensityTuning, context.settings.intensity),
+        progress=context.progress,
+    )
+
+
+def _classes(
+    context: StageContext[ReadsNothing],
+    *,
+    frames: Path,
+    odometry: Path,
+    level: Path,
+    calibration: Path | None = None,
+) -> ClassFigures:
+    from recon4.classes.class_parts import ClassedWalk, OrderedClasses
+    from recon4.classes.stage import classify, write_classes
+    from recon4.mapping.mirrors import load_mirrors
+    from recon4.orders.confined import workers_of_this_process
+    from recon4.store.arrays import load_trajectory
+    from recon4.store.frame_folders import FrameFolders
+
+    folders = FrameFolders.of(frames, odometry, calibration)
+    walk = ClassedWalk(folders=folders, level=str(level.absolute()))
+    found = classify(
+        folders.open(),
+        load_trajectory(level / "trajectory.npz"),
+        mirrors=load_mirrors(level / "mirrors.npz"),
+        progress=context.progress,
+        ordered=OrderedClasses.of(workers_of_this_process(), walk),
+    )
+    return write_classes(found, context.out)
+
+
+def _map(
+    context: StageContext[MapReads],
+    *,
+    frames: Path,
+    odometry: Path,
+    level: Path,
+    intensity: Path,
+    classes: Path,
+    calibration: Path | None = None,
+    corrections: tuple[StandingCorrection, ...] = (),
+) -> MapFigures:
+    from recon4.mapping.build import MapInputs, MapMeans, build_map
+    from recon4.orders.confined import workers_of_this_process
+    from recon4.sandbox.freed_memory import return_freed_memory
+    from recon4.store.arrays import load_intensity_table, load_trajectory
+    from recon4.store.classes import StoredClasses
+    from recon4.store.frames import open_frames
+    from recon4.workflows.corrected_classes import corrections_in
+    from recon4.workflows.map_figures import map_figures, write_map_laz
+    from recon4.workflows.result_files import covariances_of
+
+    store = open_frames(frames, calibration, odometry)
+    covariances_at = covariances_of(level)
+    trajectory = load_trajectory(level / "trajectory.npz")
+    placed = corrections_in(corrections, trajectory)
+    inputs = MapInputs(
+        store,
+        trajectory,
+        load_intensity_table(intensity / "table.npz"),
+        covariances=covariances_at and covariances_at(store.t_mid_ns),
+        classes=StoredClasses.open(classes),
+        corrections=placed.volumes,
+    )
+    tiles = build_map(
+        inputs,
+        context.out,
+        settings=context.settings.map,
+        progress=context.progress,
+        means=MapMeans(workers_of_this_process()),
+    )
+    return_freed_memory()
+    write_map_laz(context.out, level, progress=context.progress)
+    return map_figures(tiles, placed)
+
+
+INTENSITY: Stage[IntensityReads, Figures] = Stage(
+    "intensity", 2, IntensityReads, _intensity, percent=4.0
+)
+CLASSES = Stage("classes", 4, ReadsNothing, _classes, ClassFigures, percent=5.0)
+MAP = Stage("map", 17, MapReads, _map, MapFigures, percent=21.0)
+TO_MAP = (INTENSITY, CLASSES, MAP)
+"""The stages that `make_map` runs, in order."""

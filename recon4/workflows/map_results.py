@@ -27,6 +27,8 @@ from recon4.store.frames import open_frames
 from recon4.store.package_versions import versions
 from recon4.store.stage import StageRun, figures_of
 from recon4.workflows import stages
+from recon4.workflows.lidar import ODOMETRY
+from recon4.workflows.make_map import MAP
 from recon4.workflows.publish import FinishedRun, Results, run_keys
 from recon4.workflows.result_files import write_graph, write_pose_covariances, write_trajectory
 from recon4.workflows.summary import About, RunSummary, duration_s, timings
@@ -86,13 +88,13 @@ def _summary(root: Path, made: _FinishedMap) -> Summary:
         duration_s=duration_s(trajectory),
         path_length_m=round(float(path_length_m(trajectory)[-1]), 3),
         multiframes=frames.multiframes,
-        lost=figures_of(runs, stages.ODOMETRY).lost,
-        points=figures_of(runs, stages.MAP).points,
+        lost=figures_of(runs, ODOMETRY).lost,
+        points=figures_of(runs, MAP).points,
         edges=load_graph(made.level).verdict_counts(),
         verdict=assessed.verdict,
         uncertainty=level.uncertainty,
         findings=worst_first((*assessed.findings, *altered)),
-        corrections=figures_of(runs, stages.MAP).corrections,
+        corrections=figures_of(runs, MAP).corrections,
         approval=approval.stamp if approval else None,
     )
 

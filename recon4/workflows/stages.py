@@ -1,4 +1,6 @@
-"""The stages of LiDARs, and those that all workflows share: what each reads, and its version.
+"""The stages that several workflows share: what each reads, and its version.
+
+Those of one kind of walk stand beside their order, in the module of its workflow.
 
 A version goes up whenever the same inputs give another result than before.
 """
@@ -15,34 +17,21 @@ from recon4.errors import UnknownFormat
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
     AuditFigures,
-    ClassFigures,
-    Figures,
     FrameFigures,
-    GraphFigures,
     LevelFigures,
-    MapFigures,
-    RefineFigures,
     ReviewFigures,
     VerificationFigures,
 )
 from recon4.model.finding_kinds import AUDIT_VERSION
 from recon4.model.import_notes import import_notes
-from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.model.site_control import SiteControl
-from recon4.review.decisions import Standing, StandingCorrection
-from recon4.semi_rigid.graph_nodes import GraphNodes
+from recon4.review.decisions import Standing
 from recon4.settings.reads import (
     AuditReads,
     CalibrationReads,
-    GraphReads,
     ImportReads,
-    IntensityReads,
     LevelReads,
-    MapReads,
-    OdometryReads,
-    ReadsNothing,
-    RefineReads,
     VerificationReads,
 )
 from recon4.store.stage import Stage, StageContext
@@ -95,30 +84,6 @@ def frames_figures(folder: Path) -> FrameFigures:
     )
 
 
-def _odometry(
-    context: StageContext[OdometryReads],
-    *,
-    frames: Path,
-    calibration: Path | None = None,
-    earlier: Path | None = None,
-) -> OdometryFigures:
-    from recon4.georeference.gnss_aiding import make_gnss_aiding
-    from recon4.registration.stage import earlier_walks, run_odometry
-    from recon4.registration.walk import WalkInputs
-    from recon4.store.frames import open_frames
-
-    store = open_frames(frames, calibration)
-    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=store.imu)
-    recording = WalkInputs(
-        store,
-        context.settings,
-        context.progress,
-        aiding,
-        earlier_walks(earlier) if earlier else None,
-    )
-    return run_odometry(recording, context.out)
-
-
 def _calibration(
     context: StageContext[CalibrationReads], *, frames: Path, odometry: Path
 ) -> CalibrationFigures:
@@ -129,31 +94,6 @@ def _calibration(
     return run_calibration(
         store, odometry, settings=context.settings, progress=context.progress
     ).save(context.out)
-
-
-def _graph(
-    context: StageContext[GraphReads],
-    *,
-    frames: Path,
-    odometry: Path,
-    calibration: Path | None = None,
-) -> GraphFigures:
-    from recon4.orders.confined import workers_of_this_process
-    from recon4.pose_graph.ordered_pairs import OrderedPairs
-    from recon4.pose_graph.pair_files import SearchInputs
-    from recon4.pose_graph.search import SearchMeans, build_graph
-    from recon4.store.frame_folders import FrameFolders
-
-    folders = FrameFolders.of(frames, odometry, calibration)
-    inputs = SearchInputs(folders=folders, settings=context.settings)
-    ordered = OrderedPairs.of(workers_of_this_process(), inputs)
-    return build_graph(
-        folders.open(),
-        odometry,
-        SearchMeans(context.out, ordered),
-        settings=context.settings,
-        progress=context.progress,
-    )
 
 
 def _verification(context: StageContext[VerificationReads], *, graph: Path) -> VerificationFigures:
@@ -186,28 +126,6 @@ def _review(
     return run_review(
         graph, decisions, context.out, settings=context.settings, progress=context.progress
     )
-
-
-def _refine(
-    context: StageContext[RefineReads],
-    *,
-    frames: Path,
-    odometry: Path,
-    nodes: GraphNodes,
-    calibration: Path | None = None,
-) -> RefineFigures:
-    from recon4.semi_rigid.carry import carry
-    from recon4.semi_rigid.refine import refine
-    from recon4.store.frames import open_frames
-
-    carried = carry(nodes, settings=context.settings)
-    if carried is not None:
-        return carried.save(context.out)
-    store = open_frames(frames, calibration, odometry)
-    found = refine(
-        store, odometry, nodes.nodes, settings=context.settings, progress=context.progress
-    )
-    return found.save(context.out)
 
 
 def _level(
@@ -249,101 +167,6 @@ def _level(
     return msgspec.structs.replace(leveled.save(context.out), moved=moved)
 
 
-def _intensity(
-    context: StageContext[IntensityReads],
-    *,
-    frames: Path,
-    odometry: Path,
-    level: Path,
-    calibration: Path | None = None,
-) -> None:
-    from recon4.intensity.normalize import write_intensity
-    from recon4.intensity.tuning import IntensityTuning
-    from recon4.settings.tuning import tuned
-    from recon4.store.arrays import load_trajectory
-    from recon4.store.frames import open_frames
-
-    write_intensity(
-        open_frames(frames, calibration, odometry),
-        load_trajectory(level / "trajectory.npz"),
-        context.out,
-        settings=tuned(IntensityTuning, context.settings.intensity),
-        progress=context.progress,
-    )
-
-
-def _classes(
-    context: StageContext[ReadsNothing],
-    *,
-    frames: Path,
-    odometry: Path,
-    level: Path,
-    calibration: Path | None = None,
-) -> ClassFigures:
-    from recon4.classes.class_parts import ClassedWalk, OrderedClasses
-    from recon4.classes.stage import classify, write_classes
-    from recon4.mapping.mirrors import load_mirrors
-    from recon4.orders.confined import workers_of_this_process
-    from recon4.store.arrays import load_trajectory
-    from recon4.store.frame_folders import FrameFolders
-
-    folders = FrameFolders.of(frames, odometry, calibration)
-    walk = ClassedWalk(folders=folders, level=str(level.absolute()))
-    found = classify(
-        folders.open(),
-        load_trajectory(level / "trajectory.npz"),
-        mirrors=load_mirrors(level / "mirrors.npz"),
-        progress=context.progress,
-        ordered=OrderedClasses.of(workers_of_this_process(), walk),
-    )
-    return write_classes(found, context.out)
-
-
-def _map(
-    context: StageContext[MapReads],
-    *,
-    frames: Path,
-    odometry: Path,
-    level: Path,
-    intensity: Path,
-    classes: Path,
-    calibration: Path | None = None,
-    corrections: tuple[StandingCorrection, ...] = (),
-) -> MapFigures:
-    from recon4.mapping.build import MapInputs, MapMeans, build_map
-    from recon4.orders.confined import workers_of_this_process
-    from recon4.sandbox.freed_memory import return_freed_memory
-    from recon4.store.arrays import load_intensity_table, load_trajectory
-    from recon4.store.classes import StoredClasses
-    from recon4.store.frames import open_frames
-    from recon4.workflows.corrected_classes import corrections_in
-    from recon4.workflows.map_figures import map_figures, write_map_laz
-    from recon4.workflows.result_files import covariances_of
-
-    store = open_frames(frames, calibration, odometry)
-    covariances_at = covariances_of(level)
-    trajectory = load_trajectory(level / "trajectory.npz")
-    placed = corrections_in(corrections, trajectory)
-    inputs = MapInputs(
-        store,
-        trajectory,
-        load_intensity_table(intensity / "table.npz"),
-        covariances=covariances_at and covariances_at(store.t_mid_ns),
-        classes=StoredClasses.open(classes),
-        corrections=placed.volumes,
-    )
-    tiles = build_map(
-        inputs,
-        context.out,
-        settings=context.settings.map,
-        progress=context.progress,
-        means=MapMeans(workers_of_this_process()),
-    )
-    return_freed_memory()
-    write_map_laz(context.out, level, progress=context.progress)
-    return map_figures(tiles, placed)
-
-
 def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures:
     from recon4.findings.audit import check_walk, save_findings
     from recon4.findings.walk import read_walk
@@ -351,27 +174,13 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
     return save_findings(context.out, check_walk(read_walk(artifacts, context.settings)))
 
 
-FRAMES = Stage("frames", 39, ImportReads, _frames, FrameFigures)
-ODOMETRY = Stage(
-    "odometry",
-    51,
-    OdometryReads,
-    _odometry,
-    OdometryFigures,
-)
+FRAMES = Stage("frames", 39, ImportReads, _frames, FrameFigures, percent=9.0)
 CALIBRATION = Stage(
-    "calibration",
-    15,
-    CalibrationReads,
-    _calibration,
-    CalibrationFigures,
+    "calibration", 15, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
 )
-GRAPH = Stage("graph", 11, GraphReads, _graph, GraphFigures)
-VERIFICATION = Stage("verification", 3, VerificationReads, _verification, VerificationFigures)
+VERIFICATION = Stage(
+    "verification", 3, VerificationReads, _verification, VerificationFigures, percent=2.0
+)
 REVIEW = Stage("review", 5, VerificationReads, _review, ReviewFigures)
-REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)
-LEVEL = Stage("level", 35, LevelReads, _level, LevelFigures)
-AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures)
-INTENSITY: Stage[IntensityReads, Figures] = Stage("intensity", 2, IntensityReads, _intensity)
-CLASSES = Stage("classes", 4, ReadsNothing, _classes, ClassFigures)
-MAP = Stage("map", 17, MapReads, _map, MapFigures)
+LEVEL = Stage("level", 35, LevelReads, _level, LevelFigures, percent=1.0)
+AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures, percent=1.0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from recon4.georeference.tuning import HOLD
 from recon4.model.calibration_figures import CalibrationFigures
@@ -15,8 +15,10 @@ from recon4.semi_rigid.graph_nodes import GraphNodes, Undecided
 from recon4.store.contents import arrays_of, files_of
 from recon4.store.hashing import hash_json
 from recon4.store.stage import Artifact, Input, Stage, StageRunner
-from recon4.workflows.publish import Results
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
+
+if TYPE_CHECKING:
+    from recon4.workflows.publish import Results
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,8 +176,13 @@ class Workflow:
     remade: tuple[Stage[Any, Any], ...]
     """Stages that follow them, in order."""
     audit: Stage[Any, Any]
-    results: Results[Any]
-    """What a finished run leaves in the project folder."""
+    results: Callable[[], Results[Any]]
+    """What a finished run leaves in the project folder; the report is imported with it."""
+
+    @property
+    def stages(self) -> tuple[Stage[Any, Any], ...]:
+        """All stages, in order."""
+        return (*self.kept, *self.remade, self.audit)
 
     def run(self, run: Run) -> None:
         """All stages after the import; each is skipped when its artifact is there."""

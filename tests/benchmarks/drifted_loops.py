@@ -43,6 +43,7 @@ from recon4.store.frames import FrameStore
 from recon4.store.project import Project
 from recon4.store.stage import StageRunner
 from recon4.workflows import stages
+from recon4.workflows.lidar import ODOMETRY
 from tests.benchmarks.proving_ground import simulated_inputs
 
 WALKS = ("office/12/100", "garage/1/60", "garage:1/2/80", "storeys/1/60", "staircase/3/60")
@@ -97,7 +98,7 @@ def prepared(spec: str, out: Path) -> DriftedWalk:
         project.describe(preset="indoor", rig=rig.name, inputs=[])
         runner = StageRunner(project, preset("indoor"), Silent())
         frames = runner.run(stages.FRAMES, **simulated_inputs(recording, rig, project))
-        odometry = runner.run(stages.ODOMETRY, frames=frames)
+        odometry = runner.run(ODOMETRY, frames=frames)
     return DriftedWalk(
         FrameStore.open(frames.folder), OdometryTrack.load(odometry.folder), recording
     )

@@ -74,7 +74,7 @@ MAY_IMPORT = {
     | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
     | {f"recon4.findings.{name}" for name in ("verdict", "wording")},
     "recon4/live/project_files.py": STAGE
-    | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar_stages"},
+    | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL
     | {"recon4.registration", "recon4.store.arrays", "recon4.store.tried_hypotheses"},

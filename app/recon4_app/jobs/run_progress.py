@@ -1,7 +1,7 @@
 """Progress of a whole run: a fold over the events of its worker, like `recon4_app.jobs.status`.
 
-A stage is weighted by its usual time, measured on a simulated walk of five minutes on two
-processors; a piece of work within it likewise.
+A stage is weighted by its usual time (`recon4.store.stage.Stage.percent`), a piece of work within
+it likewise.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from recon4.model.events import Event, RunStarted, StageChanged, WorkProgress
+from recon4.workflows.lidar import LIDAR
 from recon4_app.jobs.tuning import ESTIMATES
 
 BEFORE, AFTER = "hash", "results"
@@ -16,17 +17,7 @@ BEFORE, AFTER = "hash", "results"
 
 STAGE_PERCENT = {
     BEFORE: 2.0,
-    "frames": 9.0,
-    "odometry": 14.0,
-    "calibration": 3.0,
-    "graph": 25.0,
-    "verification": 2.0,
-    "refine": 8.0,
-    "level": 1.0,
-    "intensity": 4.0,
-    "classes": 5.0,
-    "map": 21.0,
-    "audit": 1.0,
+    **{stage.name: stage.percent for stage in LIDAR.stages if stage.percent},
     AFTER: 5.0,
 }
 """Stage -> its usual part of the time [%]."""

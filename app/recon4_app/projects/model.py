@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
+from graphlib import TopologicalSorter
+from itertools import pairwise
 
 from recon4.review.approval_state import ApprovalState
+from recon4.workflows.lidar import LIDAR
+from recon4.workflows.planar import PLANAR
+from recon4.workflows.profiler import PROFILER
 
 RESULTS: dict[str, str] = {
     "report.html": "Quality report",
@@ -24,25 +30,16 @@ RESULTS: dict[str, str] = {
 MAP_IMAGES = ("overview.png", "map.png")
 """In the artifact of a 2-D map; the first one there is shown."""
 
-STAGE_ORDER = (
-    "frames",
-    "odometry",
-    "calibration",
-    "graph",
-    "scans_2d",
-    "odometry_2d",
-    "graph_2d",
-    "verification",
-    "review",
-    "map_2d",
-    "refine",
-    "level",
-    "intensity",
-    "classes",
-    "map",
-    "audit",
-)
-"""As in docs/explanation/architecture.md; a stage not named here is shown last."""
+
+@cache
+def stage_order() -> tuple[str, ...]:
+    """Names of the stages of all workflows, each after those that are before it in any of them."""
+    order: TopologicalSorter[str] = TopologicalSorter()
+    for workflow in (LIDAR, PROFILER, PLANAR):
+        for before, after in pairwise(one.name for one in workflow.stages):
+            order.add(after, before)
+    return tuple(order.static_order())
+
 
 VIEWABLE_STAGES = {"odometry", "map", "odometry_2d", "map_2d"}
 """The viewer has something to show once one of them is done."""

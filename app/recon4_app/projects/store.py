@@ -33,13 +33,13 @@ from recon4_app.projects.folder_times import iso, weigh
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.model import (
     RESULTS,
-    STAGE_ORDER,
     VIEWABLE_STAGES,
     FolderEntry,
     ProjectCard,
     ProjectView,
     ResultFile,
     StageView,
+    stage_order,
 )
 from recon4_app.projects.tuning import PROJECT_LIST
 
@@ -302,7 +302,7 @@ def _stages(folder: Path) -> tuple[tuple[StageView, ...], str]:
         found = tuple(map(_stage, rows))
     except (StoreError, ValueError, TypeError) as error:
         return (), visible(str(error), most=PROJECT_LIST.max_problem)
-    order = {stage: k for k, stage in enumerate(STAGE_ORDER)}
+    order = {stage: k for k, stage in enumerate(stage_order())}
     return tuple(sorted(found, key=lambda one: order.get(one.stage, len(order)))), ""
 
 

@@ -14,7 +14,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, single_rig
 from recon4.settings import IngestSettings
 from recon4.slam2d.stage import import_scans
-from recon4.workflows.planar_stages import laser_input
+from recon4.workflows.planar import laser_input
 from tests.unit.recording.topic_bags import scan, write
 
 
