@@ -7,7 +7,6 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import ARM_M, SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
@@ -75,26 +74,22 @@ def distance_schedule(farthest: int) -> list[range]:
 def revisit_pairs(graph: PoseGraph, *, settings: GraphTuning, limit: int) -> list[Pair]:
     """Pairs of each node with at most ``limit`` earlier nodes of the place, spread over visits.
 
-    Only nodes close by are considered, so the work is linear in the path length, not quadratic.
-    The search radius grows with the path length in between, to allow for drift.
+    The search radius grows with the path length in between, to allow for drift. At the end of a
+    walk of hours it is most of a building, so all earlier nodes are compared in one step: a tree
+    would find and list a good part of them one by one.
     """
     t = graph.T_map_body.t
     walked_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(t, axis=0), axis=1))])
     tried = {(e.i, e.j) for e in graph.edges}
     pairs = []
-    reach_m = settings.revisit_radius_m + settings.drift_ratio * walked_m
-    near = cKDTree(t).query_ball_point(t, r=reach_m)
-    for j, found in enumerate(near):
-        earlier = np.sort(np.array(found, np.int64))
-        earlier = earlier[: np.searchsorted(earlier, j - settings.neighbors)]
-        if len(earlier) == 0:
-            continue
+    for j in range(settings.neighbors + 1, len(t)):
+        earlier = slice(0, j - settings.neighbors)
         distance_m = np.linalg.norm(t[earlier] - t[j], axis=1)
         allowed_m = settings.revisit_radius_m + settings.drift_ratio * (
             walked_m[j] - walked_m[earlier]
         )
-        inside = distance_m < allowed_m
-        chosen = _spread(earlier[inside], distance_m[inside], limit)
+        inside = np.flatnonzero(distance_m < allowed_m)
+        chosen = _spread(inside, distance_m[inside], limit)
         pairs += [_pair(graph, i, j, settings=settings) for i in chosen if (i, j) not in tried]
     return pairs
 
