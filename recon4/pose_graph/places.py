@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -19,9 +19,9 @@ from recon4.pose_graph.density_images import (
     make_density_image,
 )
 from recon4.pose_graph.node_views import NodeRangeImages
-from recon4.pose_graph.stored_images import StoredImages
+from recon4.pose_graph.stored_images import ChosenImages, StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
-from recon4.pose_graph.tuning_places import PLACES
+from recon4.pose_graph.tuning_places import DENSITY, PLACES
 
 
 class StatedDrift(NamedTuple):
@@ -81,52 +81,90 @@ class Places:
         return self.drift_between(before, after).times(1.0 / walked_m)
 
 
-def make_places(
-    graph: PoseGraph,
-    views: NodeRangeImages,
-    settings: RecognitionTuning,
-    *,
-    leveled: bool,
-    turned: Flags | None = None,
-) -> Places:
-    """Draw the places of a walk with the current poses of its graph.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drawing:
+    """What a place was drawn with."""
 
-    Args:
-        graph: Poses with a vertical z axis.
-        views: Segments of every node.
-        settings: Spacing and extent of the places.
-        leveled: The vertical is known by an IMU.
-        turned: Nodes whose images are laid onto others, (N,); images of other places have no walls.
-            None = all.
-    """
-    path_m, part = _path_m(graph), _unbroken_parts(graph)
-    nodes = _every(path_m, part, settings.spacing_m)
-    images, drawn = StoredImages(views.scratch), dict[int, _NodeWalls]()
-    reach_m = settings.reach_m + settings.spacing_m  # certainly all that are near
-    for node in nodes:
-        around = slice(*np.searchsorted(path_m, path_m[node] + np.array([-1.0, 1.0]) * reach_m))
-        near = np.abs(path_m[around] - path_m[node]) <= settings.reach_m
-        same = part[around] == part[node]
-        members = (np.flatnonzero(near & same) + around.start).tolist()
-        # A node belongs to several places in a row.
-        drawn = {k: drawn.get(k) or _walls_of(graph, views, k) for k in members}
-        walls_m = np.concatenate([one.walls_m for one in drawn.values()])
-        layers = np.sum([one.layers for one in drawn.values()], axis=0)
-        image = make_density_image(walls_m - graph.T_map_body.t[node, :2], layers)
-        images.append(image if turned is None or turned[node] else image.without_walls())
-    return Places(
-        graph=graph,
-        node=nodes,
-        path_m=path_m,
-        images=images,
-        descriptors=images.descriptors,
-        bounds=relative_bounds(graph, nodes, leveled=leveled),
-    )
+    row: int
+    """Of its image."""
+    T_map_body: SE3
+    """Of all nodes."""
+    has_walls: bool
+    """Whether it can be laid onto others."""
 
 
-def place_nodes(graph: PoseGraph, settings: RecognitionTuning) -> Rows:
-    """Node of each place that `make_places` would draw, (K,)."""
-    return _every(_path_m(graph), _unbroken_parts(graph), settings.spacing_m)
+class PlaceDrawer:
+    """Draws the places of a walk; for another search only those whose walls have moved."""
+
+    def __init__(
+        self, views: NodeRangeImages, settings: RecognitionTuning, *, leveled: bool
+    ) -> None:
+        """Nothing is drawn yet.
+
+        Args:
+            views: Segments of every node.
+            settings: Spacing and extent of the places.
+            leveled: The vertical is known by an IMU.
+        """
+        self._views, self._settings, self._leveled = views, settings, leveled
+        self._images = StoredImages(views.scratch)
+        self._members: dict[int, Rows] = {}
+        self._drawings: dict[int, _Drawing] = {}
+
+    def nodes(self, graph: PoseGraph) -> Rows:
+        """Node of each place, the same for every search, (K,)."""
+        return np.array([*self._members_of(graph)], np.intp)
+
+    def draw(self, graph: PoseGraph, *, turned: Flags | None = None) -> Places:
+        """The places with the current poses of the graph.
+
+        Args:
+            graph: Poses with a vertical z axis.
+            turned: Nodes whose images are laid onto others, (N,); images of other places have no
+                walls. None = all.
+        """
+        walls: dict[int, _NodeWalls] = {}
+        for node, members in self._members_of(graph).items():
+            has_walls = turned is None or bool(turned[node])
+            if self._is_drawn(graph, node, has_walls=has_walls):
+                continue
+            # A node belongs to several places in a row.
+            walls = {k: walls.get(k) or _walls_of(graph, self._views, k) for k in members.tolist()}
+            image = _image_of(walls.values(), graph.T_map_body.t[node])
+            self._images.append(image if has_walls else image.without_walls())
+            self._drawings[node] = _Drawing(len(self._images) - 1, graph.T_map_body, has_walls)
+        nodes = self.nodes(graph)
+        images = ChosenImages(self._images, [self._drawings[node].row for node in nodes.tolist()])
+        return Places(
+            graph=graph,
+            node=nodes,
+            path_m=_path_m(graph),
+            images=images,
+            descriptors=images.descriptors,
+            bounds=relative_bounds(graph, nodes, leveled=self._leveled),
+        )
+
+    def _members_of(self, graph: PoseGraph) -> dict[int, Rows]:
+        """Node of each place -> nodes whose walls it shows; found along the path of one graph."""
+        if not self._members:
+            path_m, part = _path_m(graph), _unbroken_parts(graph)
+            for node in _every(path_m, part, self._settings.spacing_m).tolist():
+                reach_m = path_m[node] + np.array([-1.0, 1.0]) * self._settings.reach_m
+                near = np.arange(*np.searchsorted(path_m, reach_m))
+                self._members[node] = near[part[near] == part[node]]
+        return self._members
+
+    def _is_drawn(self, graph: PoseGraph, node: int, *, has_walls: bool) -> bool:
+        """Whether an image shows the place as it is by the current poses."""
+        drawn, rows = self._drawings.get(node), self._members[node]
+        if drawn is None or (has_walls and not drawn.has_walls):
+            return False
+        before, now = drawn.T_map_body, graph.T_map_body
+        shift_m = (now.t[rows] - now.t[node]) - (before.t[rows] - before.t[node])
+        # Of a small turn, which moves what is seen by it times its distance.
+        turn_rad = np.linalg.norm(now.R[rows] - before.R[rows], axis=(1, 2)) / np.sqrt(2.0)
+        moved_m = np.linalg.norm(shift_m, axis=1) + DENSITY.radius_m * turn_rad
+        return bool(moved_m.max() <= PLACES.redrawn_m)
 
 
 def _path_m(graph: PoseGraph) -> Array:
@@ -173,3 +211,10 @@ def _walls_of(graph: PoseGraph, views: NodeRangeImages, node: int) -> _NodeWalls
     height = p_map[:, 2] - T_map_body.t[2]
     is_wall = (height > -PLACES.below_m) & (height < PLACES.above_m)
     return _NodeWalls(p_map[is_wall, :2], layers_of(height))
+
+
+def _image_of(seen: Collection[_NodeWalls], t_m: Array) -> DensityImage:
+    """The image of a place at ``t_m`` in the map, (3,)."""
+    walls_m = np.concatenate([one.walls_m for one in seen])
+    layers = np.sum([one.layers for one in seen], axis=0)
+    return make_density_image(walls_m - t_m[:2], layers)

@@ -26,7 +26,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, 
 from recon4.pose_graph.density_images import Overlay, TurnedImage, overlays, yaws_within
 from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.pairs import PairRegistrar
-from recon4.pose_graph.places import Places, make_places, place_nodes
+from recon4.pose_graph.places import PlaceDrawer, Places
 from recon4.pose_graph.recognized_chains import (
     ChainFollower,
     loop_pairs,
@@ -65,14 +65,14 @@ class _PlaceHypothesis:
 
 
 def recognize(
-    graph: PoseGraph, registrar: PairRegistrar, *, leveled: bool, progress: Progress
+    graph: PoseGraph, registrar: PairRegistrar, drawer: PlaceDrawer, *, progress: Progress
 ) -> list[Edge]:
     """Find loop closures between places that the graph does not join yet.
 
     Args:
         graph: The graph so far; z of its map is vertical.
         registrar: Registers pairs of nodes; has their segments and the settings.
-        leveled: The vertical is known by an IMU.
+        drawer: Draws the places of this walk.
         progress: Receives an event for each registered pair.
 
     Returns:
@@ -81,9 +81,9 @@ def recognize(
     settings = registrar.recognition
     # Where a pair was degenerate, as in a bare corridor, no other pose would be better determined.
     is_open = ~_closed_nodes(graph)
-    if not is_open[place_nodes(graph, settings)].any():
+    if not is_open[drawer.nodes(graph)].any():
         return []  # no place has to be drawn
-    places = make_places(graph, registrar.views, settings, leveled=leveled, turned=is_open)
+    places = drawer.draw(graph, turned=is_open)
     hypotheses = [
         one
         for place in np.flatnonzero(is_open[places.node]).tolist()

@@ -27,6 +27,7 @@ from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.pair_files import VIEWS
 from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
+from recon4.pose_graph.places import PlaceDrawer
 from recon4.pose_graph.priors import Kernel
 from recon4.pose_graph.recognition import recognize, without_settled
 from recon4.pose_graph.solve import Solution, optimize
@@ -203,8 +204,9 @@ def close_loops(
     for select in selections[: SEARCH.before_recognition]:
         graph = attempts.run(graph, select(graph))
     if recognition.enabled and len(selections) > SEARCH.before_recognition and not g.exhaustive:
+        drawer = PlaceDrawer(registrar.views, recognition, leveled=leveled)
         for _ in range(recognition.passes):
-            edges = recognize(graph, registrar, leveled=leveled, progress=progress)
+            edges = recognize(graph, registrar, drawer, progress=progress)
             graph = attempts.add(graph, edges)
             if not any(edge.in_graph for edge in edges):
                 break

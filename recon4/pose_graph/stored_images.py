@@ -6,6 +6,7 @@ import os
 import tempfile
 import weakref
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import overload
 
@@ -60,3 +61,29 @@ class StoredImages(Sequence[DensityImage]):
             np.frombuffer(spectrum, np.complex64).reshape(shape),
             descriptor,
         )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ChosenImages(Sequence[DensityImage]):
+    """Some of the stored images."""
+
+    stored: StoredImages
+    rows: Sequence[int]
+    """Of the stored ones, (K,)."""
+
+    @property
+    def descriptors(self) -> Array:
+        """Those of the chosen images, (K, D)."""
+        return np.asarray(self.stored.descriptors[list(self.rows)])
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @overload
+    def __getitem__(self, k: int) -> DensityImage: ...
+    @overload
+    def __getitem__(self, k: slice) -> Sequence[DensityImage]: ...
+    def __getitem__(self, k: int | slice) -> DensityImage | Sequence[DensityImage]:
+        if isinstance(k, slice):
+            return [self.stored[row] for row in self.rows[k]]
+        return self.stored[self.rows[k]]

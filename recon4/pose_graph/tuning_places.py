@@ -92,6 +92,9 @@ class PlaceTuning(Struct, frozen=True, kw_only=True):
     """Points of a node that are drawn."""
     broken_sd_m: float = 1.0
     """Odometry edges that are less certain do not join the parts of a sub-map [m]."""
+    redrawn_m: float = 0.05
+    """A place is drawn again where its walls have moved farther relative to it [m]: an eighth of a
+    cell."""
     below_m: float = 0.9
     above_m: float = 0.8
     """Points between these heights below and above the body count as walls [m]."""

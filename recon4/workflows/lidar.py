@@ -116,7 +116,7 @@ def _refine(
 
 
 ODOMETRY = Stage("odometry", 51, OdometryReads, _odometry, OdometryFigures, percent=14.0)
-GRAPH = Stage("graph", 11, GraphReads, _graph, GraphFigures, percent=25.0)
+GRAPH = Stage("graph", 12, GraphReads, _graph, GraphFigures, percent=25.0)
 REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures, percent=8.0)
 LIDAR = Workflow(
     "lidar",

@@ -28,7 +28,7 @@ from recon4.pose_graph.density_images import (
     overlays,
     yaws_within,
 )
-from recon4.pose_graph.places import Places
+from recon4.pose_graph.places import PlaceDrawer, Places
 from recon4.pose_graph.recognition import recognize
 from recon4.pose_graph.recognized_groups import RecognizedChain, judge_chains
 from recon4.pose_graph.stored_images import StoredImages
@@ -201,12 +201,73 @@ def test_images_come_back_from_the_disk_as_they_were(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_where_every_place_is_known_none_is_drawn():
+class SeenWalls:
+    """Walls around each node of `straight`; counts how often a node is looked at."""
+
+    def __init__(self, scratch):
+        self.scratch, self.looked = scratch, []
+        x, y = walls_of(TWO_CUBES * 5.0, 4000).T
+        self._walls_m = np.stack([x, y, np.zeros(len(x))], axis=1)
+
+    def ends(self, node):
+        self.looked.append(node)
+        p_m = self._walls_m - [float(node), 0.0, 0.0]
+        near = p_m[np.linalg.norm(p_m, axis=1) < 10.0]
+        return np.stack([near, near + np.array([0.0, 0.0, 0.05])], axis=1)
+
+
+def moved_from(graph, node, shift_m):
+    """The graph with all nodes from one on moved along y."""
+    t = graph.T_map_body.t.copy()
+    t[node:, 1] += shift_m
+    return graph.with_poses(SE3(graph.T_map_body.R, t))
+
+
+def test_a_place_is_drawn_again_only_where_its_walls_have_moved(tmp_path):
+    views, walk, settings = SeenWalls(tmp_path), straight(41), replace(SETTINGS, reach_m=7.5)
+    drawer = PlaceDrawer(views, settings, leveled=True)
+    first = drawer.draw(walk)
+    assert set(views.looked) == set(range(41))
+    views.looked.clear()
+
+    same = drawer.draw(moved_from(walk, 20, 0.04))
+    assert views.looked == []
+    np.testing.assert_array_equal(same.descriptors, first.descriptors)
+
+    bent = moved_from(walk, 20, 0.3)
+    again, fresh = drawer.draw(bent), PlaceDrawer(views, settings, leveled=True).draw(bent)
+    assert again.node.tolist() == first.node.tolist()
+    for k, node in enumerate(first.node):
+        is_astride = 20 - settings.reach_m <= node < 20 + settings.reach_m
+        expected = (fresh if is_astride else first).images[k]
+        np.testing.assert_array_equal(again.images[k].walls_m, expected.walls_m)
+        np.testing.assert_array_equal(again.descriptors[k], expected.descriptor)
+
+
+def test_a_place_is_drawn_again_where_it_has_turned_or_its_walls_were_left_out(tmp_path):
+    views, walk = SeenWalls(tmp_path), straight(41)
+    drawer = PlaceDrawer(views, SETTINGS, leveled=True)
+    known = np.arange(41) < 20
+    assert not len(drawer.draw(walk, turned=known).images[-1].walls_m)
+    views.looked.clear()
+
+    assert len(drawer.draw(walk).images[-1].walls_m)
+    assert min(views.looked) >= 20 - SETTINGS.reach_m
+    views.looked.clear()
+
+    drawer.draw(walk.with_poses(SE3.from_rpy(0.0, 0.0, 0.002, t=[9.0, 1.0, 0.0]) @ walk.T_map_body))
+    assert views.looked == []
+    drawer.draw(walk.with_poses(SE3.from_rpy(0.0, 0.0, 0.01, t=[9.0, 1.0, 0.0]) @ walk.T_map_body))
+    assert set(views.looked) == set(range(41))
+
+
+def test_where_every_place_is_known_none_is_drawn(tmp_path):
     known = [edge(k - 5, k, kind=EdgeKind.LOOP) for k in range(5, 41)]
-    registrar = SimpleNamespace(recognition=SETTINGS, views=None)
+    registrar = SimpleNamespace(recognition=SETTINGS)
+    drawer = PlaceDrawer(SimpleNamespace(scratch=tmp_path), SETTINGS, leveled=True)
     start = (edge(0, k, kind=EdgeKind.LOOP) for k in range(2, 5))
 
-    found = recognize(straight(41, *known, *start), registrar, leveled=True, progress=Silent())
+    found = recognize(straight(41, *known, *start), registrar, drawer, progress=Silent())
 
     assert found == []
 
