@@ -18,7 +18,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Relations
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.priors import Kernel, PosePriors, Priors, TargetPriors
-from recon4.pose_graph.tuning_solve import SOLVE
+from recon4.pose_graph.tuning_solve import SOLVE, SolveTuning
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +65,7 @@ class FactorProblem:
         *,
         weights: Array,
         kernel: Kernel = "none",
-        max_iterations: int = SOLVE.max_iterations,
+        tuning: SolveTuning = SOLVE,
     ) -> tuple[SE3, int]:
         """Optimize from ``T_map_body``; returns the poses and the number of iterations.
 
@@ -73,15 +73,15 @@ class FactorProblem:
             T_map_body: Initial poses.
             weights: Factor on the information of each edge, (E,); 0 = not used.
             kernel: As in `optimize`.
-            max_iterations: Limit of iterations.
+            tuning: When it ends.
 
         Raises:
             GraphError: If a number is not finite.
         """
         values = self._values(T_map_body)
         parameters = gtsam.LevenbergMarquardtParams()
-        parameters.setMaxIterations(max_iterations)
-        parameters.setRelativeErrorTol(SOLVE.relative_decrease)
+        parameters.setMaxIterations(tuning.max_iterations)
+        parameters.setRelativeErrorTol(tuning.relative_decrease)
         parameters.setAbsoluteErrorTol(0.0)
         optimizer = gtsam.LevenbergMarquardtOptimizer(
             self.factors(weights, kernel=kernel), values, parameters

@@ -17,7 +17,7 @@ from recon4.model.pose_graph import Flags, PoseGraph, Relations
 from recon4.pose_graph.priors import Priors
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import Solution, solved
-from recon4.pose_graph.tuning_solve import ROBUST
+from recon4.pose_graph.tuning_solve import GRADUAL, ROBUST
 
 if TYPE_CHECKING:
     from recon4.pose_graph.factors import FactorProblem
@@ -105,9 +105,7 @@ def _graduate(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> SE3:
     of = problem.of
     free, weights, mu = of.in_graph & ~of.protected, of.in_graph.astype(np.float64), 0.0
     for _ in range(ROBUST.max_rounds):
-        T_map_body, _ = problem.solve(
-            T_map_body, weights=weights, max_iterations=ROBUST.inner_iterations
-        )
+        T_map_body, _ = problem.solve(T_map_body, weights=weights, tuning=GRADUAL)
         chi2 = squared_residuals(T_map_body, of)[free]
         largest = float(chi2.max(initial=0.0))
         mu = mu * ROBUST.step if mu else limit / max(2.0 * largest - limit, 1e-3 * limit)

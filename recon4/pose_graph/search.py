@@ -30,9 +30,9 @@ from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.places import PlaceDrawer
 from recon4.pose_graph.priors import Kernel
 from recon4.pose_graph.recognition import recognize, without_settled
-from recon4.pose_graph.solve import Solution, optimize
+from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
-from recon4.pose_graph.tuning_solve import SEARCH
+from recon4.pose_graph.tuning_solve import COARSE, SEARCH, SOLVE, SolveTuning
 from recon4.progress import Progress
 from recon4.registration.submap import Submaps, TrackedFrames, node_rows
 from recon4.settings.reads import GraphReads
@@ -213,8 +213,9 @@ def close_loops(
     for select in selections[SEARCH.before_recognition :]:
         graph = attempts.run(graph, select(graph))
     for _ in range(g.retry_rounds):
-        graph = attempts.run(graph, retry_pairs(graph, attempts.expected, move_m=g.retry_move_m))
-    return without_settled(graph)
+        again = retry_pairs(graph, attempts.expected, move_m=g.retry_move_m)
+        graph = attempts.run(graph, again, tuning=SOLVE)
+    return without_settled(attempts.settled(graph))
 
 
 def odometry_edges(
@@ -254,14 +255,17 @@ def odometry_edges(
 
 
 class _Attempts:
-    """Registers pairs and optimizes the graph after each round."""
+    """Registers pairs and optimizes the graph after each round, coarsely but for the last ones."""
 
     def __init__(self, registrar: PairRegistrar, pieces: Pieces, progress: Progress) -> None:
         self._registrar, self._pieces, self._progress = registrar, pieces, progress
         self.expected: dict[Ends, SE3] = {}
         """Initial ``T_i_j`` of the last registration of each pair."""
+        self._is_coarse = False
 
-    def run(self, graph: PoseGraph, pairs: list[Pair]) -> PoseGraph:
+    def run(
+        self, graph: PoseGraph, pairs: list[Pair], *, tuning: SolveTuning = COARSE
+    ) -> PoseGraph:
         """Register pairs and optimize; pairs of pieces that nothing joins yet are left out."""
         joined = joined_pieces(graph, self._pieces)
         pairs = [pair for pair in pairs if joined[pair.i] == joined[pair.j]]
@@ -270,7 +274,9 @@ class _Attempts:
         self.expected.update({(pair.i, pair.j): pair.T_i_j for pair in pairs})
         edges = self._registrar.register(pairs, self._progress)
         graph = graph.with_edges(_newest(graph.edges, edges))
-        return self._placed(graph, optimize(graph, kernel="cauchy"))
+        # Without further edges in use the poses are those of the last solve.
+        is_more = any(edge.in_graph for edge in edges)
+        return self._solved(graph, "cauchy", tuning) if is_more else graph
 
     def add(self, graph: PoseGraph, recognized: list[Edge]) -> PoseGraph:
         """Add recognized places and optimize.
@@ -281,10 +287,16 @@ class _Attempts:
         graph = graph.with_edges(_newest(graph.edges, recognized))
         if any(edge.in_graph for edge in recognized):
             for kernel in _KERNELS:
-                graph = self._placed(graph, optimize(graph, kernel=kernel))
+                graph = self._solved(graph, kernel, COARSE)
         return graph
 
-    def _placed(self, graph: PoseGraph, solution: Solution) -> PoseGraph:
+    def settled(self, graph: PoseGraph) -> PoseGraph:
+        """The graph with its final poses."""
+        return self._solved(graph, "cauchy", SOLVE) if self._is_coarse else graph
+
+    def _solved(self, graph: PoseGraph, kernel: Kernel, tuning: SolveTuning) -> PoseGraph:
+        self._is_coarse = tuning is COARSE
+        solution = optimize(graph, kernel=kernel, tuning=tuning)
         self._progress.event(NodesPlaced(t_m=positions_of(solution.T_map_body.t)))
         return graph.with_poses(solution.T_map_body)
 

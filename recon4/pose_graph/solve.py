@@ -11,7 +11,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import PoseGraph, Relations
 from recon4.pose_graph.priors import Kernel, Priors
 from recon4.pose_graph.relations import squared_residuals
-from recon4.pose_graph.tuning_solve import SOLVE
+from recon4.pose_graph.tuning_solve import SOLVE, SolveTuning
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +41,7 @@ def optimize(
     kernel: Kernel,
     fixed: Sequence[int] = (0,),
     priors: Sequence[Priors] = (),
+    tuning: SolveTuning = SOLVE,
 ) -> Solution:
     """Optimize the poses by Levenberg-Marquardt, starting at the current ones.
 
@@ -49,6 +50,7 @@ def optimize(
         kernel: ``cauchy`` limits the influence of gross errors of free edges and of positions.
         fixed: Rows of fixed nodes. Empty only if the priors fix the gauge.
         priors: Priors on poses and positions.
+        tuning: When it ends.
 
     Raises:
         GraphError: If the graph cannot be solved (`checks`), or its gauge is free.
@@ -58,7 +60,9 @@ def optimize(
     of = graph.relations
     problem = FactorProblem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     weights = of.in_graph.astype(np.float64)
-    T_map_body, iterations = problem.solve(graph.T_map_body, weights=weights, kernel=kernel)
+    T_map_body, iterations = problem.solve(
+        graph.T_map_body, weights=weights, kernel=kernel, tuning=tuning
+    )
     solution = solved(graph, of, T_map_body, weights=weights, iterations=iterations)
     if kernel == "none":
         return solution

@@ -142,6 +142,10 @@ class SolveTuning(Struct, frozen=True, kw_only=True):
 
 
 SOLVE = SolveTuning()
+COARSE = SolveTuning(relative_decrease=1e-3)
+"""Between the rounds of a search: millimeters are left, pairs need decimeters."""
+GRADUAL = SolveTuning(max_iterations=ROBUST.inner_iterations)
+"""Rounds of the graduated robust solve."""
 
 
 class UncertaintyTuning(Struct, frozen=True, kw_only=True):
