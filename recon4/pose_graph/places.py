@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -56,7 +56,7 @@ class Places:
     """Node of each place, in the order of the walk, (K,)."""
     path_m: Array
     """Path length from the start to every node of the graph [m], (N,)."""
-    images: Sequence[DensityImage]
+    images: ChosenImages
     descriptors: Array
     """Unit vectors, (K, D)."""
     bounds: RelativeBounds

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
-from recon4.pose_graph.density_images import Overlay, TurnedImage, overlays, yaws_within
+from recon4.pose_graph.density_images import Overlay, yaws_within
 from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.pairs import PairRegistrar
 from recon4.pose_graph.places import PlaceDrawer, Places
@@ -131,14 +131,14 @@ def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
 def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list[_PlaceHypothesis]:
     """The best distinct corrections of a place, by laying it onto similar earlier places."""
     T_map_place = places.graph.T_map_body[places.node]
-    found, source = [], TurnedImage(places.images[place])
+    found, laid = [], places.images.laid_from(place, most=settings.hypotheses)
     for k in _candidates(places, place, settings):
         yaws = yaws_within(
             settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + RECOGNITION.yaw_rad
         )
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
         height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place])
-        for overlay in overlays(places.images[k], source, yaws=yaws, most=settings.hypotheses):
+        for overlay in laid.onto(k, yaws):
             if overlay.score < settings.min_score:
                 break  # the best ones come first
             T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)

@@ -7,13 +7,14 @@ import tempfile
 import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import overload
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.pose_graph.density_images import DensityImage
+from recon4.pose_graph.density_images import DensityImage, Overlay, TurnedImage, overlays
 
 
 class StoredImages(Sequence[DensityImage]):
@@ -29,6 +30,8 @@ class StoredImages(Sequence[DensityImage]):
         weakref.finalize(self, self._file.close)
         self._rows: list[tuple[int, int, tuple[int, ...], Array]] = []
         """Of each the first byte, its points, the shape of its spectrum, and its descriptor."""
+        self.laid: dict[tuple[int, int, int], list[Overlay]] = {}
+        """Overlays that were found, by their target, source and number of yaws."""
 
     def append(self, image: DensityImage) -> None:
         """Store an image."""
@@ -87,3 +90,32 @@ class ChosenImages(Sequence[DensityImage]):
         if isinstance(k, slice):
             return [self.stored[row] for row in self.rows[k]]
         return self.stored[self.rows[k]]
+
+    def laid_from(self, k: int, *, most: int) -> LaidImage:
+        """An image to be laid onto others, which gives the best ``most`` overlays."""
+        return LaidImage(self, k, most)
+
+
+class LaidImage:
+    """An image that is laid onto others; what an earlier search found is not computed again."""
+
+    def __init__(self, images: ChosenImages, k: int, most: int) -> None:
+        """Nothing is read yet."""
+        self._images, self._k, self._most = images, k, most
+
+    @cached_property
+    def _turned(self) -> TurnedImage:
+        return TurnedImage(self._images[self._k])
+
+    def onto(self, k: int, yaws: Array) -> list[Overlay]:
+        """The best overlays onto an image, best first.
+
+        Args:
+            k: Of the chosen images.
+            yaws: As `yaws_within` makes them: there is one array of a length.
+        """
+        rows, known = self._images.rows, self._images.stored.laid
+        key = (rows[k], rows[self._k], len(yaws))
+        if key not in known:
+            known[key] = overlays(self._images[k], self._turned, yaws=yaws, most=self._most)
+        return known[key]

@@ -10,21 +10,16 @@ from scipy import fft
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges, seen_through_ratio
 from recon4.model.pose_graph import (
-    Edge,
     EdgeKind,
     Judge,
     Measure,
-    PoseGraph,
     Reason,
     Verdict,
-    known_history,
 )
 from recon4.pose_graph import best_paths
 from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density_images import (
     TurnedImage,
-    layers_of,
-    make_density_image,
     overlays,
     yaws_within,
 )
@@ -35,26 +30,9 @@ from recon4.pose_graph.stored_images import StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.pose_graph.tuning_places import DENSITY, BoundTuning
 from recon4.progress import Silent
+from tests.unit.pose_graph.walls import TWO_CUBES, edge, image, straight, turned, walls_of
 
 SETTINGS = RecognitionTuning()
-TWO_CUBES = np.array([[0.0, 0.0], [0.0, 4.0], [6.0, 4.0], [6.0, -1.0]])
-
-
-def walls_of(corners, count=2000):
-    """Points along the lines between corners, with noise of 2 cm."""
-    rng = np.random.default_rng(4)
-    k = rng.integers(0, len(corners) - 1, count)
-    part = rng.random(count)[:, None]
-    return corners[k] * (1 - part) + corners[k + 1] * part + rng.normal(0, 0.02, (count, 2))
-
-
-def turned(p, yaw_rad, shift_m):
-    c, s = np.cos(yaw_rad), np.sin(yaw_rad)
-    return p @ np.array([[c, s], [-s, c]]) + shift_m
-
-
-def image(walls_m):
-    return make_density_image(walls_m, layers_of(np.array([-1.2, 1.4])))
 
 
 # -- images from above
@@ -125,26 +103,6 @@ def test_a_point_in_front_of_what_was_seen_contradicts_it():
 # -- bounds
 
 
-def edge(i, j, *, sd_m=0.1, T_i_j=None, kind=EdgeKind.ODOMETRY, reason=Reason.NONE):
-    return Edge(
-        i=i,
-        j=j,
-        T_i_j=SE3(np.eye(3), np.array([float(j - i), 0.0, 0.0])) if T_i_j is None else T_i_j,
-        kind=kind,
-        information=np.diag([1e8, 1e8, 1e8, *[sd_m**-2.0] * 3]),
-        judgments=known_history(Verdict.REJECTED if reason else Verdict.ACCEPTED, reason),
-    )
-
-
-def straight(nodes, *more):
-    """A walk along x with a node every meter."""
-    t = np.zeros((nodes, 3))
-    t[:, 0] = np.arange(nodes)
-    T = SE3(np.broadcast_to(np.eye(3), (nodes, 3, 3)).copy(), t)
-    chain = tuple(edge(k, k + 1) for k in range(nodes - 1))
-    return PoseGraph(np.arange(nodes), np.arange(nodes) * 10**9, T, (*chain, *more))
-
-
 def test_errors_add_up_along_the_walk_and_a_loop_closure_shortens_it():
     ends = np.array([0, 40])
     open_m = relative_bounds(straight(41), ends, leveled=True).horizontal_m[0, 1]
@@ -199,66 +157,6 @@ def test_images_come_back_from_the_disk_as_they_were(tmp_path):
             assert getattr(one, name).dtype == getattr(other, name).dtype
     np.testing.assert_array_equal(stored.descriptors[2], drawn[2].descriptor)
     assert list(tmp_path.iterdir()) == []
-
-
-class SeenWalls:
-    """Walls around each node of `straight`; counts how often a node is looked at."""
-
-    def __init__(self, scratch):
-        self.scratch, self.looked = scratch, []
-        x, y = walls_of(TWO_CUBES * 5.0, 4000).T
-        self._walls_m = np.stack([x, y, np.zeros(len(x))], axis=1)
-
-    def ends(self, node):
-        self.looked.append(node)
-        p_m = self._walls_m - [float(node), 0.0, 0.0]
-        near = p_m[np.linalg.norm(p_m, axis=1) < 10.0]
-        return np.stack([near, near + np.array([0.0, 0.0, 0.05])], axis=1)
-
-
-def moved_from(graph, node, shift_m):
-    """The graph with all nodes from one on moved along y."""
-    t = graph.T_map_body.t.copy()
-    t[node:, 1] += shift_m
-    return graph.with_poses(SE3(graph.T_map_body.R, t))
-
-
-def test_a_place_is_drawn_again_only_where_its_walls_have_moved(tmp_path):
-    views, walk, settings = SeenWalls(tmp_path), straight(41), replace(SETTINGS, reach_m=7.5)
-    drawer = PlaceDrawer(views, settings, leveled=True)
-    first = drawer.draw(walk)
-    assert set(views.looked) == set(range(41))
-    views.looked.clear()
-
-    same = drawer.draw(moved_from(walk, 20, 0.04))
-    assert views.looked == []
-    np.testing.assert_array_equal(same.descriptors, first.descriptors)
-
-    bent = moved_from(walk, 20, 0.3)
-    again, fresh = drawer.draw(bent), PlaceDrawer(views, settings, leveled=True).draw(bent)
-    assert again.node.tolist() == first.node.tolist()
-    for k, node in enumerate(first.node):
-        is_astride = 20 - settings.reach_m <= node < 20 + settings.reach_m
-        expected = (fresh if is_astride else first).images[k]
-        np.testing.assert_array_equal(again.images[k].walls_m, expected.walls_m)
-        np.testing.assert_array_equal(again.descriptors[k], expected.descriptor)
-
-
-def test_a_place_is_drawn_again_where_it_has_turned_or_its_walls_were_left_out(tmp_path):
-    views, walk = SeenWalls(tmp_path), straight(41)
-    drawer = PlaceDrawer(views, SETTINGS, leveled=True)
-    known = np.arange(41) < 20
-    assert not len(drawer.draw(walk, turned=known).images[-1].walls_m)
-    views.looked.clear()
-
-    assert len(drawer.draw(walk).images[-1].walls_m)
-    assert min(views.looked) >= 20 - SETTINGS.reach_m
-    views.looked.clear()
-
-    drawer.draw(walk.with_poses(SE3.from_rpy(0.0, 0.0, 0.002, t=[9.0, 1.0, 0.0]) @ walk.T_map_body))
-    assert views.looked == []
-    drawer.draw(walk.with_poses(SE3.from_rpy(0.0, 0.0, 0.01, t=[9.0, 1.0, 0.0]) @ walk.T_map_body))
-    assert set(views.looked) == set(range(41))
 
 
 def test_where_every_place_is_known_none_is_drawn(tmp_path):
