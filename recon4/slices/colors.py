@@ -45,7 +45,11 @@ class Span:
 
 @cache
 def table(color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
-    """256 colors from low to high, (256, 3); all of them contrast with the ground."""
+    """256 colors from low to high, (256, 3).
+
+    On a dark screen also the lowest contrasts with it by 3 : 1, as WCAG 2.2 asks for graphics:
+    floors are the thin dark lines of a profile.
+    """
     steps = np.linspace(0.0, 1.0, 256)
     if color == "distance":
         at = np.linspace(0.0, 1.0, len(SLICE_COLORS.distance_stops))
@@ -54,8 +58,8 @@ def table(color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
         return np.stack(channels, axis=1).round().astype(np.uint8)
     import matplotlib
 
-    name = "turbo" if color == "time" else "viridis"
-    first, last = (0.0, 0.90) if ground == "light" else (0.18, 1.0)
+    name, darkest = ("turbo", 0.18) if color == "time" else ("viridis", 0.38)
+    first, last = (0.0, 0.90) if ground == "light" else (darkest, 1.0)
     rgba = matplotlib.colormaps[name](first + steps * (last - first), bytes=True)
     return np.ascontiguousarray(rgba[:, :3])
 

@@ -89,6 +89,22 @@ def test_the_ends_of_a_palette_stand_for_everything_beyond():
     assert np.array_equal(colors[3], table("height", "light")[255])
 
 
+@pytest.mark.parametrize("color", ["height", "intensity", "normalized"])
+def test_thin_lines_of_all_values_are_seen_on_a_dark_screen(color):
+    panel = np.array([[0x1A, 0x20, 0x26]])
+
+    contrast = (luminance(table(color, "dark")) + 0.05) / (luminance(panel) + 0.05)
+
+    assert contrast.min() >= 3.0  # WCAG 2.2, 1.4.11: graphical objects
+
+
+def luminance(rgb):
+    """Relative luminance of colors (WCAG 2.2), (N,)."""
+    part = rgb / 255.0
+    linear = np.where(part <= 0.04045, part / 12.92, ((part + 0.055) / 1.055) ** 2.4)
+    return linear @ (0.2126, 0.7152, 0.0722)
+
+
 def test_an_image_is_a_png_transparent_without_points(tiles):
     drawn = draw(tiles, CUT, PAPER)
 
