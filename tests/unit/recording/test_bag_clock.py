@@ -83,8 +83,9 @@ def test_a_recorder_that_is_set_back_twice_goes_on_twice():
         [(0, 10, [1]), (5, 20, [2])],
         [(0, 10, [1, 2]), (10, 20, [1, 2])],
         [(0, 10, [1, 2]), (9.9, 20, [2])],
+        [(0, 10, [1, 2]), (5, 6, [2]), (10, 20, [1, 2])],
     ],
-    ids=["by topic", "swapped", "a topic begins", "in order", "late"],
+    ids=["by topic", "swapped", "a topic begins", "in order", "late", "one topic late"],
 )
 def test_messages_in_another_order_are_no_recorder_that_was_set_back(parts):
     t_ns, topic = rows(*parts)
