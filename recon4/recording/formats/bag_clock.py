@@ -19,7 +19,13 @@ from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import looks_like
-from recon4.recording.formats.chunks import BagIndex, ChunkMessages, ChunkRef, RecorderStep
+from recon4.recording.formats.chunks import (
+    MAX_TIME_NS,
+    BagIndex,
+    ChunkMessages,
+    ChunkRef,
+    RecorderStep,
+)
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning_times import RECORDER_STEPS
 from recon4.units import SECOND_NS
@@ -169,7 +175,7 @@ def _first_step(t_ns: Times, topic: Topics, outside: _Span | None = None) -> tup
             begin_ns, end_ns = min(begin_ns, outside.begin_ns), max(end_ns, outside.end_ns)
         swapped = 0 <= begin_ns - end_ns < RECORDER_STEPS.joined_ns
         shift_ns = 0 if swapped else _shift(t_ns, topic, row)
-        if shift_ns:
+        if shift_ns and max(end_ns, newest[-1]) + shift_ns < MAX_TIME_NS:
             return row, shift_ns
     return None
 

@@ -28,6 +28,8 @@ from recon4.recording.report import ImportReport
 
 MAX_OPEN_BYTES = 256 << 20
 """Overlapping chunks open at the same time; beyond it the oldest are finished first."""
+MAX_TIME_NS = 2**62
+"""Later times count as damage."""
 MESSAGE_BYTES = 32
 """Memory of a waiting message in addition to its bytes."""
 

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 from recon4.errors import CorruptFile
 from recon4.recording.formats.bag_clock import chunks_going_on
 from recon4.recording.formats.chunks import (
+    MAX_TIME_NS,
     BagIndex,
     ChunkMessages,
     ChunkRef,
@@ -40,8 +41,6 @@ _MESSAGE_HEAD = struct.Struct("<HIQQ")
 _CHUNK_HEAD = struct.Struct("<QQQI")
 _FOOTER_BYTES = _RECORD.size + 20 + len(MAGIC)
 _MAX_SUMMARY_BYTES = 64 << 20
-_MAX_TIME_NS = 2**62
-"""Later times count as damage."""
 _RUN_BYTES = 8 << 20
 """Messages outside of chunks are read in runs of at most this size."""
 
@@ -236,7 +235,7 @@ def _checked(file: RecordFile, listed: ChunkRef, end: int) -> ChunkRef:
             f"{file.name}: chunk at byte {listed.offset}: expected {listed.size} bytes from "
             f"{listed.t_first_ns} ns on as in the summary, got {found.size} from {found.t_first_ns}"
         )
-    if found.t_last_ns > _MAX_TIME_NS or found.offset > end:
+    if found.t_last_ns > MAX_TIME_NS or found.offset > end:
         raise CorruptFile(f"{file.name}: chunk at byte {listed.offset}: its times make no sense")
     return ChunkRef(
         found.offset,
@@ -339,7 +338,7 @@ def _add_message(messages: ChunkMessages, start: int, stop: int) -> None:
         messages.rejected += 1
         return
     number, _, t_ns, _ = _MESSAGE_HEAD.unpack_from(messages.data, start)
-    if t_ns > _MAX_TIME_NS:
+    if t_ns > MAX_TIME_NS:
         messages.rejected += 1
         return
     messages.add(t_ns, number, start=start + _MESSAGE_HEAD.size, stop=stop)

@@ -83,7 +83,7 @@ def test_a_recorder_that_is_set_back_twice_goes_on_twice():
         [(0, 10, [1]), (5, 20, [2])],
         [(0, 10, [1, 2]), (10, 20, [1, 2])],
         [(0, 10, [1, 2]), (9.9, 20, [2])],
-        [(0, 10, [1, 2]), (5, 6, [2]), (10, 20, [1, 2])],
+        [(0, 10, [1, 2]), (5, 6, [1]), (10, 20, [1, 2])],
     ],
     ids=["by topic", "swapped", "a topic begins", "in order", "late", "one topic late"],
 )
@@ -92,3 +92,10 @@ def test_messages_in_another_order_are_no_recorder_that_was_set_back(parts):
 
     assert not rows_going_on(t_ns, topic)[1]
     assert not len(rows_going_on(t_ns[:0], topic[:0])[1])
+
+
+def test_times_near_the_end_of_all_times_are_not_moved_beyond_it():
+    t_ns, topic = rows((0, 10, [1, 2]), (5, 15, [1, 2]))
+
+    assert rows_going_on(t_ns + 2**61, topic)[1]
+    assert not rows_going_on(t_ns + (2**62 - 16 * 10**9), topic)[1]
