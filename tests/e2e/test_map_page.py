@@ -184,10 +184,13 @@ def test_a_note_a_saved_view_and_a_profile_are_made_by_keys_and_clicks(
 
     page.locator("#map").focus()
     page.keyboard.press("r")
-    for x in (0.0, ROOM_M[0]):
-        page.mouse.click(*at(page, x, 2.5))
+    with page.expect_request("**/slices/image") as asked:
+        for x in (0.0, ROOM_M[0]):
+            page.mouse.click(*at(page, x, 2.5))
     plot = page.get_by_role("img", name=re.compile("Profile: .* points"))
     expect(plot).to_be_visible()
+    shown = plot.locator("image").bounding_box()
+    assert asked.value.post_data_json["width"] == round(shown["width"]), "thin lines are lost"
     expect(page.get_by_role("link", name="DXF")).to_have_attribute("href", re.compile("flat"))
     above, below = (page.locator(one).bounding_box() for one in ("#profile", "#status"))
     assert above["y"] + above["height"] <= below["y"], "the reading covers the profile"

@@ -20,8 +20,8 @@ import { heightsShown, page } from "./page.js";
  */
 
 const id = idHere();
-const WIDE_PX = 1200;
-const TALL_PX = [120, 420];
+const [LEAST_PX, MOST_PX] = [16, 4096]; // of an image, across or up
+const LEAST_UP_PX = 120;
 const MARGIN = { left: 46, bottom: 24, top: 8, right: 12 };
 const TICK_PX = { across: 120, up: 60 };
 /** What the plot leaves of half of the window, for its buttons and captions. */
@@ -44,6 +44,18 @@ export function stripOf(/** @type {Measurement} */ { points: [a, b], figure }) {
 }
 
 /**
+ * Pixels of the screen that the image of a profile takes: a larger image would lose thin lines.
+ * @param {{right: number, bottom: number, top: number}} window of the plane [m]; left is 0
+ * @param {number[]} most pixels of the page across and up
+ */
+export function pixelsOf({ right, bottom, top }, [across, up]) {
+  const pixel_m = Math.max(right / across, (top - bottom) / up);
+  const px = (/** @type {number} */ m) =>
+    Math.min(MOST_PX, Math.max(LEAST_PX, Math.round((m / pixel_m) * globalThis.devicePixelRatio)));
+  return { wide: px(right), tall: px(top - bottom) };
+}
+
+/**
  * What shows a profile.
  * @param {{draw: () => void, dark: () => boolean,
  *   change: (of: Measurement, width: number) => Measurement}} on
@@ -54,13 +66,13 @@ export function profileOf({ draw, dark, change }) {
     draw();
     try {
       const { plane, window } = stripOf(of);
-      const tall = (WIDE_PX * (window.top - window.bottom)) / window.right;
+      const { wide, tall } = pixelsOf(window, room(byId("profile")));
       shown.image = await readSlice(id, {
         plane,
         window,
         color: "intensity",
-        width: WIDE_PX,
-        height: Math.round(Math.min(TALL_PX[1], Math.max(TALL_PX[0], tall))),
+        width: wide,
+        height: tall,
         ground: dark() ? "dark" : "light",
       });
     } catch (error) {
@@ -130,7 +142,7 @@ function room(/** @type {HTMLElement} */ element) {
   const { left, right } = MARGIN;
   return [
     Math.max(200, element.clientWidth - 30 - left - right),
-    Math.min(300, Math.max(TALL_PX[0], innerHeight / 2 - AROUND_PX)),
+    Math.min(300, Math.max(LEAST_UP_PX, innerHeight / 2 - AROUND_PX)),
   ];
 }
 
