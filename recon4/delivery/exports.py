@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -13,6 +13,7 @@ from recon4.export.findings import export_findings
 from recon4.export.map_files import export_poses, map_to_export, points_text, write_map
 from recon4.export.options import ExportOptions
 from recon4.mapping.tiles import TileSet
+from recon4.products.fitted_plans import FittedPlans
 from recon4.progress import Progress
 from recon4.review.approval_state import WRITTEN_AS_DRAFT, approval_state
 from recon4.review.approved import approval_of
@@ -76,6 +77,8 @@ class WantedFile:
     evidence: Evidence | None
     """Of its approval; None = not approved, or a draft."""
     options: ExportOptions
+    plans: FittedPlans = field(default_factory=FittedPlans)
+    """Of its map: DXF and GeoJSON of a delivery draw the same ones."""
 
 
 def write_kind(
@@ -125,7 +128,7 @@ def _write_product(kind: ExportKind, path: Path, wanted: WantedFile, *, progress
     progress.start(kind.title, 1, "files")
     text = write_product(
         _PRODUCTS[kind.name.partition(".")[0]],
-        ProductSource(tiles, frame, evidence.stamp if evidence else None),
+        ProductSource(tiles, frame, evidence.stamp if evidence else None, wanted.plans),
         path,
         options=ProductOptions(
             storey=options.storey,

@@ -8,7 +8,7 @@ import tempfile
 import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -32,6 +32,7 @@ from recon4.export.map_files import MapToExport, map_to_export
 from recon4.export.options import ExportOptions
 from recon4.locales.languages import ENGLISH
 from recon4.model.height_system import height_system
+from recon4.products.fitted_plans import FittedPlans
 from recon4.progress import Progress
 from recon4.report.client import Row
 from recon4.report.client_words import Words, words
@@ -91,6 +92,7 @@ class _Map:
     state: ApprovalState
     approval: Approval | None
     export: MapToExport
+    plans: FittedPlans = field(default_factory=FittedPlans)
 
 
 def deliver(project: Path, out: Path, wish: DeliveryWish, *, progress: Progress) -> Delivered:
@@ -205,7 +207,7 @@ def _write_export(name: str, path: Path, map_: _Map, *, crs: str, progress: Prog
     kind = KINDS[name]
     options = ExportOptions(crs=crs if "crs" in kind.takes else "", draft=map_.approval is None)
     evidence = map_.approval.evidence if map_.approval else None
-    wanted = WantedFile(map_.export.artifacts, evidence, options)
+    wanted = WantedFile(map_.export.artifacts, evidence, options, map_.plans)
     write_kind(map_.project, kind, path, wanted=wanted, progress=progress)
 
 

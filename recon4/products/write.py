@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -12,13 +12,8 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.mapping.tiles import TileSet
 from recon4.products.drawing import DRAWINGS, DrawingNotes, DrawnShape, DrawnTitle, write_drawing
-from recon4.products.storeys import (
-    BuildingStorey,
-    Levels,
-    find_storeys,
-    level_surfaces,
-    storey_named,
-)
+from recon4.products.fitted_plans import FittedPlans
+from recon4.products.storeys import find_storeys, level_surfaces, storey_named
 from recon4.products.terrain import Terrain, TerrainKind, terrain
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.slices.geotiff import GeoRaster, write_raster, write_world_file
@@ -69,6 +64,8 @@ class ProductSource:
     frame: MapFrame
     stamp: Stamp | None
     """Its approval, which the file notes; None = not approved, or a draft."""
+    plans: FittedPlans = field(default_factory=FittedPlans)
+    """Of this map."""
 
     @property
     def description(self) -> str:
@@ -107,12 +104,9 @@ def write_product(
 
 
 def _write_plan(source: ProductSource, path: Path, options: ProductOptions) -> str:
-    from recon4.products.floor_plan import draw_plan
     from recon4.products.shapes import plan_shapes, plan_title
 
-    storeys, levels = _storeys(source.tiles)
-    chosen = (storey_named(storeys, options.storey),) if options.storey or not storeys else storeys
-    plans = [draw_plan(source.tiles, storey, levels) for storey in chosen]
+    plans = source.plans.of(source.tiles, options.storey)
     shapes = [shape for plan in plans for shape in plan_shapes(plan)]
     if not any(plan.walls for plan in plans):
         raise ConfigError("plan: no wall that reaches a ceiling was found")
@@ -128,7 +122,7 @@ def _write_orthophoto(source: ProductSource, path: Path, options: ProductOptions
         plane = SlicePlane.vertical(a, b, thickness_m=options.depth_m)
         length_m: float | None = math.dist(a, b)
     else:
-        storeys, _ = _storeys(source.tiles)
+        storeys = find_storeys(source.tiles, level_surfaces(source.tiles))
         plane, length_m = storey_slab(storey_named(storeys, options.storey or "0")), None
     made = orthophoto(source.tiles, plane, pixel_m=options.pixel_m, length_m=length_m)
     _raster(made.raster, path, source)
@@ -163,11 +157,6 @@ def up_to_crs(made: Terrain, frame: MapFrame) -> float:
     window = made.grid.window
     middle = [(window.left + window.right) / 2.0, (window.bottom + window.top) / 2.0, 0.0]
     return float(frame.to_crs(np.array([middle]))[0, 2])
-
-
-def _storeys(tiles: TileSet) -> tuple[tuple[BuildingStorey, ...], Levels]:
-    levels = level_surfaces(tiles)
-    return find_storeys(tiles, levels), levels
 
 
 def _draw(

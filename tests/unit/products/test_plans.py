@@ -10,6 +10,7 @@ import pytest
 from pyproj import CRS
 
 from recon4.errors import ConfigError
+from recon4.products import floor_plan
 from recon4.products.drawing import DrawingLayer, DrawingNotes, DrawnShape, write_drawing
 from recon4.products.floor_plan import draw_plan
 from recon4.products.storeys import Levels, find_storeys, level_surfaces, storey_named
@@ -200,6 +201,24 @@ def test_a_dxf_has_layers_by_meaning_and_coordinates_of_the_crs(rooms, tmp_path,
     assert len(space.query('LWPOLYLINE[layer=="S0_COLUMNS"]')) == 1
     assert ("Eva" in path.read_text()) == bool(stamp)
     assert [one.name for one in tmp_path.iterdir()] == ["plan.dxf"]
+
+
+def test_files_of_one_map_draw_plans_that_were_fitted_once(rooms, tmp_path, monkeypatch):
+    fitted = []
+
+    def counted(tiles, storey, levels):
+        fitted.append(storey.name)
+        return draw_plan(tiles, storey, levels)
+
+    monkeypatch.setattr(floor_plan, "draw_plan", counted)
+    source = ProductSource(rooms, PLACED, None)
+    said = [
+        write_product("plan", source, tmp_path / name, options=ProductOptions())
+        for name in ("plan.dxf", "plan.geojson")
+    ]
+
+    assert fitted == ["0"] and said[0] == said[1]
+    assert len(json.loads((tmp_path / "plan.geojson").read_text())["features"]) > 5
 
 
 @pytest.mark.parametrize(("start", "sweep"), [(0.4, 2.0), (5.5, -2.0), (0.0, 2.0 * np.pi)])
