@@ -23,10 +23,9 @@ class ViewTuning(Struct, frozen=True, kw_only=True):
     his place, and trajectories drift."""
     best_ns: int = 5_000_000_000
     """Those nearest to this far away are asked first [ns]: a car has left its place, too."""
-    thinned: int = 2
     far_ns: int = 20_500_000_000
-    """Whether the thing in a place left it, one of this many is asked, and up to this far away:
-    what stands for a while and drives off [ns]."""
+    """Whether the thing in a place left it, all up to this far away are asked: what stands for a
+    while and drives off [ns]."""
     kept_ns: int = 4_000_000_000
     """Images are in memory for so much longer: threads may be that far apart [ns]."""
     rows_deg: float = 2.0
@@ -44,10 +43,11 @@ SIGHT = SightRules(
     same_per_m=0.01,
     nearest_m=0.3,
     farthest_m=30.0,
-    enough=3,
-    surely_met=3,
-    gone=3,
-    least_ratio=1.0,
+    enough=2,
+    surely_moved=5,
+    surely_met=6,
+    gone=2,
+    least_ratio=0.5,
     place_m=0.15,
 )
 
@@ -64,7 +64,7 @@ class KnownPlaceTuning(Struct, frozen=True, kw_only=True):
 KNOWN_PLACES = KnownPlaceTuning()
 
 SPREAD = SpreadRules(
-    cube_m=0.2, few=3, most=2.0, stands=4.0, floor_m=0.1, feet_m=0.4, legs_m=1.5, above=5
+    cube_m=0.2, few=3, most=1.0, stands=6.0, floor_m=0.1, feet_m=0.4, legs_m=1.5, above=5
 )
 
 

@@ -16,7 +16,7 @@ from recon4.model.trajectory import Times, Trajectory
 
 
 class RegularViews:
-    """Scans at regular times; those near to the multiframe in work are in memory, some forty."""
+    """Scans at regular times; those near to the multiframe in work are in memory, some eighty."""
 
     def __init__(
         self, frames: RecordedFrames, trajectory: Trajectory, *, every_ns: int = VIEWS.every_ns
@@ -32,8 +32,6 @@ class RegularViews:
         slots = (frames.t_mid_ns - frames.t_mid_ns[:1]) // every_ns
         self._rows = np.unique(slots, return_index=True)[1]
         self._t_ns: Times = frames.t_mid_ns[self._rows]
-        is_far = np.arange(len(self._rows)) % VIEWS.thinned == 0
-        self._reach_ns: Times = np.where(is_far, VIEWS.far_ns, VIEWS.reach_ns)
         sensors, most_ns = len(frames.rig.sensors), 2 * VIEWS.far_ns + VIEWS.kept_ns
         room = min(most_ns // every_ns + 2, len(self._rows))
         self._R, self._t = np.empty((room, sensors, 3, 3)), np.empty((room, sensors, 3))
@@ -62,10 +60,10 @@ class RegularViews:
             t_ns: When the points were measured [ns].
         """
         away_ns = np.abs(self._t_ns - t_ns)
-        near = np.flatnonzero((away_ns >= VIEWS.apart_ns) & (away_ns <= self._reach_ns))
+        near = np.flatnonzero((away_ns >= VIEWS.apart_ns) & (away_ns <= VIEWS.far_ns))
         if not len(near):
             return None
-        for old in [k for k in self._place if away_ns[k] > self._reach_ns[k] + VIEWS.kept_ns]:
+        for old in [k for k in self._place if away_ns[k] > VIEWS.far_ns + VIEWS.kept_ns]:
             self._free.append(self._place.pop(old))
         for k in near.tolist():
             if k not in self._place:
@@ -75,8 +73,7 @@ class RegularViews:
         place[near] = [self._place[k] for k in near.tolist()]
         asked = near[away_ns[near] <= VIEWS.reach_ns]
         asked = asked[np.argsort(np.abs(away_ns[asked] - VIEWS.best_ns), kind="stable")]
-        far = near[near % VIEWS.thinned == 0]
-        before, after = far[self._t_ns[far] < t_ns], far[self._t_ns[far] > t_ns]
+        before, after = near[self._t_ns[near] < t_ns], near[self._t_ns[near] > t_ns]
         orders = place[asked], place[before], place[after[::-1]]
         return RangeViews(*orders, Sights(self._R, self._t, self._images), self._slopes)
 

@@ -43,9 +43,10 @@ class SightRules(NamedTuple):
     farthest_m: float
     """Range of points that are compared."""
     enough: int
-    """As many more scans see through a moving point than meet a surface there …"""
+    """As many scans see through a moving point."""
+    surely_moved: int
     surely_met: int
-    """… and as many more meet it than see through; then no more are asked."""
+    """If as many more see through than meet it, or meet it than see through, no more are asked."""
     gone: int
     """What stands until it drives off is gone if the last scans, this many of them, see
     through."""
@@ -92,7 +93,7 @@ def _verdict(p: Place, own: int, views: RangeViews, rules: SightRules) -> int:
         vote = _vote(p, own, v, views, rules)
         passes += vote == VERDICT.seen_through
         meets += vote == VERDICT.met
-        if passes - meets >= rules.enough or meets - passes >= rules.surely_met:
+        if passes - meets >= rules.surely_moved or meets - passes >= rules.surely_met:
             break
     if passes >= rules.enough and passes > rules.least_ratio * meets:
         return VERDICT.seen_through

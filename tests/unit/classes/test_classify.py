@@ -94,6 +94,17 @@ def test_a_car_that_stands_until_it_drives_off_is_moving():
     assert kept(classes, names, "room") > 0.998
 
 
+def test_what_comes_back_to_its_place_is_moving_although_scans_meet_it():
+    def place(t_s):
+        return (6.0, 1.5) if float(np.min(t_s)) % 3.0 < 1.4 else (6.0, -8.0)
+
+    classes, names = found(box("room", *ROOM), cylinder("car", place, 0.4))
+
+    assert (names == "car").sum() > 500
+    assert (classes[names == "car"] == PointClass.MOVING).mean() > 0.9
+    assert kept(classes, names, "room") > 0.998
+
+
 def test_the_feet_of_who_walks_are_moving_and_the_floor_under_them_stands():
     person = cylinder("person", lambda t_s: (4.0, -2.5 + 0.4 * t_s), 0.25)
     walk, _ = scanned(box("room", *ROOM), person)
