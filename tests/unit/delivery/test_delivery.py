@@ -74,23 +74,6 @@ def test_an_intact_delivery_names_its_signer(sent):
     assert "Approved v1" in found.says
 
 
-def test_the_drawings_of_a_delivery_share_their_plans(sent, tmp_path, monkeypatch):
-    given = []
-
-    def write_kind(project, kind, path, *, wanted, progress):
-        given.append(wanted.plans)
-        if kind.name == "plan.geojson":
-            raise StoreError("stop here")
-        path.touch()
-
-    monkeypatch.setattr(package, "write_kind", write_kind)
-    wish = DeliveryWish(files=("plan.dxf", "plan.geojson"), key=server_key(sent / "room"))
-    with pytest.raises(StoreError, match="stop here"):
-        deliver(sent / "room", tmp_path / "a.zip", wish, progress=Silent())
-
-    assert given[0] is given[1]
-
-
 def test_on_a_computer_that_does_not_know_the_key_the_signer_is_unknown(sent, stranger):
     shutil.copy(sent / "sent.zip", stranger)
 
