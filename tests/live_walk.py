@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.geometry.se3 import so3_exp
 from recon4.live.mapper.live_map import LiveMap
-from recon4.live.mapper.spill_file import SpillFile
+from recon4.live.mapper.place_index import SpillFile
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples

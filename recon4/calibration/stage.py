@@ -7,9 +7,9 @@ from pathlib import Path
 
 import msgspec
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.calibration.antenna import with_antenna
-from recon4.calibration.beams import beam_counts
 from recon4.calibration.calibrate import (
     Calibration,
     audit,
@@ -26,14 +26,18 @@ from recon4.calibration.result import CalibrationResult
 from recon4.calibration.rig_file_note import calibration_note
 from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
+from recon4.calibration.tuning_joint import BEAMS
 from recon4.calibration.tuning_methods import CALIBRATION_STAGE
 from recon4.calibration.walk import RecordedWalk
+from recon4.geometry.distinct import distinct
+from recon4.model.beams import BEAMS_OF_MODEL
 from recon4.model.calibration_figures import (
     CalibrationFigures,
     CalibrationOutcome,
     ParameterFigures,
     RigOutcome,
 )
+from recon4.model.frames import RecordedFrames
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.progress import Progress
@@ -172,3 +176,33 @@ def _calibrated(
     note = calibration_note("joint", figures, recorded_ns=recorded_ns)
     rig = replace(found.estimate.rig, calibration=note)
     return CalibrationResult(figures=figures, rig=rig, before=found.before, after=found.after)
+
+
+def beam_counts(frames: RecordedFrames, rows: tuple[int, ...]) -> dict[int, int]:
+    """Number of beams of each LiDAR that has rings of single beams, by its row.
+
+    Bands of elevation in place of rings, and clouds in another frame, are left out.
+
+    Args:
+        frames: The multiframes.
+        rows: LiDARs that are looked at.
+    """
+    sampled = np.unique(np.linspace(0, len(frames) - 1, BEAMS.sampled).astype(int)).tolist()
+    found = {}
+    for row in rows:
+        parts = [(frames[k].xyz, frames[k].ring, frames[k].sensor == row) for k in sampled]
+        xyz = np.concatenate([p[mine] for p, _, mine in parts])
+        ring = np.concatenate([of_point[mine] for _, of_point, mine in parts])
+        if not len(ring):
+            continue
+        count = BEAMS_OF_MODEL.get(frames.rig.sensors[row].model, int(ring.max()) + 1)
+        if count <= BEAMS.most and ring.max() < count and _are_cones(xyz, ring):
+            found[row] = count
+    return found
+
+
+def _are_cones(xyz: NDArray[np.float32], ring: NDArray[np.uint8]) -> bool:
+    elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
+    parts = (elevation[ring == one] for one in distinct(ring))
+    spread = [np.median(np.abs(part - np.median(part))) for part in parts]
+    return bool(np.median(spread) < BEAMS.max_spread_rad)

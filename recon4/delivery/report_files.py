@@ -8,22 +8,24 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from recon4.delivery.pdf_signature import Organization, sign_pdf
-from recon4.delivery.people_section import people_section
 from recon4.errors import StoreError
 from recon4.locales.languages import ENGLISH
 from recon4.report.assessment import Assessment, assess
-from recon4.report.client import ClientReport, Row, Signature
+from recon4.report.client import ClientReport, Row, Section, Signature, Table
+from recon4.report.client_front import shown
 from recon4.report.client_html import client_html
 from recon4.report.client_report import ReportExtras, client_report
 from recon4.report.client_words import Words, words
 from recon4.report.pdf import pdf_of, require_pdf
 from recon4.report.project import project_facts
+from recon4.report.tuning import CLIENT_REPORT
 from recon4.review.acknowledgments import (
     acknowledgments,
     report_with_notes,
     seen_finding,
     seen_findings,
 )
+from recon4.review.annotations import pinned_notes, saved_measurements
 from recon4.review.approval_state import ApprovalState, latest_state
 from recon4.review.approved import Approval, approval_of
 from recon4.review.decisions import DecisionKind
@@ -218,3 +220,55 @@ def _rows_before(approval: Approval | None, rows: Sequence[JournalRow]) -> Seque
         if approval is not None and facts is not None and facts.approval == approval.hash:
             return rows[:place]
     return rows
+
+
+def people_section(root: Path, words: Words) -> Section:
+    """Notes and measurements of a project, each with who made it and when.
+
+    Raises:
+        Altered: If a file was changed by another program.
+        StoreError: If one is damaged.
+    """
+    most = CLIENT_REPORT.most_notes
+    notes, measured = pinned_notes(root), saved_measurements(root)
+    of_notes: list[tuple[str, ...]] = [
+        (
+            shown(one.text),
+            words.term(one.status),
+            _place(one.p_map, words),
+            shown(one.who),
+            one.time[:10],
+        )
+        for one in notes[:most]
+    ]
+    of_measurements: list[tuple[str, ...]] = [
+        (
+            shown(one.name or one.view.name),
+            words.term(shown(one.kind)),
+            words.decimal(one.text),
+            _place(one.points[0], words),
+            shown(one.view.who),
+            one.view.time[:10],
+        )
+        for one in measured[:most]
+    ]
+    left = max(0, len(notes) - most) + max(0, len(measured) - most)
+    names = (("note", "status"), ("name", "kind", "value"))
+    tables = tuple(
+        Table(
+            head=tuple(words(f"people.{name}") for name in (*own, "place", "who", "date")),
+            rows=tuple(rows),
+            texts=tuple(range(1, len(own) + 3)),
+            title=words(f"people.{title}"),
+        )
+        for title, own, rows in zip(
+            ("notes", "measurements"), names, (of_notes, of_measurements), strict=True
+        )
+        if rows
+    )
+    more = (words("people.more", count=str(left)),) if left else ()
+    return Section(title=words("section.people"), text=(words("text.people"), *more), tables=tables)
+
+
+def _place(p_map: Sequence[float], words: Words) -> str:
+    return ", ".join(words.number(value) for value in p_map)

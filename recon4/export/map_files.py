@@ -5,18 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
-from recon4.errors import StoreError
-from recon4.export.clouds import cloud_writer
+from recon4.errors import ConfigError, StoreError
+from recon4.export.copc import export_copc
 from recon4.export.e57 import export_e57
-from recon4.export.names import check_name
+from recon4.export.laz import export_laz
+from recon4.export.names import COPC, check_name
 from recon4.export.node_scans import ScanPoses
 from recon4.export.options import ExportOptions
-from recon4.export.points import OutputCrs, PointSource
+from recon4.export.pcd import export_pcd
+from recon4.export.ply import export_ply
+from recon4.export.points import CRS_OF_MAP, OutputCrs, PointSource
 from recon4.export.ptx import export_ptx
-from recon4.export.selection import PointSelection
+from recon4.export.selection import DELIVERED, PointSelection
+from recon4.export.xyz import export_xyz
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
@@ -235,3 +240,43 @@ def final_trajectory(
         for stage in ("frames", "level"):
             approval.evidence.artifact(stage, artifacts[stage]).check_all()
     return load_trajectory(artifacts["level"] / "trajectory.npz")
+
+
+class CloudWriter(Protocol):
+    """Writes a map to a file, and returns how many points it wrote."""
+
+    def __call__(
+        self,
+        map_: Path | TileSet,
+        path: Path,
+        output: OutputCrs = CRS_OF_MAP,
+        *,
+        selection: PointSelection = DELIVERED,
+        progress: Progress | None = None,
+    ) -> int: ...
+
+
+CLOUD_FORMATS: dict[str, CloudWriter] = {
+    COPC: export_copc,
+    ".laz": export_laz,
+    ".ply": export_ply,
+    ".pcd": export_pcd,
+    ".xyz": export_xyz,
+}
+"""Ending -> who writes such a file; the first that matches counts."""
+
+
+def cloud_writer(path: Path) -> CloudWriter:
+    """Who writes a file of points, by its ending.
+
+    Raises:
+        ConfigError: If no map is written to such a file.
+    """
+    name = path.name.lower()
+    ending = next((one for one in CLOUD_FORMATS if name.endswith(one)), None)
+    if ending is None:
+        raise ConfigError(
+            f"a map is written as {', '.join(CLOUD_FORMATS)}, .e57, .ptx, got {path.name}"
+        )
+    check_name(path, ending)
+    return CLOUD_FORMATS[ending]

@@ -1,13 +1,22 @@
-"""The kinds of findings for people: ``recon4 explain`` and ``docs/reference/findings.md``."""
+"""The kinds of findings for people: ``recon4 explain`` and ``docs/reference/findings.md``.
+
+``measured.toml`` is written with ``python -m tests.benchmarks.precision RUNS --toml NAME``; each
+source is one set of runs. An *alarm* makes the verdict worse than good. It is *true* in a run whose
+trajectory is wrong, or whose fault it names.
+"""
 
 from __future__ import annotations
 
 import textwrap
+import tomllib
 from difflib import get_close_matches
+from functools import cache
+from importlib import resources
+
+import msgspec
 
 from recon4.errors import ConfigError
 from recon4.findings.derived import derived_sentences
-from recon4.findings.measured import sources
 from recon4.findings.wording import KindText, catalog
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
@@ -128,3 +137,48 @@ if __name__ == "__main__":
     from recon4.cli.terminal import write
 
     write(markdown(), end="")
+
+
+class Alarms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """Alarms of one kind in the runs of one source."""
+
+    alarms: int
+    true: int
+    of_wrong: int
+    """In wrong runs."""
+
+    @property
+    def precision(self) -> float:
+        """Ratio of its alarms that are true."""
+        return self.true / self.alarms
+
+
+class MeasuredRuns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A set of runs."""
+
+    name: str
+    right: int
+    """Runs whose trajectory is right …"""
+    wrong: int
+    """… and those whose is not."""
+    kinds: dict[FindingKind, Alarms]
+
+    def words(self, kind: FindingKind) -> str:
+        """What it says of a kind."""
+        runs = self.right + self.wrong
+        found = self.kinds.get(kind)
+        if found is None:
+            return f"no alarm in {runs} runs ({self.name})"
+        text = f"{found.alarms} alarms in {runs} runs, {100.0 * found.precision:.0f} % of them true"
+        return f"{text}, in {found.of_wrong} of {self.wrong} wrong runs ({self.name})"
+
+
+class _Measured(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    sources: tuple[MeasuredRuns, ...]
+
+
+@cache
+def sources() -> tuple[MeasuredRuns, ...]:
+    """All sources, the largest first."""
+    text = resources.files("recon4.findings").joinpath("measured.toml").read_text("utf-8")
+    return msgspec.convert(tomllib.loads(text), _Measured).sources

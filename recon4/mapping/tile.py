@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import chain
@@ -14,14 +14,13 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.halves import round_to_half
+from recon4.kernels.intensity import apply_table
 from recon4.kernels.structure_points import Structure
 from recon4.kernels.surface_points import spread_surfaces
 from recon4.kernels.surface_records import Moved
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
 from recon4.mapping.deviation import PoseCovariances, point_deviations
 from recon4.mapping.grid import Grid
-from recon4.mapping.intensity import normalized_intensity
-from recon4.mapping.neighborhood_classes import mark_noise
 from recon4.mapping.normals import Normals, local_normals
 from recon4.mapping.records import (
     Records,
@@ -78,6 +77,49 @@ _MADE_ELSEWHERE = {
     *("normal", "intensity_normalized", "classification", DEVIATION),
     *SURFACE_FIELDS,
 }
+
+
+def mark_noise(classes: NDArray[np.uint8], surfaces: FittedSurfaces, min_neighborhood: int) -> None:
+    """Mark stray returns: high noise if nothing else is around them, else low noise.
+
+    Args:
+        classes: Of all points; those of unclassified ones may change, (N,).
+        surfaces: Of the points.
+        min_neighborhood: Points with fewer in their neighborhood are noise.
+    """
+    open_ = classes == PointClass.UNCLASSIFIED
+    stray = open_ & (surfaces.stray | (surfaces.support < min_neighborhood))
+    rows = np.flatnonzero(stray)
+    # Too few others around it for a normal: nothing else was measured there.
+    alone = ~surfaces.surfaces[surfaces.surface_of[rows], :3].any(axis=1)
+    classes[rows] = np.where(alone, PointClass.HIGH_NOISE, PointClass.LOW_NOISE)
+
+
+def normalized_intensity(
+    table: IntensityTable, columns: Mapping[str, NDArray[Any]]
+) -> NDArray[np.float32]:
+    """Normalized intensities, (N,).
+
+    Args:
+        table: Of the sensors of these points.
+        columns: ``intensity`` (raw), ``sensor`` (row in the rig), ``ring``, ``incidence_rad``
+            (between beam and normal, 0..pi/2, NaN = no normal) and ``range_m`` of the points, (N,).
+    """
+    out = np.empty(len(columns["intensity"]), np.float32)
+    apply_table(
+        columns["intensity"],
+        columns["sensor"],
+        columns["ring"],
+        columns["incidence_rad"],
+        columns["range_m"],
+        table.incidence_bin_rad,
+        table.range_bin_m,
+        table.gain,
+        table.offset,
+        table.upper,
+        out,
+    )
+    return out
 
 
 Columns = dict[str, NDArray[Any]]

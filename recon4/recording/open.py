@@ -13,12 +13,12 @@ from recon4.recording.clock_jumps import with_jumps_removed
 from recon4.recording.clock_rates import with_clock_rates
 from recon4.recording.kind_problems import held_kinds
 from recon4.recording.kinds import PLANAR, FolderContents, RecordingKind, contents_of, recognize
+from recon4.recording.line_tables import LineTableRecording, LineTables
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
 from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
 from recon4.recording.openers.frames import open_frames
 from recon4.recording.openers.mandeye import open_mandeye
 from recon4.recording.openers.request import Opener, OpenRequest, Recording
-from recon4.recording.openers.tables import open_line_tables
 from recon4.recording.report import ImportReport
 
 
@@ -36,6 +36,14 @@ class KindRow:
 _LIDAR_FILES = frozenset({RecordingKind.LIDAR_FILE})
 _BAG = KindRow((open_line_bag, open_lidar_bag), _LIDAR_FILES)
 Kinds = Mapping[RecordingKind, KindRow]
+
+
+def open_line_tables(request: OpenRequest) -> Recording:
+    """Tables of line scans, with those of the 2-D laser and the IMU beside them."""
+    tables = LineTableRecording(LineTables.of(request.paths), request.rig, report=request.report)
+    return Recording(tables.rig, tables.read)
+
+
 KINDS: Kinds = {
     RecordingKind.PCAP: KindRow((open_scan_capture, open_lidar_capture), _LIDAR_FILES),
     RecordingKind.LVX: KindRow((open_lvx,)),

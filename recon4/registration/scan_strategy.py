@@ -4,23 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.samples import ImuSamples
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.fix_start import start_at_fixes
-from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.frame_fit import FrameFit, FrameFitter, pose_correction
 from recon4.registration.frame_view import FrameView
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import FreeMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
 from recon4.registration.scan_chain import ScanChain
+from recon4.registration.state import END_MOTION, END_POSE, POSES, START, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import PLANES, OdometryTuning, registration_tuning
-from recon4.registration.tuning_motion import SCAN_MOTION
+from recon4.registration.tuning_motion import SCAN_MOTION, STILL
 from recon4.registration.weak_motion import unknown_motion_cov
-from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 
@@ -171,3 +173,40 @@ class ScanStrategy:
     def imu_state(self, good: MotionState | None) -> MotionState | None:
         """See `MotionStrategy.imu_state`."""
         return None
+
+
+def is_stationary(T_scan_scan: SE3) -> bool:
+    """Whether the motion between two consecutive scans is within its noise."""
+    small = np.linalg.norm(T_scan_scan.t) < STILL.scans_m and T_scan_scan.angle() < STILL.scans_rad
+    return bool(small)
+
+
+def zero_velocity_update(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> FrameFit:
+    """The fit with the body stationary at an earlier pose, if the points are consistent with it.
+
+    The chi-square of the hypothesis is ``d^T H d``: ``d`` is its difference from the fit and ``H``
+    the information of the points. The reference pose stays the same, so errors do not accumulate.
+
+    Args:
+        fit: The fit without the hypothesis.
+        prediction: The motion that the fit corrects.
+        T_odom_body: The pose at which the body may still be.
+    """
+    delta = _standing(fit, prediction, T_odom_body)
+    d = (delta - fit.delta)[POSES]
+    if d @ fit.H_lidar @ d > STILL.chi2:
+        return fit
+    poses = len(prediction.t_s)
+    return replace(fit, delta=delta, T_dense=SE3.stack([T_odom_body] * poses))
+
+
+def _standing(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Array:
+    """Correction that makes a predicted motion stationary at a pose, (34,)."""
+    delta = fit.delta.copy()
+    predicted, end = prediction.T_odom_body, prediction.end
+    center = predicted.t[-1]
+    for pose, k in ((delta[START], 0), (delta[END_POSE], -1)):
+        pose[:] = pose_correction(predicted[k], T_odom_body, center)
+    still = np.concatenate([end.vector[VECTOR.velocity], end.vector[VECTOR.gyro_bias]])
+    delta[END_MOTION] = -still  # no velocity, no turn rate
+    return delta

@@ -14,6 +14,8 @@ from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden_points import HiddenPoints
 from recon4.model.odometry_figures import MovingFigures
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
@@ -21,7 +23,6 @@ from recon4.registration.frame_view import FrameView
 from recon4.registration.hypothesis import Hypothesis
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.line_odometry import LineOdometry
-from recon4.registration.make_odometry import make_odometry
 from recon4.registration.motion import MotionState
 from recon4.registration.moving import StandingFrames, find_moving
 from recon4.registration.odometry import Odometry
@@ -179,3 +180,12 @@ def _report_poses(steps: Sequence[OdometryStep], progress: Progress) -> None:
             quat_xyzw=tuple((x, y, z, w) for x, y, z, w in quaternions),
         )
     )
+
+
+def make_odometry(
+    rig: Rig, settings: OdometryReads, imu: ImuSamples | None, *, aiding: GnssAiding | None = None
+) -> Odometry | LineOdometry:
+    """Odometry by planes (this project's method) or by lines (the documents' method)."""
+    if settings.registration.solver == "planes":
+        return Odometry(rig, settings, imu, aiding=aiding)
+    return LineOdometry(rig, settings, imu)

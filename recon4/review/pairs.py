@@ -15,6 +15,7 @@ from msgspec import structs
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.geometry.se2 import from_se3
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.undistort import place
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
@@ -22,19 +23,20 @@ from recon4.pose_graph.node_views import NodeRangeImages
 from recon4.pose_graph.pair import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar, too_little_overlap
 from recon4.pose_graph.tuning import graph_tuning
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Silent
 from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import Submaps, TrackedFrames
 from recon4.registration.tuning import OVERLAP
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Pair
-from recon4.review.planar_pairs import align_keyframes, keyframe_points
 from recon4.review.queue import AlternativePath, alternative_paths
 from recon4.review.row_contents import Measurement, numbers_of, pose_of
 from recon4.review.source import Source
-from recon4.review.sweep_pairs import align_sweeps, has_sweeps, multiframes_of
 from recon4.review.tuning import QUEUE, REVIEW_PAIRS
-from recon4.settings.reads import GraphReads, VerificationReads, part_of
+from recon4.settings.reads import GraphReads, LineGraphReads, VerificationReads, part_of
+from recon4.settings.tuning import tuned
+from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
 from recon4.store.arrays import load_arrays, load_trajectory
 
 MAGIC = b"R4PP"
@@ -301,3 +303,71 @@ def _checked(predicted: tuple[float, ...]) -> SE3:
             f"got {list(predicted)[:7]}"
         )
     return pose_of(numbers.tolist())
+
+
+def keyframe_points(source: Source, node: int, reach: int) -> Array:
+    """Returns of a node and of ``reach`` nodes before and after, in its frame [m], (N, 3)."""
+    points, _ = source.keyframes.around(node, reach)
+    return np.column_stack([points, np.zeros(len(points))])
+
+
+def align_keyframes(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
+    """Register two nodes as the search does, from an operator's predicted pose.
+
+    Args:
+        source: The project's latest graph.
+        nodes: Rows of the graph.
+        predicted: Initial ``T_i_j``; its height, roll and pitch are left out.
+    """
+    from recon4.slam2d.submaps import SubmapRegistrar
+
+    settings = source.settings
+    registrar = SubmapRegistrar(
+        source.keyframes,
+        settings=tuned(Slam2dTuning, settings.slam2d),
+        loops=tuned(Loop2dTuning, settings.loops2d),
+    )
+    return registrar.register_at(nodes, from_se3(predicted))
+
+
+def has_sweeps(source: Source) -> bool:
+    """Whether the nodes of the graph are sweeps of a head."""
+    return source.frames.rig.row_of("profiler") is not None
+
+
+def multiframes_of(source: Source, node: int) -> range:
+    """Multiframes with points of a node's sweep."""
+    return source.sweeps.multiframes(source.frames, node)
+
+
+def align_sweeps(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
+    """Register two sweeps as the search does, from an operator's predicted pose.
+
+    Args:
+        source: The project's latest graph.
+        nodes: Rows of the graph.
+        predicted: Initial ``T_i_j``.
+
+    Returns:
+        The edge with the reason for which the search would reject it, if there is one.
+    """
+    from recon4.profiler.sweep_graph import Link, register_pair
+    from recon4.profiler.sweeps import unwind_sweep
+
+    settings, sweeps = source.settings, source.sweeps
+    first, second = (
+        unwind_sweep(
+            source.frames,
+            sweeps,
+            node,
+            trajectory=source.odometry,
+            settings=tuned(LineTuning, settings.lines),
+        )
+        for node in nodes
+    )
+    link = Link(*nodes, initial=predicted, overlap=0.0)
+    reads = part_of(settings, LineGraphReads)
+    edge, close_points = register_pair((first, second), link, settings=reads)
+    if not edge.reason and close_points < tuned(LineTuning, settings.lines).link_pairs:
+        return edge.judged(too_little_overlap(edge.overlap))
+    return edge

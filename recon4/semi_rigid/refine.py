@@ -3,6 +3,9 @@
 The pose graph corrects nodes; between them odometry alone determines the motion. Here all segments
 of the walk make one plane map, each multiframe is matched to it, and one banded system corrects
 all of them together (requirements A12 L-4: global matching in sections, continuous in time).
+
+A round is summed up in one order, so the plane map of a round that was begun is built once more;
+what has been matched to it is not matched again.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.corrections import apply_corrections
 from recon4.model.events import RoundRefined
 from recon4.model.figures import CarriedFigures, RefineFigures, RefineRound
@@ -32,12 +35,12 @@ from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
-from recon4.semi_rigid.refined_rounds import MatchedFrame, MatchedFrames, RefinedRounds
 from recon4.semi_rigid.tuning import REFINE_RUN, RefineTuning
 from recon4.settings.reads import RefineReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory, save_record, save_trajectory
 from recon4.store.frames import FrameStore
+from recon4.store.unfinished import RecordLog, unfinished_file
 
 Result = TypeVar("Result")
 
@@ -143,6 +146,69 @@ def refine_trajectory(
         if figures.largest_step_m < r.converged_step_m:
             break
     return trajectory, rounds
+
+
+class MatchedFrame(NamedTuple):
+    """Normal equations of a multiframe, mean distance [m] and match ratio."""
+
+    H: Array
+    """(12, 12)."""
+    g: Array
+    """(12,)."""
+    mean_m: float
+    match_ratio: float
+
+
+class MatchedFrames:
+    """Multiframes that were matched in one round."""
+
+    def __init__(self, number: int) -> None:
+        """Take up what an earlier process has matched in the round of this number."""
+        self._log = RecordLog(unfinished_file(f"round-{number}"))
+        found = (np.frombuffer(record, np.float64) for record in self._log)
+        self._known = {int(values[0]): _matched(values[1:]) for values in found}
+
+    def get(self, row: int) -> MatchedFrame | None:
+        """What an earlier process found; None = nothing."""
+        return self._known.get(row)
+
+    def add(self, row: int, found: MatchedFrame) -> None:
+        """Note what was found, in the order in which it is used."""
+        if row not in self._known:
+            figures = (found.mean_m, found.match_ratio)
+            values = np.concatenate([[float(row)], found.H.ravel(), found.g, figures])
+            self._log.append(values.tobytes())
+
+
+class RefinedRounds:
+    """Rounds that are finished."""
+
+    def __init__(self) -> None:
+        """Take up those of an earlier process."""
+        self._log = RecordLog(unfinished_file("rounds"))
+
+    def get(self, number: int) -> tuple[Array, RefineRound] | None:
+        """Corrections of the knots (K, 6) and figures of a round; None = it was not finished."""
+        if number >= len(self._log):
+            return None
+        values = np.frombuffer(self._log[number], np.float64)
+        step = values[2:].reshape(-1, 6)
+        return step, _figures(step, mean_m=float(values[0]), match_ratio=float(values[1]))
+
+    def add(self, step: Array, *, mean_m: float, match_ratio: float) -> RefineRound:
+        """Note a finished round; returns its figures."""
+        self._log.append(np.concatenate([[mean_m, match_ratio], step.ravel()]).tobytes())
+        return _figures(step, mean_m=mean_m, match_ratio=match_ratio)
+
+
+def _matched(values: Array) -> MatchedFrame:
+    H, g, figures = np.split(values, [144, 156])
+    return MatchedFrame(H.reshape(12, 12), g, float(figures[0]), float(figures[1]))
+
+
+def _figures(step: Array, *, mean_m: float, match_ratio: float) -> RefineRound:
+    largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
+    return RefineRound(mean_m=mean_m, match_ratio=match_ratio, largest_step_m=largest_m)
 
 
 class _PlacedEnds(NamedTuple):

@@ -1,6 +1,6 @@
 """How the drivers of the makers publish packets: one message for some of them.
 
-The drivers of Livox publish points instead: `recon4.simulation.livox_messages`.
+The drivers of Livox publish points instead: `recon4.simulation.bag`.
 """
 
 from __future__ import annotations

@@ -2,7 +2,7 @@
 
 Every packet holds the same sequences of shots, one shot of each laser a sequence. What moves the
 beams is a rotor that turns evenly (`Spin`) or optics whose pattern does not repeat
-(`recon4.simulation.rosette`).
+(`recon4.simulation.families.livox`).
 """
 
 from __future__ import annotations

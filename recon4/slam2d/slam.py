@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csc_array
 
-from recon4.geometry.se2 import from_se3, to_se3, transform
+from recon4.geometry.se2 import between, compose, from_se3, to_se3, transform, wrap
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
-from recon4.model.pose_graph import PoseGraph
+from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.inverses import inverted
 from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent, track
 from recon4.settings import Settings
 from recon4.settings.reads import Map2dReads, Odometry2dReads, Slam2dReads, part_of
 from recon4.settings.tuning import tuned
-from recon4.slam2d.correction import corrected_poses
-from recon4.slam2d.covariance import node_covariances
+from recon4.slam2d.edges import plane_information
 from recon4.slam2d.hector_odometry import run_hector
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
 from recon4.slam2d.loops import close_loops
@@ -26,7 +28,7 @@ from recon4.slam2d.odometry import run_odometry_2d
 from recon4.slam2d.scan_points import leveling, scan_points
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.tuning import Grid2dTuning, HectorTuning, Loop2dTuning, Slam2dTuning
-from recon4.slam2d.tuning_graph import GRID_STEPS
+from recon4.slam2d.tuning_graph import COVARIANCE_2D, GRID_STEPS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -166,3 +168,74 @@ def _corners(p_map: Array, pose: Array) -> Array:
     """Smallest and largest x and y of the returns of a scan and its laser [m], (2, 2)."""
     both = np.concatenate([pose[None, :2], p_map])
     return np.stack([both.min(axis=0), both.max(axis=0)])
+
+
+def corrected_poses(pose: Array, keyframes: Keyframes, T_map_key: Array) -> Array:
+    """Poses of all scans in the map: the motions between keyframes bend to fit the solved ones.
+
+    Each scan is placed from the keyframe before and from the one after it; in between the two
+    results are blended by row.
+
+    Args:
+        pose: Poses of all scans by odometry, (N, 3).
+        keyframes: Nodes of the graph.
+        T_map_key: Their solved poses, (K, 3).
+    """
+    rows = np.arange(len(pose))
+    before = np.clip(np.searchsorted(keyframes.rows, rows, side="right") - 1, 0, None)
+    after = np.minimum(before + 1, len(keyframes) - 1)
+    first = compose(T_map_key[before], between(keyframes.pose[before], pose))
+    second = compose(T_map_key[after], between(keyframes.pose[after], pose))
+    span = keyframes.rows[after] - keyframes.rows[before]
+    fraction = np.clip((rows - keyframes.rows[before]) / np.maximum(span, 1), 0.0, 1.0)[:, None]
+    turned = wrap(second[:, 2] - first[:, 2])
+    blended = first + fraction * (second - first)
+    blended[:, 2] = wrap(first[:, 2] + fraction[:, 0] * turned)
+    return blended
+
+
+def node_covariances(graph: PoseGraph) -> Array:
+    """Marginal covariances for yaw, x, y in the axes of each node, (K, 3, 3).
+
+    The sparse inverse is computed only at the nonzero entries of the factor (Takahashi 1973).
+    """
+    nodes, of = len(graph), graph.relations
+    used = np.flatnonzero(of.in_graph)
+    i, j = of.i[used], of.j[used]
+    W = plane_information(of.information[used])
+    pose = from_se3(graph.T_map_body)
+    A = -_adjoint(between(pose[j], pose[i]))
+    left = np.swapaxes(A, 1, 2) @ W
+    every, first = np.arange(nodes), np.zeros(1, np.intp)
+    blocks = [
+        (i, i, left @ A),
+        (i, j, left),
+        (j, i, W @ A),
+        (j, j, W),
+        (
+            every,
+            every,
+            np.full((nodes, 3, 3), COVARIANCE_2D.nothing * float(np.abs(W).max(initial=1.0))),
+        ),
+        (first, first, COVARIANCE_2D.gauge * np.eye(3)[None]),
+    ]
+    return inverted(_assembled(blocks, nodes), axes=3).blocks(every, every)
+
+
+def _assembled(blocks: Sequence[tuple[Rows, Rows, Array]], nodes: int) -> csc_array:
+    row, column = np.meshgrid(np.arange(3), np.arange(3), indexing="ij")
+    at_row = np.concatenate([(3 * a[:, None, None] + row).ravel() for a, _, _ in blocks])
+    at_column = np.concatenate([(3 * b[:, None, None] + column).ravel() for _, b, _ in blocks])
+    values = np.concatenate([np.asarray(block).ravel() for _, _, block in blocks])
+    return csc_array((values, (at_row, at_column)), shape=(3 * nodes, 3 * nodes))
+
+
+def _adjoint(T_a_b: Array) -> Array:
+    """Adjoint matrices for yaw, x, y that map twists of ``b`` to ``a``, (..., 3, 3)."""
+    c, s = np.cos(T_a_b[..., 2]), np.sin(T_a_b[..., 2])
+    out = np.zeros((*T_a_b.shape[:-1], 3, 3))
+    out[..., 0, 0] = 1.0
+    out[..., 1, 0], out[..., 2, 0] = T_a_b[..., 1], -T_a_b[..., 0]
+    out[..., 1, 1], out[..., 1, 2] = c, -s
+    out[..., 2, 1], out[..., 2, 2] = s, c
+    return out

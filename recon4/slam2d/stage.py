@@ -9,11 +9,12 @@ import numpy as np
 from msgspec import to_builtins
 
 from recon4.errors import EmptyRecording
-from recon4.geometry.se2 import to_se3, transform
+from recon4.geometry.se2 import to_se3, transform, wrap
 from recon4.geometry.se3 import Array
 from recon4.model.events import Remarked
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_upright import turned_round
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
@@ -24,16 +25,16 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.settings.reads import Graph2dReads, Map2dReads, Odometry2dReads
 from recon4.settings.tuning import tuned
-from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
 from recon4.slam2d.loops import close_loops
 from recon4.slam2d.map_files import read_overview, write_map
 from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
+from recon4.slam2d.odometry import Odometry2d
 from recon4.slam2d.scan_points import scan_points
 from recon4.slam2d.slam import make_grid, map_poses, run_steps, scan_covariances
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.tuning import Grid2dTuning, Loop2dTuning, Slam2dTuning
-from recon4.slam2d.tuning_graph import SCAN_GAPS
+from recon4.slam2d.tuning_graph import BEAM_ORDER, SCAN_GAPS
 from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.line_store import LineStoreWriter, load_laser_scans
@@ -225,3 +226,43 @@ def _crossing(
             yield transform(poses[k], points), poses[k, :2]
 
     return crossing_ratio(grid, placed())
+
+
+def with_true_order(scans: LaserScans) -> tuple[LaserScans, bool]:
+    """The scans, mirrored if they turn against the odometry of the recording.
+
+    Returns:
+        The scans, and whether they were. Without odometry, or without a turn, it cannot be known.
+    """
+    votes = [_vote(scans[rows]) for rows in _turns(scans)]
+    if not votes or sum(votes) >= 0:
+        return scans, False
+    return turned_round(scans), True
+
+
+def _turns(scans: LaserScans) -> list[slice]:
+    """Stretches in which the odometry turns."""
+    if scans.odometry is None:
+        return []
+    found: list[slice] = []
+    steps = np.abs(wrap(np.diff(scans.odometry[:, 2])))
+    first = 0
+    while first + 2 < len(scans) and len(found) < BEAM_ORDER.stretches:
+        turned = np.cumsum(steps[first : first + BEAM_ORDER.scans])
+        enough = int(np.searchsorted(turned, BEAM_ORDER.turn_rad))
+        if enough < len(turned):
+            found.append(slice(first, first + enough + 2))
+        first += BEAM_ORDER.scans
+    return found
+
+
+def _vote(scans: LaserScans) -> int:
+    """1 = the scans turn as the odometry does, -1 = against it, 0 = neither."""
+    assert scans.odometry is not None
+    odometry = Odometry2d(scans, settings=Slam2dTuning(use_odometry=False))
+    for k in range(len(scans)):
+        odometry.push(k)
+    by_scans = wrap(np.diff(odometry.steps.pose[:, 2]))
+    by_robot = wrap(np.diff(scans.odometry[:, 2]))
+    agreement = float(by_scans @ by_robot) / max(float(by_robot @ by_robot), 1e-12)
+    return int(agreement > BEAM_ORDER.clear) - int(agreement < -BEAM_ORDER.clear)

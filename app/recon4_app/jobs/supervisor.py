@@ -20,9 +20,9 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.executors.chosen import read_choice
 from recon4.locales.coded import CodedText
+from recon4.system.stopping import SIGNALS
 from recon4_app.errors import Conflict
 from recon4_app.jobs.events import read_events
-from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.folder import JobFolder, Limits, Outcome
 from recon4_app.jobs.limits import allowed_memory
 from recon4_app.jobs.model import Job, JobKind, JobState
@@ -339,3 +339,24 @@ def _spawn(program: tuple[str, ...], folder: Path, lock: int) -> subprocess.Pope
             pass_fds=(lock,),
             start_new_session=True,
         )
+
+
+_STOPPED = {128 + number: -number for number in SIGNALS}
+"""Exit code of a worker that a signal stopped in order -> what the kernel reports of a signal."""
+
+
+def exit_reason(code: int | None) -> tuple[str, int]:
+    """How a worker ended, from its exit code; None = no server saw it end.
+
+    Returns:
+        ``unseen``, ``code``, ``signal`` or the name of a signal, and the number of code or signal.
+    """
+    if code is None:
+        return "unseen", 0
+    code = _STOPPED.get(code, code)
+    if code >= 0:
+        return "code", code
+    try:
+        return signal.Signals(-code).name, -code
+    except ValueError:
+        return "signal", -code

@@ -1,10 +1,14 @@
-"""Projects are the folders below the root. Nothing else is kept about them."""
+"""Projects are the folders below the root. Nothing else is kept about them.
+
+A title is any line of text ("Office Brno, 2nd floor"); it stays the display name of the project.
+"""
 
 from __future__ import annotations
 
 import math
 import os
 import re
+import unicodedata
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -28,7 +32,6 @@ from recon4_app.projects.described import (
     summary_of,
     tags_of,
 )
-from recon4_app.projects.folder_names import free_folder_name
 from recon4_app.projects.folder_times import iso, weigh
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.model import (
@@ -41,10 +44,38 @@ from recon4_app.projects.model import (
     StageView,
     stage_order,
 )
-from recon4_app.projects.tuning import PROJECT_LIST
+from recon4_app.projects.tuning import FOLDER_NAMES, PROJECT_LIST
 
 RESERVED = frozenset({"recordings", "rigs"})
 """Folders of uploads and of rigs, beside those of projects."""
+
+
+def folder_name(title: str) -> str:
+    """The title in lower-case letters without accents, digits and dashes.
+
+    ``project`` if the title has no letter or digit of the Latin alphabet.
+    """
+    plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
+    return (
+        re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[: FOLDER_NAMES.longest].rstrip("-")
+        or "project"
+    )
+
+
+def free_folder_name(title: str, is_taken: Callable[[str], bool]) -> str:
+    """The folder name of a title, numbered if a project or another folder has it.
+
+    Args:
+        title: What a person calls the project.
+        is_taken: Whether a name is in use.
+    """
+    name = folder_name(title)
+    found, n = name, 2
+    while is_taken(found):
+        found, n = f"{name}-{n}", n + 1
+    return found
+
+
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 
 

@@ -19,9 +19,8 @@ from scipy.sparse.csgraph import connected_components
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.live import trace
-from recon4.live.preview.floors import Floors
 from recon4.live.preview.tiles import Key, Tiles
-from recon4.live.preview.tuning import PLAN_TILES
+from recon4.live.preview.tuning import FLOOR_DETECTION, PLAN_TILES
 
 _FAR = 1e9
 _LAYERS = {
@@ -238,3 +237,28 @@ def _connected(cells: NDArray[np.int64]) -> list[NDArray[np.intp]]:
     _, labels = connected_components(joined, directed=False)
     by_label = np.argsort(labels, kind="stable")
     return np.split(by_label, np.flatnonzero(np.diff(labels[by_label])) + 1)
+
+
+class Floors:
+    """Floors in the order of their first visit."""
+
+    def __init__(self) -> None:
+        self._heights_m: list[float] = []
+        self.now = 0
+        """Number of the current floor."""
+
+    def __len__(self) -> int:
+        return len(self._heights_m)
+
+    def at(self, z_m: float) -> int:
+        """Number of the floor at a body height [m]; call it for every multiframe."""
+        away_m = [abs(z_m - height_m) for height_m in self._heights_m]
+        if not away_m or min(away_m) > FLOOR_DETECTION.apart_m:
+            self._heights_m.append(z_m)
+            self.now = len(self._heights_m) - 1
+            return self.now
+        nearest = away_m.index(min(away_m))
+        if away_m[nearest] < away_m[self.now] - FLOOR_DETECTION.nearer_m:
+            self.now = nearest
+        self._heights_m[self.now] += FLOOR_DETECTION.follow * (z_m - self._heights_m[self.now])
+        return self.now

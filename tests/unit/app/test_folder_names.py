@@ -6,8 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from recon4_app.projects.folder_names import folder_name, free_folder_name
-from recon4_app.projects.store import PROJECT_ID
+from recon4_app.projects.store import PROJECT_ID, folder_name, free_folder_name
 
 
 @pytest.mark.parametrize(

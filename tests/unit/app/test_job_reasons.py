@@ -11,11 +11,11 @@ from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH, ROOT
 from recon4.locales.texts import messages_of
 from recon4.store.atomic import raise_if_full
-from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.folder import JobFolder, Limits
 from recon4_app.jobs.model import Inputs, Job, JobState
 from recon4_app.jobs.status import JobStatus, StageStatus
 from recon4_app.jobs.store import JobStore
+from recon4_app.jobs.supervisor import exit_reason
 from recon4_app.jobs.worker import run
 
 DIED = {"how": "SIGKILL", "number": 9, "stage": "odometry", "what": "Odometry"}

@@ -7,8 +7,8 @@ from recon4.workflows.lidar import LIDAR
 from recon4.workflows.planar import PLANAR
 from recon4.workflows.profiler import PROFILER
 from recon4_app.jobs.events import event_of
-from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.run_progress import STAGE_PERCENT, RunProgress, after, stage_weight
+from recon4_app.jobs.supervisor import exit_reason
 from recon4_app.projects.model import stage_order
 from tools.structure import ROOT
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.mapping.tile_order import progressive
-from recon4_app.viewer.client.point_budget import PointBudget
+from recon4_app.viewer.client.client_session import PointBudget
 from recon4_app.viewer.cloud.lod import Camera, TileBoxes, base_step, choose, chunks_of, in_sight
 from recon4_app.viewer.tuning import POINT_BUDGET
 

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.calibration.beams import beam_counts
 from recon4.calibration.parameters import Parameters
-from recon4.calibration.stage import run_calibration
+from recon4.calibration.stage import beam_counts, run_calibration
 from recon4.model.beams import BeamCorrections
 from recon4.model.calibration_figures import RigOutcome
 from recon4.model.rig import load_rig

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from pypdf import PdfReader
 
-from recon4.delivery.people_section import people_section
-from recon4.delivery.report_files import _notes, checked_approval
+from recon4.delivery.report_files import _notes, checked_approval, people_section
 from recon4.findings.summary_notes import findings_in
 from recon4.findings.wording import said
 from recon4.mapping.tiles import TileSet

@@ -250,7 +250,7 @@ FULL = """
 import resource, signal, sys
 from pathlib import Path
 from recon4.errors import NoSpace
-from recon4.export.clouds import cloud_writer
+from recon4.export.map_files import cloud_writer
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 try:

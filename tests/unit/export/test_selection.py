@@ -7,8 +7,8 @@ from msgspec import structs
 
 from recon4.errors import ConfigError, StoreError
 from recon4.export import account, laz
-from recon4.export.clouds import cloud_writer
 from recon4.export.laz import export_laz, export_map_laz
+from recon4.export.map_files import cloud_writer
 from recon4.export.options import ExportOptions, classes_named
 from recon4.export.points import OutputCrs, PointSource
 from recon4.export.selection import EVERY_CLASS, PointSelection

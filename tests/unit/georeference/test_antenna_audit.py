@@ -11,10 +11,10 @@ from recon4.findings.witnesses.placing import Antenna
 from recon4.geometry.se3 import SE3
 from recon4.georeference.antenna_audit import (
     audit_antenna,
+    coarse_clock_s,
     turn_by_antenna,
 )
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
-from recon4.georeference.fix_clock import coarse_clock_s
 from recon4.model.figures import AntennaFigures, LevelFigures
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples

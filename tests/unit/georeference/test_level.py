@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.georeference.floor import level_by_floor
 from recon4.georeference.level import level, level_by_attitude, level_by_gravity, tilt_to
+from recon4.georeference.stage import level_by_floor
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory

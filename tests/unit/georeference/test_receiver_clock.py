@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, Array, so3_exp
-from recon4.georeference.gnss_aiding import make_gnss_aiding
+from recon4.georeference.gnss_aiding import make_gnss_aiding, receiver_clock_s
 from recon4.georeference.ins_attitudes import attitudes
-from recon4.georeference.receiver_clock import receiver_clock_s
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.settings import OdometrySettings

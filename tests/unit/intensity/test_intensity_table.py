@@ -18,7 +18,7 @@ from recon4.intensity.normalize import (
 from recon4.intensity.table import table_of_sums
 from recon4.intensity.tuning import INTENSITY_TABLE, IntensityTuning
 from recon4.mapping.build import MapInputs, build_map
-from recon4.mapping.intensity import normalized_intensity
+from recon4.mapping.tile import normalized_intensity
 from recon4.settings import MapSettings
 from recon4.store.arrays import load_intensity_table, save_intensity_table
 from tests.room_walks import Walk, room_walk

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.live.mapper.motion_watch import MotionWatch
+from recon4.live.mapper.live_map import MotionWatch
 from recon4.registration.step import OdometryStep
 
 FRAME_S = 0.1

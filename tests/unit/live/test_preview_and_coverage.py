@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.live.preview.cloud import PreviewCloud
-from recon4.live.preview.coverage import Coverage, CoverageClass
-from recon4.live.preview.floors import Floors
+from recon4.live.preview.coverage import Coverage, CoverageClass, Floors
 from recon4.live.preview.tiles import Tiles
 from recon4.live.preview.tuning import PLAN_TILES
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from recon4.model.line_scans import LineScans
-from recon4.simulation.head import HeadModel
+from recon4.simulation.profiler import HeadModel
 
 
 def lines_of(angle_rad, *, hz=100.0):

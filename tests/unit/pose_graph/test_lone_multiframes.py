@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import TRANSLATION, Array
-from recon4.pose_graph.carried_motion import CarriedMotion, load_carried_motion
+from recon4.pose_graph.carried_motion import CarriedMotion, bounds_by_neighbors, load_carried_motion
 from recon4.pose_graph.known_errors import KnownErrors
-from recon4.pose_graph.lone_multiframes import bounds_by_neighbors
 from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from tests.unit.pose_graph.test_uncertainty import NOT_LONE, SURE, chain
 

@@ -8,8 +8,7 @@ import pytest
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp, so3_log
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.odometry_figures import HeightDoubt
-from recon4.pose_graph.known_errors import KnownErrors
-from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
+from recon4.pose_graph.known_errors import EXACT, KnownErrors, RigError, audited_error
 from recon4.pose_graph.uncertainty import pose_uncertainty
 from recon4.workflows.workflow import Run
 from tests.unit.pose_graph.test_uncertainty import chain

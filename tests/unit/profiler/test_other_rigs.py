@@ -17,8 +17,7 @@ from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.simulation.backpack import BackpackModels, prepare_backpack, simulate_backpack
-from recon4.simulation.head import HeadModel
-from recon4.simulation.profiler import Laser2dModel, ProfilerModel
+from recon4.simulation.profiler import HeadModel, Laser2dModel, ProfilerModel
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_lines
 from recon4.workflows.choice import is_planar

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.model.tuning import OBSERVATION
-from recon4.profiler.surface_support import surface_support
+from recon4.profiler.line_refine import surface_support
 
 _KNOTS = 401
 _STEP_NS = 20_000_000

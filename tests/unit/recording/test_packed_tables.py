@@ -3,8 +3,7 @@
 import pytest
 
 from recon4.recording.tables.coordinates import ColumnChoice
-from recon4.recording.tables.packed import unpacked
-from recon4.recording.tables.points import read_point_table
+from recon4.recording.tables.points import read_point_table, unpacked
 
 POINTS = {"A1": (678411.56, 1527288.55, -29.36), "A2": (678679.559, 1527097.68, -28.81)}
 

@@ -6,7 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.recording.formats.poses import read_tum
 from recon4.registration import imu_strategy as module
-from recon4.registration.moving_start import starting_velocity
+from recon4.registration.imu_strategy import starting_velocity
 from recon4.registration.odometry import Odometry
 from recon4.registration.walk_steps import dense_trajectory
 from recon4.settings import Settings

@@ -6,9 +6,8 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.registration.motion import MotionState, Prediction
 from recon4.registration.plane_map import Match
-from recon4.registration.point_map import FramePoints, PointMap, WeakDirections
+from recon4.registration.point_map import FramePoints, PointMap, WeakDirections, better_place_m
 from recon4.registration.tuning import PlaneTuning
-from recon4.registration.weak_places import better_place_m
 
 DEPTH_M, FAR_M, OFF_M = 0.16, 6.06, -0.13
 T_S = np.array([0.0, 0.1])

@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from recon4.findings.measured import MeasuredRuns, sources
+from recon4.findings.explain import MeasuredRuns, sources
 from recon4.model.finding_kinds import FindingKind
 from tests.benchmarks.precision import (
     NAMES,

@@ -14,8 +14,13 @@ from recon4.progress import Silent
 from recon4.registration.plane_map import Match
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
-from recon4.semi_rigid.refine import _Sweep, corrected_by_nodes, refine, refine_trajectory
-from recon4.semi_rigid.refined_rounds import MatchedFrames
+from recon4.semi_rigid.refine import (
+    MatchedFrames,
+    _Sweep,
+    corrected_by_nodes,
+    refine,
+    refine_trajectory,
+)
 from recon4.semi_rigid.tuning import RefineTuning
 from recon4.settings import Settings, override
 from recon4.store.arrays import load_trajectory, save_trajectory

@@ -14,7 +14,7 @@ from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.simulation.backpack import measured_seconds, prepare_backpack, simulate_backpack
 from recon4.simulation.figures import FIGURES
-from recon4.simulation.head import HeadModel
+from recon4.simulation.profiler import HeadModel
 
 
 @pytest.fixture(scope="module")

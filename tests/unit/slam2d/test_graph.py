@@ -6,11 +6,10 @@ import pytest
 from recon4.geometry.se2 import between, compose, from_se3, inverse, to_se3, transform
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.pose_graph.solve import optimize
-from recon4.slam2d.correction import corrected_poses
-from recon4.slam2d.covariance import node_covariances
 from recon4.slam2d.edges import plane_information, space_information
 from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.prediction import Predicted, VarianceGrowth
+from recon4.slam2d.slam import corrected_poses, node_covariances
 
 
 def graph_of(poses, pairs, *, sd_m=0.1, sd_rad=0.01):

@@ -10,9 +10,9 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind
 from recon4.model.trajectory import Trajectory
 from recon4.settings import preset
-from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.observability import observed
 from recon4.slam2d.slam import slam2d
+from recon4.slam2d.stage import with_true_order
 from tests.laser_rows import angles_of, rows_of, with_rows, with_times
 from tests.planar_walks import (
     PlanarWalk,

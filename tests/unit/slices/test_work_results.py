@@ -13,12 +13,11 @@ from recon4.review.pairs import PairFacts
 from recon4.review.preview import DecidedEdge, Effect
 from recon4.review.queue import AlternativePath
 from recon4.review.solve import Difference, EdgeConflict, Move
-from recon4.slices.compare import ComparedSlice, Comparison
+from recon4.slices.compare import ComparedSlice, Comparison, SignedFigures
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.reference_fit import ReferenceFit
 from recon4.slices.residuals import residuals
-from recon4.slices.signed_distances import SignedFigures
 from recon4_app.compute_pool.messages import declared, decode_result, encode_result
 from recon4_app.review.review_work import pair_facts, preview
 from recon4_app.slices.control_work import control_report

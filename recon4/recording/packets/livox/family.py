@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zlib
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
@@ -25,6 +26,7 @@ from recon4.recording.packets.family import (
     Recognized,
 )
 from recon4.recording.packets.livox.models import (
+    CRC_FROM,
     IMU_SAMPLE,
     LAYOUTS,
     MODELS,
@@ -34,6 +36,7 @@ from recon4.recording.packets.livox.models import (
     SDK2_HEADER,
     SDK2_IMU_SIZE,
     SDK2_IMU_TYPE,
+    UTC_TIME_TYPE,
     LivoxModel,
     PointLayout,
     header_of,
@@ -41,8 +44,8 @@ from recon4.recording.packets.livox.models import (
 )
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.recognition import likely_model, likely_models
-from recon4.recording.packets.livox.restamped import restamped
 from recon4.recording.packets.livox.sound import (
+    date_stamps,
     has_crc,
     has_header,
     has_stamp,
@@ -242,3 +245,31 @@ def _are_imu(head: Datagrams) -> bool:
 
 
 FAMILY: PacketFamily = LivoxFamily()
+
+
+def restamped(payloads: Payloads, sound: NDArray[np.bool_], sdk: int, *, shift_ns: int) -> Payloads:
+    """Packets of one protocol, later by ``shift_ns``; unsound ones as they are, (N, size).
+
+    Args:
+        payloads: Points or inertial samples, (N, size).
+        sound: Which have the header of a packet, and a time, (N,).
+        sdk: 1 or 2.
+        shift_ns: Added to the stamps [ns].
+    """
+    out = payloads.copy()
+    header = SDK1_HEADER if sdk == 1 else SDK2_HEADER
+    assert header.fields is not None
+    at = header.fields["stamp"][1]
+    timed = np.flatnonzero(sound)
+    t_ns = stamps_ns(payloads[timed], sdk) + shift_ns
+    timed, t_ns = timed[t_ns >= 0], t_ns[t_ns >= 0]
+    out[timed, at : at + 8] = t_ns.astype("<u8").view(np.uint8).reshape(-1, 8)
+    if sdk == 1:
+        dated = payloads[timed, header.fields["time_type"][1]] == UTC_TIME_TYPE
+        out[timed[dated], at : at + 8] = date_stamps(t_ns[dated])
+    else:
+        crc_at = header.fields["crc"][1]
+        for row in timed[has_crc(payloads[timed])].tolist():
+            total = zlib.crc32(out[row, CRC_FROM:].tobytes())
+            out[row, crc_at : crc_at + 4] = np.frombuffer(total.to_bytes(4, "little"), np.uint8)
+    return out

@@ -35,6 +35,7 @@ from recon4.recording.packets.velodyne.data_packets import PacketSource, decode_
 from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
 from recon4.recording.packets.velodyne.models import (
     BLOCK_FLAG,
+    DATA_PACKET,
     DATA_SIZE,
     LOWER_BLOCK_FLAG,
     MODELS,
@@ -48,12 +49,11 @@ from recon4.recording.packets.velodyne.models import (
     velodyne_model,
 )
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder, utc_offset_ns
-from recon4.recording.packets.velodyne.restamped import restamped
 from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
 from recon4.recording.packets.velodyne.wide_models import VLS128, VLS128_PRODUCT
 from recon4.recording.packets.velodyne.wide_packets import WideFormat, dual_packets, sound_wide
 from recon4.recording.report import ImportReport, warning
-from recon4.units import SECOND_NS
+from recon4.units import HOUR_US, SECOND_NS
 
 NAME = "Velodyne"
 HDL64 = "HDL-64E"
@@ -132,6 +132,31 @@ def senders(payloads: Payloads) -> list[str]:
 
 def _packet(packet: Any) -> tuple[int, bytes]:
     return int(packet.stamp.sec) * SECOND_NS + int(packet.stamp.nanosec), packet.data.tobytes()
+
+
+class _Position:
+    """The packet with positions."""
+
+    STAMP_AT = 198
+    """Offset of its time [bytes]."""
+
+
+def restamped(payloads: Payloads, *, shift_ns: int) -> Payloads | None:
+    """Packets of one size, later by ``shift_ns``; None = of another size than Velodyne's.
+
+    Stamps that run on past the full hour, as without GPS, stay as they are. So do the sentences of
+    position packets: a shift by no whole hours takes their proof of GPS time away.
+    """
+    assert DATA_PACKET.fields is not None
+    stamp_at = {DATA_SIZE: DATA_PACKET.fields["time_us"][1], POSITION_SIZE: _Position.STAMP_AT}
+    at = stamp_at.get(payloads.shape[1])
+    if at is None:
+        return None
+    out = payloads.copy()
+    stamp_us = np.ascontiguousarray(out[:, at : at + 4]).view("<u4")[:, 0].astype(np.int64)
+    later_us = np.where(stamp_us < HOUR_US, (stamp_us + shift_ns // 1000) % HOUR_US, stamp_us)
+    out[:, at : at + 4] = later_us.astype("<u4").view(np.uint8).reshape(-1, 4)
+    return out
 
 
 class VelodyneFormat:
