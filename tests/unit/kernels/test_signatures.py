@@ -2,6 +2,8 @@
 
 from graphlib import TopologicalSorter
 
+from numba.types import NamedTuple
+
 from recon4.kernels.signatures import SIGNATURES, kernels, spelled
 
 
@@ -13,6 +15,14 @@ def test_what_is_read_is_what_the_file_says():
     }
 
     assert lines == set(SIGNATURES.read_text("ascii").splitlines())
+
+
+def test_records_of_the_file_have_the_fields_of_their_classes():
+    types = [one for kernel in kernels().values() for types in kernel.signatures for one in types]
+    records = [one for one in types if isinstance(one, NamedTuple)]
+
+    assert len(records) > 20
+    assert [one for one in records if len(one.types) != len(one.instance_class._fields)] == []
 
 
 def test_a_kernel_comes_after_those_it_calls_itself_or_through_inlined_ones():
