@@ -191,7 +191,7 @@ def _shift(t_ns: Times, topic: Topics, row: int) -> int:
         step_ns = int(max(np.median(np.diff(before)), np.median(np.diff(after))))
         if not 0 < 2 * step_ns < back_ns:
             continue
-        if after[0] >= before[-1]:
+        if after[0] >= before[-1] or np.isin(after, before).all():  # goes on, or is written twice
             return 0
         if step_ns < usual_ns:
             usual_ns, shift_ns = step_ns, int(before[-1] - after[0]) + step_ns
