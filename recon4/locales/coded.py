@@ -89,7 +89,7 @@ def flat_values(values: Mapping[str, Shown]) -> dict[str, Shown]:
     """Values as a file or another process keeps them; `stored_text` reads them.
 
     A coded text among them stays one: its own text, then its code as ``NAME:``, then its values as
-    ``NAME:VALUE``.
+    ``NAME:VALUE``. Names of files that are no UTF-8 get an escape for each such byte.
 
     >>> flat_values({"why": CodedText("job-unknown", job="a1")})
     {'why': 'no job a1', 'why:': 'job-unknown', 'why:job': 'a1'}
@@ -98,10 +98,14 @@ def flat_values(values: Mapping[str, Shown]) -> dict[str, Shown]:
     for name, value in values.items():
         if isinstance(value, CodedText):
             inner = {"": value.code, **flat_values(value.values)}
-            flat |= {name: str(value), **{f"{name}:{key}": one for key, one in inner.items()}}
+            flat |= {name: _utf8(str(value))} | {f"{name}:{key}": inner[key] for key in inner}
         else:
-            flat[name] = value
+            flat[name] = _utf8(value) if isinstance(value, str) else value
     return flat
+
+
+def _utf8(text: str) -> str:
+    return text.encode(errors="backslashreplace").decode()
 
 
 def folded_values(values: Mapping[str, Shown]) -> dict[str, Shown]:
