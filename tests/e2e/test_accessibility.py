@@ -22,6 +22,9 @@ PAGES = {one.path: one.file for one in page_addresses() if one.file not in ELSEW
 }
 """Path -> its file in `web/`."""
 
+OPENED = 24
+"""So many folded parts of a page are opened."""
+
 
 @pytest.fixture(scope="module")
 def server(tmp_path_factory):
@@ -40,7 +43,12 @@ def test_a_page_has_no_barrier_that_axe_finds(server, page, path):
     page.expect_failed = True
     page.goto(server.url + path)
     page.wait_for_load_state("networkidle")
-    page.evaluate("() => document.querySelectorAll('details').forEach((one) => (one.open = true))")
+    # All that /api unfolds is alike: its two hundred operations take a minute of a core.
+    page.evaluate(
+        "(most) => [...document.querySelectorAll('details')].slice(0, most)"
+        ".forEach((one) => (one.open = true))",
+        OPENED,
+    )
     page.wait_for_load_state("networkidle")  # what was opened reads its content
 
     assert barriers(page) == []
