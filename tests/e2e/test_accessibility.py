@@ -23,7 +23,7 @@ PAGES = {one.path: one.file for one in page_addresses() if one.file not in ELSEW
 """Path -> its file in `web/`."""
 
 OPENED = 24
-"""So many folded parts of a page are opened."""
+"""Folded parts of a page that are opened."""
 
 
 @pytest.fixture(scope="module")
