@@ -8,14 +8,6 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from recon4.geometry.single_rotations import (
-    is_single,
-    single_exp,
-    single_log,
-    single_matrix,
-    single_quat,
-)
-
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -46,8 +38,6 @@ def skew(v: Array) -> Array:
 def so3_exp(omega: ArrayLike) -> Array:
     """Rotation matrices of rotation vectors [rad], (..., 3) -> (..., 3, 3). Rodrigues' formula."""
     w = np.asarray(omega, dtype=np.float64)
-    if w.shape == (3,):
-        return single_exp(w, _SMALL_ANGLE)
     angle = np.linalg.norm(w, axis=-1)[..., None, None]
     safe = np.where(angle > _SMALL_ANGLE, angle, 1.0)
     a = np.where(angle > _SMALL_ANGLE, np.sin(safe) / safe, 1.0)
@@ -59,8 +49,6 @@ def so3_exp(omega: ArrayLike) -> Array:
 def so3_log(R: ArrayLike) -> Array:
     """Rotation vectors [rad] of rotation matrices, (..., 3, 3) -> (..., 3), |result| <= pi."""
     quat_xyzw = quat_from_matrix(np.asarray(R, dtype=np.float64))
-    if quat_xyzw.shape == (4,):
-        return single_log(quat_xyzw, _SMALL_ANGLE)
     quat_xyzw = np.where(quat_xyzw[..., 3:] < 0.0, -quat_xyzw, quat_xyzw)
     v, w = quat_xyzw[..., :3], quat_xyzw[..., 3:]
     norm = np.linalg.norm(v, axis=-1, keepdims=True)
@@ -73,10 +61,6 @@ def quat_from_matrix(R: Array) -> Array:
 
     Shepperd 1978: the largest of the four components is computed first.
     """
-    if is_single(R, 3, 3):
-        single = single_quat(R)
-        if single is not None:
-            return single
     m = R
     trace = m[..., 0, 0] + m[..., 1, 1] + m[..., 2, 2]
     number = np.result_type(m, 1.0)
@@ -110,8 +94,6 @@ def quat_from_matrix(R: Array) -> Array:
 def matrix_from_quat(quat_xyzw: ArrayLike) -> Array:
     """Rotation matrices of quaternions (x, y, z, w), (..., 4) -> (..., 3, 3). Normalizes first."""
     q = np.asarray(quat_xyzw, dtype=np.float64)
-    if q.shape == (4,):
-        return single_matrix(q)
     q = q / np.linalg.norm(q, axis=-1, keepdims=True)
     v, w = q[..., :3], q[..., 3, None, None]
     V = skew(v)

@@ -233,31 +233,3 @@ def test_a_motion_is_larger_than_a_limit_when_its_size_is(angle):
     limits = [0.0, 0.5 * size_m, size_m - 1e-9, size_m, size_m + 1e-9, 1.4 * size_m, 9.0 * size_m]
 
     assert [T.moves_more_than(limit) for limit in limits] == [size_m > limit for limit in limits]
-
-
-# -- one at a time
-
-
-@pytest.mark.parametrize("size", [0.0, 1e-12, 3e-8, 1e-3, 1.0, np.pi])
-def test_one_rotation_has_the_bits_of_the_same_in_a_batch(size):
-    omega = np.random.default_rng(3).normal(size=(300, 3))
-    omega *= size / np.linalg.norm(omega, axis=1, keepdims=True)
-    omega[:3] = size * np.diag([-1.0, 1.0, -1.0])
-    R, many = so3_exp(omega), range(len(omega))
-    quat = 1.7 * quat_from_matrix(R)
-
-    for batch, single in (
-        (R, [so3_exp(omega[k]) for k in many]),
-        (quat, [1.7 * quat_from_matrix(R[k]) for k in many]),
-        (matrix_from_quat(quat), [matrix_from_quat(quat[k]) for k in many]),
-        (so3_log(R), [so3_log(R[k]) for k in many]),
-    ):
-        assert batch.tobytes() == np.array(single).tobytes()
-
-
-def test_one_rotation_that_is_not_a_number_is_none():
-    R = np.full((3, 3), np.nan)
-
-    with np.errstate(invalid="ignore"):
-        assert np.isnan(quat_from_matrix(R)).all() and np.isnan(so3_log(R)).all()
-        assert np.isnan(matrix_from_quat(np.zeros(4))).all()
