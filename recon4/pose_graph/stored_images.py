@@ -67,7 +67,7 @@ class StoredImages(Sequence[DensityImage]):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ChosenImages(Sequence[DensityImage]):
+class ChosenImages:
     """Some of the stored images."""
 
     stored: StoredImages
@@ -79,16 +79,7 @@ class ChosenImages(Sequence[DensityImage]):
         """Those of the chosen images, (K, D)."""
         return np.asarray(self.stored.descriptors[list(self.rows)])
 
-    def __len__(self) -> int:
-        return len(self.rows)
-
-    @overload
-    def __getitem__(self, k: int) -> DensityImage: ...
-    @overload
-    def __getitem__(self, k: slice) -> Sequence[DensityImage]: ...
-    def __getitem__(self, k: int | slice) -> DensityImage | Sequence[DensityImage]:
-        if isinstance(k, slice):
-            return [self.stored[row] for row in self.rows[k]]
+    def __getitem__(self, k: int) -> DensityImage:
         return self.stored[self.rows[k]]
 
     def laid_from(self, k: int, *, most: int) -> LaidImage:
