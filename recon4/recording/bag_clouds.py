@@ -67,6 +67,10 @@ class CloudReader:
                 self._report.count("messages_corrupt")
                 self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=error)
                 continue
+            if self._stamps.offset_ns is None and len(shots):
+                late_ns = int(shots.t_ns[-1]) - message.t_ns
+                # Recorded when it was complete: no point is later.
+                shots = moved(shots, -max(self._period_ns, late_ns) if late_ns > 0 else 0)
             if len(shots := moved(shots, self._offset_ns)):
                 self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
                 yield shots

@@ -359,10 +359,14 @@ def _covers_turn(azimuth: NDArray[np.floating]) -> bool:
 
 
 def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64], str]:
-    """Part of the revolution at which each point was measured, 0..1, and how it was detected."""
+    """Part of the revolution at which each point was measured, 0..1, and how it was detected.
+
+    In the order of firing the azimuth goes on all the time. The sector of the carrier may lack.
+    """
     swept = np.unwrap(azimuth.astype(np.float64))
     total = float(swept[-1] - swept[0])
-    if np.deg2rad(270.0) < abs(total) < np.deg2rad(450.0):
+    steps = np.diff([part.mean() for part in np.array_split(swept, 36)])
+    if np.deg2rad(180.0) < abs(total) < np.deg2rad(450.0) and np.all(steps * total > 0.0):
         turn = (swept - swept[0]) * np.sign(total) / max(2.0 * np.pi, abs(total))
         return turn, "firing"
     return (np.pi - azimuth.astype(np.float64)) / (2.0 * np.pi), "from-rear"

@@ -326,12 +326,13 @@ def _unit_of_part(numbers: _Numbers, period_ns: int) -> float:
 def _is_part_of_cloud(numbers: _Numbers, period_ns: int) -> bool:
     """Whether the times of each cloud go from 0 to 1, whatever time it takes.
 
-    Seconds would have clouds of a second, far longer than the time from one to the next.
+    Seconds would have clouds far longer than the time from one to the next. A cloud without the
+    sector of the carrier has half of them and more.
     """
     least, most = numbers.low, numbers.low + numbers.span
-    is_whole = -POINT_TIMES.part_ends <= least and 1.0 - POINT_TIMES.part_ends <= most <= 1.0
-    too_long = POINT_TIMES.part_ratio[1] * max(period_ns, POINT_TIMES.part_ns) < 1e9
-    return numbers.is_fraction and is_whole and least <= POINT_TIMES.part_ends and too_long
+    within = -POINT_TIMES.part_ends <= least and most <= 1.0 and numbers.span >= POINT_TIMES.part
+    longest_ns = POINT_TIMES.part_ratio[1] * max(period_ns, POINT_TIMES.part_ns)
+    return numbers.is_fraction and within and longest_ns < 1e9 * numbers.span
 
 
 def _unit_of_few(numbers: _Numbers) -> float:

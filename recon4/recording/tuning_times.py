@@ -95,7 +95,9 @@ class PointTimeTuning(Struct, frozen=True, kw_only=True):
     """Duration of a cloud that is part of a revolution, from and to, in those from cloud to
     cloud."""
     part_ends: float = 0.05
-    """Times from 0 to 1 begin and end this near to 0 and 1."""
+    """Times from 0 to 1 begin no earlier than this before 0."""
+    part: float = 0.5
+    """Times from 0 to 1 are spread over at least this much."""
     steps: float = 50.0
     """A revolution is resolved in at least this many steps, or the times are too coarse."""
 

@@ -131,3 +131,20 @@ def test_info_of_a_steady_clock_says_nothing_of_it(tmp_path):
             bag.cloud("/points", T0_NS + k * STEP_NS, room_cloud())
 
     assert "goes back" not in "\n".join(describe(path).lines())
+
+
+@pytest.mark.parametrize("sign", [1, -1], ids=["since the begin", "before the end"])
+def test_no_point_of_a_cloud_without_stamp_is_later_than_its_recording(tmp_path, sign):
+    path, table = bag_path(tmp_path, "db3"), room_cloud()
+    if sign < 0:
+        table["time"] = table["time"] - np.float32(1e-9 * STEP_NS)
+    with RobotBag(path, "db3") as bag:
+        bag.header = lambda _t: bag.make("std_msgs/msg/Header", stamp=bag.time(0), frame_id="x")
+        for k in range(1, 9):
+            bag.cloud("/points", T0_NS + k * STEP_NS, table)
+
+    found, report = opened(path)
+    starts = [item.t_ns[0] for item in found.read() if hasattr(item, "ring")]
+
+    np.testing.assert_allclose(np.array(starts) - T0_NS, np.arange(8) * STEP_NS, atol=1e5)
+    assert report.counts["stamps_missing"] == 8

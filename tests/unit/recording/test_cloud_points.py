@@ -68,6 +68,16 @@ def test_time_is_worked_out_from_azimuth_in_firing_order():
     assert warned(report, K.POINTS_TIMED_BY_AZIMUTH, order="firing")
 
 
+def test_the_order_of_firing_is_seen_without_the_sector_of_the_carrier():
+    seen = REL_NS < 0.66 * PERIOD_NS
+    table = without(room_cloud(start_turn=0.3), "time")
+
+    shots, report = decode({key: column[seen] for key, column in table.items()})
+
+    np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS[seen], atol=1e6)
+    assert warned(report, K.POINTS_TIMED_BY_AZIMUTH, order="firing")
+
+
 def test_time_is_worked_out_from_azimuth_ring_by_ring():
     table = without(room_cloud(), "time")
     order = np.argsort(table["ring"], kind="stable")

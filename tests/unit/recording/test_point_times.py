@@ -132,6 +132,16 @@ def test_times_from_0_to_1_are_parts_of_the_time_to_the_next_cloud(period_ns):
     assert not report.lost()
 
 
+def test_times_from_0_to_1_may_lack_the_sector_of_the_carrier():
+    seen = REL_NS < 0.66 * PERIOD_NS
+    table = {key: column[seen] for key, column in with_field("time", REL_NS / PERIOD_NS).items()}
+
+    shots, report = decode(table)
+
+    np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS[seen], atol=100)
+    assert any("from 0 to 1" in text for text in derivations(report))
+
+
 @pytest.mark.parametrize("start_ns", [1_234_500_000_000, HOUR_NS - 40_000_000])
 def test_times_within_the_hour_take_the_hour_of_the_stamp(start_ns):
     stamp_ns = T0_NS // HOUR_NS * HOUR_NS + start_ns
