@@ -295,6 +295,11 @@ def test_a_guest_opens_a_link_and_sees_one_map_until_it_is_revoked(
         expect(guest.locator("#message")).to_contain_text("revoked")
         screenshot(guest, "guest-refused")
 
+        expect(dialog.get_by_label("The link: copy it now")).to_have_value(link)
+        dialog.get_by_role("button", name="Revoke the link for Surveyor").click()
+        expect(dialog.get_by_role("heading", name="Links (0 open)")).to_be_visible()
+        expect(dialog.get_by_label("The link: copy it now")).to_have_count(0)
+
 
 @looks("desktop dark", "phone light")
 def test_a_person_makes_an_access_token_and_ends_it(server, page, look, screenshot):

@@ -2,7 +2,7 @@
 
 import { idHere } from "../shared/address.js";
 import { readMapViews, removeMapView, saveMapView } from "../shared/api.js";
-import { html, nothing, targetOf, within } from "../shared/dom.js";
+import { copied, html, nothing, targetOf, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { t } from "../shared/texts.js";
 import { page } from "./page.js";
@@ -37,9 +37,7 @@ export function savedOf(draw) {
 /** Copies the link to what is shown, or says that it stands above. */
 export async function share() {
   history.replaceState(null, "", `?${format(page.state)}`);
-  // Browsers have a clipboard on https and on this computer only.
-  await navigator.clipboard?.writeText(location.href);
-  page.reading = navigator.clipboard ? t("link-copied") : t("link-above");
+  page.reading = t((await copied(location.href)) ? "link-copied" : "link-above");
 }
 
 /** The section of the panel. */

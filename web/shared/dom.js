@@ -132,3 +132,22 @@ export async function succeeds(message, action) {
   };
   return (await attempt(message, done)) ?? false;
 }
+
+/**
+ * The same work, but not again while it is done: a double press does it once.
+ * @template {unknown[]} A
+ * @param {(...given: A) => Promise<unknown>} work
+ * @returns {(...given: A) => Promise<unknown>}
+ */
+export function once(work) {
+  /** @type {Promise<unknown> | null} */
+  let running = null;
+  return (...given) => (running ??= work(...given).finally(() => (running = null)));
+}
+
+/** Whether a text is in the clipboard now: some browsers have none, or ask the person first. */
+export const copied = (/** @type {string} */ text) =>
+  Promise.resolve(navigator.clipboard?.writeText(text) ?? Promise.reject()).then(
+    () => true,
+    () => false,
+  );

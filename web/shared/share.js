@@ -4,9 +4,11 @@ import { guestUrl, listGuestLinks, makeGuestLink, revokeGuestLink } from "./api.
 import { closeButton, openDialog } from "./dialog.js";
 import {
   asError,
+  copied,
   fields,
   html,
   nothing,
+  once,
   remedyLink,
   render,
   repeat,
@@ -31,6 +33,7 @@ export async function openShare(id, query = () => "") {
     links: /** @type {GuestLink[] | null} */ (null),
     login: true,
     made: "", // address of the new link
+    before: new Set(), // links that were there before it
     copied: false,
     problem: /** @type {unknown} */ (null),
   };
@@ -54,22 +57,23 @@ export async function openShare(id, query = () => "") {
     draw();
   }
 
-  const make = (/** @type {SubmitEvent} */ event) => {
-    event.preventDefault();
-    const form = /** @type {HTMLFormElement} */ (targetOf(event).closest("form"));
-    const { label, days } = fields(form);
-    return attempt(async () => {
+  const make = once((/** @type {HTMLFormElement} */ form) =>
+    attempt(async () => {
+      const { label, days } = fields(form);
       const link = { label: label.value.trim(), days: Number(days.value) };
+      const before = new Set(state.links?.map((one) => one.id));
       const { token } = await makeGuestLink(id, link);
-      Object.assign(state, { made: guestUrl(token, query()), copied: false });
+      Object.assign(state, { made: guestUrl(token, query()), before, copied: false });
       form.reset();
-    });
-  };
+    }),
+  );
+
+  /** Whether the new link has not been revoked. */
+  const madeWorks = () =>
+    state.made && state.links?.some((one) => one.works && !state.before.has(one.id));
 
   async function copy() {
-    // Browsers have a clipboard on https and on this computer only.
-    await navigator.clipboard?.writeText(state.made);
-    state.copied = Boolean(navigator.clipboard);
+    state.copied = await copied(state.made);
     if (!state.copied) within(dialog, ".made input", HTMLInputElement).select();
     draw();
   }
@@ -78,7 +82,7 @@ export async function openShare(id, query = () => "") {
     const { links, login, problem } = state;
     render(
       html`<p class="quiet">${t("share-what")}</p>
-        ${login ? form() : html`<p>${t("share-no-login")}</p>`} ${state.made ? made() : nothing}
+        ${login ? form() : html`<p>${t("share-no-login")}</p>`} ${madeWorks() ? made() : nothing}
         <p class="error" role="alert">${problem ? problemText(problem) : nothing}</p>
         <h3>${t("share-links", { open: openText(links) })}</h3>
         <ul class="links">
@@ -91,7 +95,12 @@ export async function openShare(id, query = () => "") {
   }
 
   const form = () =>
-    html`<form @submit=${make}>
+    html`<form
+      @submit=${(/** @type {SubmitEvent} */ event) => {
+        event.preventDefault();
+        make(/** @type {HTMLFormElement} */ (targetOf(event).closest("form")));
+      }}
+    >
       <label
         ><span>${t("share-for")}</span
         ><input
