@@ -9,6 +9,7 @@ import { parse } from "../../web/map/state.js";
 
 const SCREEN = { width: 800, height: 600 };
 const CAMERA = { target: [4, 5, 1], yaw: 0.6, pitch: -0.7, distance: 12, parallel: false };
+const FREE = { left: 400, right: 400, up: 300, down: 300 };
 const PARALLEL = { ...CAMERA, parallel: true };
 const WALK = {
   t_s: [0, 1, 3],
@@ -51,7 +52,7 @@ test("a marked stretch is that part of the walk, without a walk its ends", () =>
 
 test("the camera that flies to a stretch shows all of it, from above", () => {
   const line = lineOf({ span: [0, 3], place: [] }, WALK);
-  const camera = cameraAt(line, { ...CAMERA, pitch: 0 }, SCREEN);
+  const camera = cameraAt(line, { ...CAMERA, pitch: 0 }, { screen: SCREEN, free: FREE });
   assert.ok(camera.pitch < -0.5);
   for (const p of line) {
     const { x, y } = toScreen(camera, SCREEN, p);

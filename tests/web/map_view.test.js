@@ -8,6 +8,7 @@ import {
   between,
   dot,
   eyeOf,
+  cornersOf,
   fitted,
   lookedAround,
   minus,
@@ -18,6 +19,7 @@ import {
 } from "../../web/map/camera.js";
 import { boxOver, cornersOfBox, planesOf, yawOfSection } from "../../web/map/clip.js";
 import { nearestTo, positionAt, standingAt, walking } from "../../web/map/flight.js";
+import { cornersShown } from "../../web/map/framing.js";
 import { angleOf, areaOf, distanceParts, resultOf, toCsv } from "../../web/map/measure.js";
 import { format, parse } from "../../web/map/state.js";
 import { mapQuery } from "../../web/slices/to_map.js";
@@ -78,22 +80,43 @@ test("who looks around stays where they are", () => {
   assert.notEqual(around.yaw, CAMERA.yaw);
 });
 
-test("a fitted camera shows all of the box, and nearly fills the image", () => {
+test("a fitted camera shows all points in the free part of the image, and fills it", () => {
+  const free = { left: 380, right: 120, up: 200, down: 260 };
+  const corners = cornersOf([-3, -2, 0], [20, 9, 3]);
   for (const parallel of [false, true]) {
-    const box = { low: [-3, -2, 0], high: [20, 9, 3] };
-    const camera = fitted({ yaw: 0.5, pitch: -0.9, parallel }, SCREEN, box);
-    const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) =>
-      toScreen(
-        camera,
-        SCREEN,
-        [0, 1, 2].map((axis) => ((k >> axis) & 1 ? box.high : box.low)[axis]),
-      ),
-    );
-    const [xs, ys] = [corners.map(({ x }) => x), corners.map(({ y }) => y)];
-    assert.ok(Math.min(...xs) >= 0 && Math.max(...xs) <= 800);
-    assert.ok(Math.min(...ys) >= 0 && Math.max(...ys) <= 600);
-    assert.ok(Math.max(...xs) - Math.min(...xs) > 600);
+    const camera = fitted({ yaw: 0.5, pitch: -0.9, parallel }, { screen: SCREEN, free }, corners);
+    const seen = corners.map((p) => toScreen(camera, SCREEN, p));
+    const [xs, ys] = [seen.map(({ x }) => x - 400), seen.map(({ y }) => 300 - y)];
+    const [left, right, down, up] = [xs, ys].flatMap((all) => [Math.min(...all), Math.max(...all)]);
+    assert.ok(left >= -free.left && right <= free.right && down >= -free.down && up <= free.up);
+    const filled = [(right - left) / (free.left + free.right), (up - down) / (free.down + free.up)];
+    assert.ok(Math.max(...filled) > 0.95, `${filled}`);
+    near([(left + right) / 2, (down + up) / 2], [-130, -30], 15); // in its middle
   }
+});
+
+test("what the clip leaves of the tiles is fitted, without stray points", () => {
+  const tile = (x) => ({ low_m: [x, 0, 0], high_m: [x + 4, 4, 3] });
+  const index = { tiles: [tile(0), tile(4), tile(90)], low_m: [0, 0, 0], high_m: [8, 4, 2.5] };
+  const clip = { heights: [null, null], box: null, section: null };
+  const box = { center: [4, 2, 1], size: [2, 2, 9], yaw: Math.PI / 4 };
+  const section = { a: [0, 1], b: [8, 1], thickness: 0.5 };
+  const ends = (/** @type {any} */ changes) => {
+    const corners = cornersShown(index, { ...clip, ...changes });
+    return [0, 1, 2].map((k) => [Math.min, Math.max].map((of) => of(...corners.map((p) => p[k]))));
+  };
+  near(ends({}).flat(), [0, 8, 0, 4, 0, 2.5]);
+  near(ends({ heights: [1, 2] })[2], [1, 2]);
+  near(ends({ box }).flat(), [
+    4 - Math.SQRT2,
+    4 + Math.SQRT2,
+    2 - Math.SQRT2,
+    2 + Math.SQRT2,
+    0,
+    2.5,
+  ]);
+  near(ends({ section }).flat(), [0, 8, 0.75, 1.25, 0, 2.5]);
+  near(ends({ heights: [7, 9] }).flat(), [0, 8, 0, 4, 0, 2.5]); // nothing is left: all
 });
 
 test("a turn takes the shorter way", () => {

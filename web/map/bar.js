@@ -23,6 +23,7 @@ import { VIEWS } from "./views.js";
  * @property {() => void} finish of a measurement whose corners are not counted
  * @property {() => void} undoPoint the last one of a measurement
  * @property {() => void} end of any tool
+ * @property {() => void} toMap gives the keys back to the map
  * @property {(next: Partial<import("./state.js").MapState>) => void} change
  * @property {(name: string) => void} save
  * @property {(query: string) => void} open

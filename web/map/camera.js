@@ -10,6 +10,12 @@
  * @property {number} distance from the eye to the target [m]
  * @property {boolean} parallel whether lines that are parallel stay so
  * @typedef {{width: number, height: number}} Screen [px]
+ * @typedef {object} Free how far around its middle nothing covers the image [px]
+ * @property {number} left
+ * @property {number} right
+ * @property {number} up
+ * @property {number} down
+ * @typedef {{screen: Screen, free: Free}} View
  * @typedef {{origin: Xyz, direction: Xyz}} Ray
  */
 
@@ -17,6 +23,7 @@ export const FIELD_OF_VIEW = Math.PI / 3; // from the lower to the upper rim
 const STEEPEST = Math.PI / 2;
 const NEAREST_M = 0.05;
 const FARTHEST_M = 100_000;
+const MARGIN = 1.03; // around what is fitted into the image
 
 /** @returns {Xyz} */
 export const add = (/** @type {number[]} */ a, /** @type {number[]} */ b, times = 1) => [
@@ -32,7 +39,7 @@ export const lengthOf = (/** @type {number[]} */ a) => Math.sqrt(dot(a, a));
 
 /**
  * Unit vectors of the image: right, up, and ahead.
- * @param {Camera} camera
+ * @param {Pick<Camera, "yaw" | "pitch">} look
  * @returns {{right: Xyz, up: Xyz, ahead: Xyz}}
  */
 export function axesOf({ yaw, pitch }) {
@@ -158,26 +165,37 @@ export function zoomed(camera, times, p = camera.target) {
 }
 
 /**
- * All of a box in the image, seen from where the camera looks.
+ * All of some points in the free part of the image, as large as they can be.
  * @param {Pick<Camera, "yaw" | "pitch" | "parallel">} look
- * @param {Screen} screen
- * @param {{low: number[], high: number[]}} box
+ * @param {View} view
+ * @param {number[][]} points [m]
  * @returns {Camera}
  */
-export function fitted({ yaw, pitch, parallel }, screen, { low, high }) {
-  const target = add([0, 0, 0], add(low, high), 0.5);
-  const camera = { target, yaw, pitch, parallel, distance: 1 };
-  const { right, up, ahead } = axesOf(camera);
-  const focal = focalPx(screen);
-  const most = Math.max(NEAREST_M, ...cornersOf(low, high).map(distanceFor));
-  return { ...camera, distance: most * 1.03 };
-
-  function distanceFor(/** @type {number[]} */ corner) {
-    const from = minus(corner, target);
-    const wide = (Math.abs(dot(from, right)) * focal * 2) / screen.width;
-    const tall = (Math.abs(dot(from, up)) * focal * 2) / screen.height;
-    return Math.max(wide, tall) - (parallel ? 0 : dot(from, ahead));
-  }
+export function fitted({ yaw, pitch, parallel }, { screen, free }, points) {
+  const { right, up, ahead } = axesOf({ yaw, pitch });
+  const unit = focalPx(screen) * MARGIN;
+  const depths = points.map((p) => dot(p, ahead));
+  const across = [
+    { axis: right, low: free.left / unit, high: free.right / unit },
+    { axis: up, low: free.down / unit, high: free.up / unit },
+  ].map(({ axis, low, high }) => {
+    let [from, to] = [-Infinity, Infinity];
+    points.forEach((p, k) => {
+      const [x, z] = [dot(p, axis), parallel ? 0 : depths[k]];
+      from = Math.max(from, x - high * z);
+      to = Math.min(to, x + low * z);
+    });
+    return { low, high, from, to };
+  });
+  // The eye is as near as both directions allow, and in the middle of where it may be.
+  const eye = Math.min(...across.map(({ low, high, from, to }) => (to - from) / (low + high)));
+  const [x, y] = across.map(({ low, high, from, to }) => (from + high * eye + to - low * eye) / 2);
+  let [near, far] = [Infinity, -Infinity];
+  for (const z of depths) [near, far] = [Math.min(near, z), Math.max(far, z)];
+  const depth = (near + far) / 2;
+  const target = add(add(add([0, 0, 0], right, x), up, y), ahead, depth);
+  const distance = Math.max(NEAREST_M, (parallel ? 0 : depth) - eye);
+  return { target, yaw, pitch, distance, parallel };
 }
 
 /** The eight corners of a box. */

@@ -50,8 +50,9 @@ export const KEYS = [
  * @param {Act} act
  */
 export function drawStatus(element, { points, rested, scale }, act) {
-  const { index, project, reading, flight } = page;
+  const { index, project, flight } = page;
   if (!index) return;
+  const reading = typeof page.reading === "function" ? page.reading() : page.reading;
   const shown =
     t("points-shown", { shown: count(points), count: count(index.points) }) + (rested ? "" : " …");
   render(

@@ -61,6 +61,10 @@ const keysOf = (act, more) => ({
   ),
 });
 
+/** Whether a key ends what is typed, so that the next one is of the map again. */
+const endsTyping = (/** @type {Element} */ field, /** @type {string} */ key) =>
+  key === "Escape" || (key === "Enter" && field instanceof HTMLInputElement && !field.form);
+
 /**
  * Listens to the keys of the page; what is typed into a field stays there.
  * @param {Act} act
@@ -72,8 +76,9 @@ export function listenToKeys(act, more) {
     const typing = targetOf(event).closest?.(
       "input:not([type=checkbox], [type=range]), select, textarea",
     );
-    if ((typing && event.key !== "Escape") || event.ctrlKey || event.metaKey || event.altKey)
-      return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (typing && endsTyping(typing, event.key)) act.toMap();
+    if (typing && event.key !== "Escape") return;
     if (document.querySelector("dialog[open]")) return;
     const control = targetOf(event).closest?.("button, summary, a, input");
     if (control && (OF_CONTROLS.includes(event.key) || event.key.startsWith("Arrow"))) return;

@@ -33,6 +33,7 @@ import { lineOf, timesOf } from "./places.js";
 import { drawProfile, profileOf } from "./profile.js";
 import { followJobs, takeNews } from "./rebuilt.js";
 import { savedOf, share } from "./saved.js";
+import { all, first, seenOn } from "./sight.js";
 import { format, parse } from "./state.js";
 import {
   canceled,
@@ -46,7 +47,7 @@ import {
   undoPoint,
 } from "./tools.js";
 import { togglesOf } from "./toggles.js";
-import { VIEWS, viewOf } from "./views.js";
+import { VIEWS } from "./views.js";
 import { withoutPoints } from "./without_points.js";
 import { downloadMeasurements } from "./measured_panel.js";
 import { askVolumes, volumeOf } from "./volumes.js";
@@ -63,35 +64,12 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const TURN_MS = 450;
 const ADDRESS_MS = 250;
-const PANEL_PX = 320;
 /** What runs: the canvas, the timer of the address, the turn of the camera. */
 const run = { canvas: /** @type {MapCanvas | null} */ (null), address: 0, turn: 0 };
 const place = () => byId("map", HTMLCanvasElement);
 const screen = () => run.canvas?.screen ?? { width: 1, height: 1 };
-const camera = () => page.state.camera ?? all("oblique", false);
-
-/**
- * All of the map from where a named view looks.
- * @param {string} name
- * @param {boolean} parallel
- */
-const all = (name, parallel) => fitted(VIEWS[name], parallel);
-
-/**
- * All of the map between bars, panel and caption, seen from there.
- * @param {{yaw: number, pitch: number}} look
- * @param {boolean} parallel
- */
-function fitted(look, parallel) {
-  const [{ index }, { width, height }] = [page, screen()];
-  if (!index) throw new Error("the map has not been read");
-  const covered = page.panel && width > 2 * PANEL_PX ? PANEL_PX : 0;
-  const [bars, under] = ["bar", "status"].map((one) => byId(one).offsetHeight);
-  const free = { width: width - covered, height: Math.max(height - bars - under, height / 2) };
-  const made = viewOf(look, { index, screen: free, heights: shown.heightsShown(), parallel });
-  made.distance *= height / free.height; // as high as `free`, not as the image
-  return panned(made, screen(), [-covered / 2, (bars - under) / 2]);
-}
+const seen = () => seenOn(screen());
+const camera = () => page.state.camera ?? first(seen());
 
 /** Changes the state, the address, and what depends on them. */
 function change(/** @type {Partial<MapState>} */ next) {
@@ -204,6 +182,7 @@ const showProblem = (/** @type {unknown} */ error) => showError(byId("message"),
 const stage = {
   camera,
   screen,
+  seen,
   change,
   flyTo,
   draw,
@@ -226,14 +205,13 @@ const profile = profileOf({ draw, dark: () => dark.matches, change: widened });
 
 function view(/** @type {string} */ name, parallel = camera().parallel) {
   change({ standing: false });
-  flyTo(all(name, parallel));
+  flyTo(all({ ...VIEWS[name], parallel }, seen()));
 }
 
-/** All of the map, seen from where the camera looks. */
+/** All that is shown, seen from where the camera looks. */
 function fit() {
-  const { parallel } = camera();
   change({ standing: false });
-  flyTo(fitted(camera(), parallel));
+  flyTo(all(camera(), seen()));
 }
 
 /**
@@ -305,6 +283,7 @@ const act = {
   finish: () => void finish(stage).catch(showProblem),
   undoPoint: () => void undoPoint(stage),
   end,
+  toMap: () => place().focus({ preventScroll: true }),
 };
 
 /** Ends any tool, the flight, what is being measured. */
@@ -383,7 +362,7 @@ async function begin() {
   if (takeNews()) page.reading = t("new-map-shown");
   if (!page.guest) followJobs(byId("news"));
   draw();
-  place().focus({ preventScroll: true });
+  act.toMap();
   await run.canvas.tiles.readSample(storedOf(shown.colorShown()));
   const lists = page.guest
     ? []

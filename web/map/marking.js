@@ -13,7 +13,7 @@ import { parse } from "./state.js";
  * What marks places.
  * @param {Stage} stage
  */
-export function markingOf({ camera, screen, change, flyTo }) {
+export function markingOf({ camera, screen, seen, change, flyTo }) {
   /** Marks a stretch or a place, and flies there; what hides it is not clipped any more. */
   function mark(/** @type {Mark} */ one) {
     const { index, state, walk } = page;
@@ -22,7 +22,7 @@ export function markingOf({ camera, screen, change, flyTo }) {
     const clip = clipAround(state.clip, line[line.length >> 1], { index, heightsOf });
     const cutCeiling = state.cutCeiling && clip.heights === state.clip.heights;
     change({ mark: one, clip, cutCeiling, standing: false });
-    flyTo(cameraAt(line, camera(), screen()));
+    flyTo(cameraAt(line, camera(), seen()));
   }
 
   return {

@@ -11,7 +11,7 @@ import {
   removePhoto,
   setPhoto,
 } from "../shared/api.js";
-import { asError, byId, html, nothing, targetOf, within } from "../shared/dom.js";
+import { asError, byId, html, nothing, once, targetOf, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { decimal, t } from "../shared/texts.js";
 import { FIELD_OF_VIEW, axesOf, eyeOf } from "./camera.js";
@@ -79,7 +79,7 @@ export function notesOf(draw, seen) {
       Object.assign(notes, { draft: null, problem: null });
       draw();
     },
-    keep: (/** @type {string} */ text, /** @type {File | undefined} */ file) =>
+    keep: once((/** @type {string} */ text, /** @type {File | undefined} */ file) =>
       attempt(async () => {
         const { draft } = notes;
         if (!draft) return;
@@ -94,6 +94,7 @@ export function notesOf(draw, seen) {
         if (base64) await setPhoto(id, note.id, { revision: note.revision, base64 });
         notes.draft = null;
       }),
+    ),
     mark: (/** @type {MapNote} */ { id: note, revision, status }) =>
       attempt(() =>
         changeNote(id, note, { revision, status: status === "open" ? "done" : "open" }),

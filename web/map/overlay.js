@@ -93,7 +93,7 @@ export function overlay({ camera, screen }, shown) {
     ${apart(
       measurements.flatMap((one) => {
         const to = at(middleOf(one.points));
-        const words = `${one.name}  ${resultOf(one, shown.volumeOf(one)).value}`;
+        const words = `${one.name}: ${resultOf(one, shown.volumeOf(one)).value}`;
         return to ? [{ x: to.x + 9, y: to.y - 7, words }] : [];
       }),
     ).map(({ x, y, words }) => svg`<text x=${x} y=${y}>${words}</text>`)}

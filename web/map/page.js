@@ -53,7 +53,8 @@ export const page = {
   profile: null,
   /** @type {number[][] | null} */
   drag: null,
-  reading: "",
+  /** What a pick or a tool says. */
+  reading: /** @type {string | (() => string)} */ (""),
   /** @type {Pin | null} */
   chosen: null,
   panel: innerWidth > 800,
@@ -157,16 +158,26 @@ export const notesListed = () => {
   return all.filter(({ status }) => !filter || status === filter);
 };
 
-/** Notes that are listed, at their places. @returns {Pin[]} */
-export const notePins = () =>
-  notesListed().map(({ id, p_map, status, text }) => ({
+const xyz = (/** @type {number[]} */ [x, y, z]) =>
+  /** @type {[number, number, number]} */ ([x, y, z]);
+
+const notePin = (/** @type {Pick<MapNote, "id" | "p_map" | "status" | "text">} */ note) =>
+  /** @type {Pin} */ ({
     kind: "note",
-    p: p_map,
-    level: status,
-    text,
-    name: id,
-    mark: { span: null, place: [p_map, p_map] },
-  }));
+    p: note.p_map,
+    level: note.status,
+    text: note.text,
+    name: note.id,
+    mark: { span: null, place: [note.p_map, note.p_map] },
+  });
+
+/** Notes that are listed, and the one that is written, at their places. */
+export function notePins() {
+  const { draft } = page.notes;
+  const begun =
+    draft && !draft.id ? [notePin({ ...draft, p_map: xyz(draft.p), status: "open" })] : [];
+  return [...notesListed().map(notePin), ...begun];
+}
 
 /** The pins of the layers that are shown. */
 export function pinsShown() {

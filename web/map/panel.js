@@ -43,9 +43,12 @@ export function drawPanel(/** @type {HTMLElement} */ element, /** @type {Act} */
         <h2 id="layers-title">${t("layers")}</h2>
         ${layers(act)}
       </section>
-      ${page.guest ? nothing : [compareSection(act), corrections(index, act)]}
       ${placesSections(act)} ${measuredSection(act)}
-      ${page.guest ? nothing : [notesSection(act), savedSection(act)]}`,
+      ${
+        page.guest
+          ? nothing
+          : [notesSection(act), savedSection(act), compareSection(act), corrections(index, act)]
+      }`,
     element,
   );
 }

@@ -2,13 +2,13 @@
 // No DOM, no network.
 
 import { decimal, t } from "../shared/texts.js";
-import { dot, fitted, toScreen } from "./camera.js";
+import { cornersOf, dot, fitted, toScreen } from "./camera.js";
 import { planesOf } from "./clip.js";
 import { positionAt } from "./flight.js";
 
 /**
  * @import {MapIndex} from "../shared/http_types"
- * @import {Camera, Screen} from "./camera.js"
+ * @import {Camera, Screen, View} from "./camera.js"
  * @import {Clip} from "./clip.js"
  * @import {Walk} from "./flight.js"
  * @typedef {object} Mark a stretch of the walk, a place, or both
@@ -49,14 +49,14 @@ export function lineOf({ span, place }, walk) {
  * The camera that shows a line, looking as before but from above.
  * @param {number[][]} line
  * @param {Camera} camera
- * @param {Screen} screen
+ * @param {View} view
  * @returns {Camera}
  */
-export function cameraAt(line, { yaw, pitch }, screen) {
+export function cameraAt(line, { yaw, pitch }, view) {
   const end = (/** @type {(...x: number[]) => number} */ most, /** @type {number} */ beside) =>
     [0, 1, 2].map((axis) => most(...line.map((p) => p[axis])) + beside);
-  const box = { low: end(Math.min, -AROUND_M), high: end(Math.max, AROUND_M) };
-  return fitted({ yaw, pitch: Math.min(pitch, STEEP), parallel: false }, screen, box);
+  const corners = cornersOf(end(Math.min, -AROUND_M), end(Math.max, AROUND_M));
+  return fitted({ yaw, pitch: Math.min(pitch, STEEP), parallel: false }, view, corners);
 }
 
 /**

@@ -6,19 +6,22 @@ import { classText } from "../shared/class_words.js";
 import { decimal, t } from "../shared/texts.js";
 import { dot, lengthOf, minus, pixelM, rayAt } from "./camera.js";
 import { liftBrush, paint } from "./brush.js";
-import { boxOver, yawOfSection } from "./clip.js";
+import { boxOver } from "./clip.js";
 import { nearestTo, standingAt } from "./flight.js";
+import { frontOf } from "./framing.js";
 import { KINDS, resultOf } from "./measure.js";
 import { heightsShown, page, planes } from "./page.js";
+import { volumeOf, volumeProblem } from "./volumes.js";
 
 /**
  * @import {HitPoint, RayHit, SnapPoint} from "../shared/http_types"
- * @import {Camera, Screen} from "./camera.js"
+ * @import {Camera, Screen, View} from "./camera.js"
  * @import {MapState} from "./state.js"
  * @import {Measurement, MeasureKind} from "./measure.js"
  * @typedef {object} Stage
  * @property {() => Camera} camera
  * @property {() => Screen} screen
+ * @property {() => View} seen
  * @property {(next: Partial<MapState>) => void} change
  * @property {(camera: Camera) => void} flyTo
  * @property {(name: string, parallel: boolean) => void} view
@@ -132,11 +135,10 @@ function take({ point: found, snap }, stage) {
   const one = ended(found, snap);
   page.draft.push(one);
   if (page.draft.length >= KINDS[page.measuring].most) finishMeasurement(stage);
-  else
-    read(
-      [one.snap && t(SNAPPED[one.snap] ?? "snapped"), pointText(found)].filter(Boolean).join("\n"),
-      stage,
-    );
+  else {
+    const there = pointText({ ...found, p_map: one.p, p_crs: one.crs });
+    read([one.snap && t(SNAPPED[one.snap] ?? "snapped"), there].filter(Boolean).join("\n"), stage);
+  }
 }
 
 /**
@@ -178,6 +180,12 @@ export const finishHere = (stage) =>
     finishMeasurement(stage);
   });
 
+/** A measurement in words; of a volume when it is known. */
+function measuredText(/** @type {Measurement} */ made) {
+  const { value, parts } = resultOf(made, volumeOf(made));
+  return [`${made.name}: ${volumeProblem(made) || value}`, parts].filter(Boolean).join("\n");
+}
+
 /** Ends the measurement that has enough points. */
 function finishMeasurement(/** @type {Stage} */ stage) {
   const { draft, measuring, state } = page;
@@ -193,8 +201,7 @@ function finishMeasurement(/** @type {Stage} */ stage) {
     ...(crs.length === draft.length ? { crs } : {}),
   };
   page.draft = [];
-  const { value, parts } = resultOf(made);
-  page.reading = [`${made.name}: ${value}`, parts].filter(Boolean).join("\n");
+  page.reading = () => measuredText(made);
   stage.change({ measurements: [...state.measurements, made] });
   if (made.kind === "profile") stage.profile?.(made);
 }
@@ -238,19 +245,7 @@ export function canceled(/** @type {Stage} */ stage) {
 /** Turns the camera straight to the section. */
 export function face(/** @type {Stage} */ stage) {
   const { section } = page.state.clip;
-  if (!section) return;
-  const { a, b } = section;
-  const [low, high] = heightsShown();
-  const { width, height } = stage.screen();
-  const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
-  const pixel = Math.max((length * 1.1) / width, ((high - low) * 1.3) / height);
-  stage.flyTo({
-    target: [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (low + high) / 2],
-    yaw: yawOfSection(section),
-    pitch: 0,
-    distance: pixel / pixelM({ ...stage.camera(), distance: 1 }, stage.screen()),
-    parallel: true,
-  });
+  if (section) stage.flyTo(frontOf(section, heightsShown(), stage.seen()));
 }
 
 /**

@@ -1,11 +1,8 @@
 // The usual views, by name.
 
 import { t } from "../shared/texts.js";
-import { fitted } from "./camera.js";
 
 /**
- * @import {MapIndex} from "../shared/http_types"
- * @import {Camera, Screen} from "./camera.js"
  * @typedef {{text: string, key: string, yaw: number, pitch: number, parallel?: boolean}} NamedView
  */
 
@@ -20,15 +17,3 @@ export const VIEWS = {
   right: { text: t("view-right"), key: "3", yaw: -90 * DEG, pitch: 0 },
   left: { text: t("view-left"), key: "4", yaw: 90 * DEG, pitch: 0 },
 };
-
-/**
- * All of the map, seen from where a named view looks.
- * @param {Pick<NamedView, "yaw" | "pitch">} look
- * @param {{index: MapIndex, screen: Screen, heights: [number, number], parallel: boolean}} of
- * @returns {Camera}
- */
-export function viewOf({ yaw, pitch }, { index, screen, heights, parallel }) {
-  const low = [index.low_m[0], index.low_m[1], Math.max(index.low_m[2], heights[0])];
-  const high = [index.high_m[0], index.high_m[1], Math.min(index.high_m[2], heights[1])];
-  return fitted({ yaw, pitch, parallel }, screen, { low, high });
-}

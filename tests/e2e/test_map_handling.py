@@ -1,0 +1,86 @@
+"""How the tools of the map answer: with what was measured, once, and at the next key."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.e2e.conftest import looks
+from tests.e2e.test_map_page import TOP, at, opened
+from tests.served import office, served
+
+pytestmark = [pytest.mark.e2e, looks("desktop light")]
+
+server = served(office(points=60_000, normals=True))
+
+
+def test_what_is_read_of_a_pick_is_where_it_snapped_to_and_of_a_volume_its_figure(server, page):
+    opened(page, server, "?camera=8,5,1.5,0,0,14,1&z=..")
+    reading = page.locator("#status .reading")
+
+    page.keyboard.press("m")
+    page.mouse.click(*at(page, 8.0, 5.1))  # of the southern wall: `at` counts heights from 5 m
+    expect(reading).to_contain_text("Snapped to")
+    read = re.search(r"x (\S+)\s+y (\S+)\s+z (\S+) m", reading.inner_text()).groups()
+    assert [float(x) for x in read] == pytest.approx(
+        page.evaluate("recon4Map.page.draft[0].p"), abs=6e-4
+    )
+
+    opened(page, server, f"?{TOP}&z=..")
+    page.keyboard.press("v")
+    for corner in ((6.0, 4.0), (10.0, 4.0), (10.0, 6.0)):
+        page.mouse.click(*at(page, *corner))
+    page.keyboard.press("Enter")
+    expect(reading).to_have_text(re.compile(r"Volume 1: [\d.]+ m³ above.*area [34]\.", re.DOTALL))
+
+
+def test_a_chosen_tool_leaves_the_image_where_it_is_and_keys_follow_a_number(server, page):
+    opened(page, server)
+    before = page.evaluate("recon4Map.camera()")
+    page.keyboard.press("m")
+    expect(page.locator("#status .reading")).to_be_visible()
+    assert page.evaluate("recon4Map.camera()") == before
+
+    page.get_by_label("From height [m]").fill("0.5")
+    page.keyboard.press("Enter")
+    page.keyboard.press("i")
+    expect(page.get_by_role("button", name="Point", exact=True)).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    page.get_by_label("Name of this view").fill("x")
+    page.keyboard.press("Escape")
+    page.keyboard.press("i")
+    expect(page.get_by_role("button", name="End tool")).to_be_visible()
+
+
+def test_an_impatient_person_makes_one_note_and_sees_its_place_before(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    page.keyboard.press("n")
+    page.mouse.click(*at(page, 6.0, 4.0))
+    page.get_by_label("Note at").fill("Crack")
+    pin = page.locator("#overlay .pin.note")
+    expect(pin).to_have_count(1)
+    waiting = []
+    page.route("**/notes", lambda route: waiting.append(route), times=1)
+
+    keep = page.get_by_role("button", name="Keep the note")
+    with page.expect_request("**/notes"):
+        keep.click()
+    keep.click()
+    waiting.pop().continue_()
+
+    expect(page.locator("#panel .notes li")).to_have_count(1)
+    assert len(server.get("/api/projects/office/notes").json()["notes"]) == 1
+    expect(pin).to_have_count(1)
+
+
+def test_a_refused_clipboard_leads_to_the_address(server, page):
+    page.add_init_script(
+        "navigator.clipboard.writeText = () => Promise.reject(new Error('not allowed'))"
+    )
+    opened(page, server)
+
+    page.keyboard.press("l")
+
+    expect(page.locator("#status .reading")).to_contain_text("The address of this page")
+    expect(page.locator("#message")).to_be_empty()
