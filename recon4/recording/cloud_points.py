@@ -365,7 +365,7 @@ def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64]
     """
     swept = np.unwrap(azimuth.astype(np.float64))
     total = float(swept[-1] - swept[0])
-    steps = np.diff([part.mean() for part in np.array_split(swept, 36)])
+    steps = np.diff([part.mean() for part in np.array_split(swept, min(36, len(swept)))])
     if np.deg2rad(180.0) < abs(total) < np.deg2rad(450.0) and np.all(steps * total > 0.0):
         turn = (swept - swept[0]) * np.sign(total) / max(2.0 * np.pi, abs(total))
         return turn, "firing"

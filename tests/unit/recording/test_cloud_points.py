@@ -78,6 +78,16 @@ def test_the_order_of_firing_is_seen_without_the_sector_of_the_carrier():
     assert warned(report, K.POINTS_TIMED_BY_AZIMUTH, order="firing")
 
 
+def test_a_turn_of_few_points_is_timed_too():
+    few = np.linspace(0, len(REL_NS) - 1, 24).astype(int)
+    table = without(room_cloud(), "time")
+
+    shots, report = decode({key: column[few] for key, column in table.items()})
+
+    np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS[few], atol=5e6)
+    assert warned(report, K.POINTS_TIMED_BY_AZIMUTH, order="firing")
+
+
 def test_time_is_worked_out_from_azimuth_ring_by_ring():
     table = without(room_cloud(), "time")
     order = np.argsort(table["ring"], kind="stable")
