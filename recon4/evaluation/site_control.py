@@ -199,6 +199,7 @@ def outcome_text(
             text_table((*(say(name, {}) for name in _HEAD.split()), ""), rows),
             text_table(tuple(say(name, {}) for name in names), figures),
             say("known", known),
+            *_beyond_chance(outcome, say),
             *statements(outcome, language),
             *(say("suspected", {"text": text}) for text in found),
         ]
@@ -206,6 +207,19 @@ def outcome_text(
 
 
 _Say = Callable[[str, Mapping[str, str | int | float]], str]
+
+
+def _beyond_chance(outcome: ControlOutcome, say: _Say) -> Sequence[str]:
+    """A sentence if the residuals of control points are larger than stated, at 0.1 %."""
+    from scipy.special import chdtri  # slow to import
+
+    rows = sum(len(one.test.redundancy) for one in outcome.points if one.test)
+    free = rows - outcome.freedom
+    if outcome.sd0 is None or free <= 0:
+        return ()
+    limit = math.sqrt(chdtri(free, ACCURACY_CLASSES.significance) / free)
+    values = {"sd0": outcome.sd0, "limit": limit}
+    return (say("beyond-chance", values),) if outcome.sd0 > limit else ()
 
 
 def _test_cells(test: PointTest | None, say: _Say) -> tuple[str, ...]:

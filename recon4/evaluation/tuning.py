@@ -167,6 +167,8 @@ class AccuracyClassTuning(Struct, frozen=True, kw_only=True):
         ("LOA50", 0.001),
     )
     """Largest error at 95 % of the levels of USIBD [m]; LOA10 is the rest."""
+    significance: float = 0.001
+    """Residuals this unlikely, all together, are larger than stated (Baarda 1968: 0.1 %)."""
 
 
 ACCURACY_CLASSES = AccuracyClassTuning()

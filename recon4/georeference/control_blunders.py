@@ -30,10 +30,14 @@ class BlunderKind(StrEnum):
 
     FEET = "feet"
     """Coordinates are feet, not meters."""
+    FEET_UP = "feet-up"
+    """Heights are feet, easting and northing are meters."""
     AXES = "axes"
     """Easting and northing are exchanged."""
     NAMES = "names"
     """Two points have each other's name."""
+    RENAMED = "renamed"
+    """Names of more points are exchanged, as by a list that is shifted by a line."""
     POINT = "point"
     """One point is elsewhere."""
     OFFSET = "offset"
@@ -51,6 +55,8 @@ class Blunder:
     """Ids it is about; empty = all."""
     offset_m: tuple[float, float, float] | None = None
     """Surveyed minus fitted by the others: east, north, up [m]."""
+    picks: tuple[str, ...] = ()
+    """What each of the points is called in the map; empty = by its own name."""
 
     @property
     def text(self) -> str:
@@ -60,8 +66,12 @@ class Blunder:
     def said(self, language: str) -> str:
         """One sentence in a language, with what to do."""
         say = texts(language, "report")
+        names = [
+            say.part("blunder", "renamed-one", {"survey": name, "pick": pick})
+            for name, pick in zip(self.points, self.picks, strict=False)
+        ]
         values = {
-            "names": say.part("blunder", "and", {}).join(self.points),
+            "names": ", ".join(names) or say.part("blunder", "and", {}).join(self.points),
             "offset": _offset(self.offset_m, say),
         }
         return say.part("blunder", self.kind, values)
@@ -114,6 +124,7 @@ def _of_all(
         (BlunderKind.FEET, p_site * FOOT_M),
         (BlunderKind.AXES, p_site[:, [1, 0, 2]]),
         (BlunderKind.FEET, p_site[:, [1, 0, 2]] * FOOT_M),
+        (BlunderKind.FEET_UP, p_site * [1.0, 1.0, FOOT_M]),
     ):
         try:
             better = fit_control(with_sites(targets, others), leveled=leveled)

@@ -327,6 +327,7 @@ def _check(targets: Sequence[MeasuredTarget]) -> None:
             f"expected at least {CONTROL_FIT.least_points} control points that are found in the "
             f"map, got {len(targets)}{f' ({_names(targets)})' if targets else ''}"
         )
+    _check_unit(targets)
     for place, where in (("p_site", "in the survey"), ("p_map", "in the map")):
         p = np.array([getattr(one, place) for one in targets])
         apart = np.linalg.norm(p[:, None] - p, axis=2) + np.eye(len(p)) * 1e9
@@ -336,6 +337,25 @@ def _check(targets: Sequence[MeasuredTarget]) -> None:
                 f"{targets[i].id} and {targets[j].id} are in one place {where}: expected points "
                 f"at least {100 * CONTROL_FIT.apart_m:g} cm apart"
             )
+
+
+def _check_unit(targets: Sequence[MeasuredTarget]) -> None:
+    """Check that distances of the survey are of the size of those of the map."""
+    i, j = np.triu_indices(len(targets), 1)
+    lengths = [
+        np.linalg.norm(p[i] - p[j], axis=1)
+        for p in (
+            np.array([one.p_site[:2] for one in targets]),
+            np.array([one.p_map[:2] for one in targets]),
+        )
+    ]
+    site_m, map_m = (np.maximum(one, 1e-9) for one in lengths)
+    most = CONTROL_FIT.other_unit
+    if (site_m > most * map_m).all() or (site_m * most < map_m).all():
+        raise GeoreferenceError(
+            f"control points are up to {site_m.max():.3g} apart in the survey and "
+            f"{map_m.max():.3g} m in the map: expected meters, neither degrees nor another unit"
+        )
 
 
 def _names(targets: Sequence[MeasuredTarget]) -> str:

@@ -23,8 +23,9 @@ from recon4.georeference.control_blunders import (
     with_exchanged_names,
 )
 from recon4.georeference.control_fit import ControlFit, TargetTest
-from recon4.georeference.crs import CrsTransform, GeodeticOrigin, origin_near
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.site_grid import SiteGrid
+from recon4.georeference.survey_system import survey_system
 from recon4.georeference.tuning_control import CONTROL_FIT
 from recon4.model.corrections import apply_corrections
 from recon4.model.site_control import SeenTarget, SiteControl
@@ -95,7 +96,7 @@ def system_of(control: SiteControl, origin: GeodeticOrigin | None) -> CrsTransfo
     if not control.crs:
         return grid
     middle = np.mean([one.xyz_m for one in control.targets], axis=0)
-    return CrsTransform(origin or origin_near(control.crs, middle), control.crs)
+    return survey_system(control.crs, middle, origin=origin)
 
 
 def put_on_control(

@@ -64,7 +64,7 @@ class CrsTransform:
                 is not installed (PROJ would silently ignore the height).
         """
         self.origin = origin
-        self.crs = crs or default_crs(origin)
+        self.crs = code_of(crs) or default_crs(origin)
         self._target = _system(self.crs)
         self.has_heights = len(self._target.axis_info) == 3
         self._transformer = _best_transformer(origin, self._target, self.crs)
@@ -154,6 +154,22 @@ def origin_near(crs: str, p_crs: Array) -> GeodeticOrigin:
     return GeodeticOrigin(float(np.deg2rad(lat)), float(np.deg2rad(lon)), round(float(p_crs[2]), 1))
 
 
+def code_of(crs: str) -> str:
+    """The name of a system: a bare number is an EPSG code."""
+    return f"EPSG:{crs}" if crs.isdecimal() else crs
+
+
+def area_of_use(crs: str) -> tuple[float, float, float, float]:
+    """West, south, east and north limit of a system [deg]; all of the earth if none is stated.
+
+    Raises:
+        GeoreferenceError: If there is no such system.
+    """
+    system = _system(crs)
+    area = system.area_of_use or (system.sub_crs_list and system.sub_crs_list[0].area_of_use)
+    return tuple(area.bounds) if area else (-180.0, -90.0, 180.0, 90.0)
+
+
 def _topocentric(origin: GeodeticOrigin) -> Any:
     from pyproj import Transformer
 
@@ -169,7 +185,7 @@ def _system(name: str) -> Any:
     from pyproj.exceptions import CRSError
 
     try:
-        system = CRS.from_user_input(name)
+        system = CRS.from_user_input(code_of(name))
     except CRSError as error:
         raise GeoreferenceError(f"no coordinate reference system {name!r}: {error}") from error
     if not (system.is_projected or (system.is_compound and system.sub_crs_list[0].is_projected)):

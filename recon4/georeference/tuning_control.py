@@ -12,6 +12,9 @@ class ControlFitTuning(Struct, frozen=True, kw_only=True):
     """Fewer control points place no map."""
     apart_m: float = 0.02
     """Two targets that are closer are one [m]."""
+    other_unit: float = 10.0
+    """All distances of a survey are this many times as long or short as in the map: another unit;
+    feet are 3.3 times."""
     iterations: int = 20
     """Steps of Gauss and Newton."""
     in_span: float = 0.985
@@ -109,3 +112,17 @@ class SiteGridTuning(Struct, frozen=True, kw_only=True):
 
 
 SITE_GRIDS = SiteGridTuning()
+
+
+class SurveySystemTuning(Struct, frozen=True, kw_only=True):
+    """Whether a survey is in the system that is said (`survey_system.py`)."""
+
+    far_m: float = 20_000.0
+    """Farther from the map by GNSS it is in another system; datums differ by less than 2 km [m]."""
+    zone_m: float = 1e6
+    """Some lists have the number of the zone before the easting, in millions of meters."""
+    zones: tuple[int, ...] = (-1, 1, -2, 2)
+    """Codes beside the one that is said are those of the zones beside it."""
+
+
+SURVEY_SYSTEMS = SurveySystemTuning()

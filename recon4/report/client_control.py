@@ -109,7 +109,7 @@ def _cm(value_m: float | None, words: Words) -> str:
 
 
 _VALUES = ("names", "offset", "length", "east", "north", "up")
-_SENTENCES = ("feet", "axes", "names", "point", "offset", "contradiction")
+_SENTENCES = ("feet", "feet-up", "axes", "names", "point", "offset", "contradiction")
 
 
 def blunder_in(text: str, words: Words) -> str:

@@ -21,7 +21,7 @@ from recon4.georeference.control_blunders import (
     with_exchanged_names,
 )
 from recon4.georeference.control_names import unseen_exchanges
-from recon4.georeference.control_sightings import PickedTarget, sightings
+from recon4.georeference.control_sightings import PickedTarget, Sighting, sightings
 from recon4.georeference.control_stage import (
     ControlRecord,
     control_record,
@@ -39,6 +39,7 @@ from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.uncertainty_files import load_uncertainty
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.measured_points import MeasuredPosition
+from recon4.slices.renamed_points import renamed_points
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import open_frames
 from recon4.store.json_files import read_object
@@ -93,10 +94,13 @@ def site_control(
         accuracy: Of all points.
 
     Raises:
-        GeoreferenceError: If a measured point is not in the map: no node has points near it.
+        GeoreferenceError: If no point was measured, or a measured one is not in the map: no node
+            has points near it.
         StoreError: If an artifact cannot be read.
     """
     known = [one for one in points if one.id in measured]
+    if not known:
+        raise _no_name_in_common(points, measured)
     picked = {
         one.id: PickedTarget(measured[one.id].xyz_m, measured[one.id].along, one.radius_m)
         for one in known
@@ -110,19 +114,7 @@ def site_control(
             f"not in the map: {', '.join(absent[:10])}; no scan has points within 25 cm of where "
             f"{'they were' if len(absent) > 1 else 'it was'} picked"
         )
-    targets = tuple(
-        SeenTarget(
-            id=one.id,
-            xyz_m=one.xyz_m,
-            role=one.role,
-            sd_m=_deviations(one, accuracy),
-            covariance_m2=one.covariance_m2,
-            t_ns=tuple(found[one.id].t_ns.tolist()),
-            p_body_m=_tuples(found[one.id].p_body),
-            directions_body=tuple(map(_tuples, found[one.id].directions_body)),
-        )
-        for one in known
-    )
+    targets = tuple(_seen(one, found[one.id], accuracy) for one in known)
     return SiteControl(targets=targets, crs=crs)
 
 
@@ -160,6 +152,7 @@ def try_control(
     fit, blunders = named_blunders(found, leveled=_is_leveled(level))
     laid = Trajectory(trajectory.t_ns, fit.T_map_site.inverse() @ trajectory.T_a_b)
     off = offsets(control.targets, p_site, laid)
+    blunders = renamed_points(found, blunders)
     if all(one.kind in (BlunderKind.POINT, BlunderKind.NAMES) for one in blunders):
         checks = suspected_checks(control.targets, off)
         names = [one.id for one in control.targets]
@@ -209,12 +202,37 @@ def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
     return f"{text}\n{line}"
 
 
+def _seen(point: ControlPoint, found: Sighting, accuracy: ControlAccuracy) -> SeenTarget:
+    return SeenTarget(
+        id=point.id,
+        xyz_m=point.xyz_m,
+        role=point.role,
+        sd_m=_deviations(point, accuracy),
+        covariance_m2=point.covariance_m2,
+        t_ns=tuple(found.t_ns.tolist()),
+        p_body_m=_tuples(found.p_body),
+        directions_body=tuple(map(_tuples, found.directions_body)),
+    )
+
+
 def _deviations(point: ControlPoint, accuracy: ControlAccuracy) -> tuple[float, float]:
     """Standard deviation, horizontal (each axis) and height [m]: its own, else that of all."""
     if point.covariance_m2 is None:
         return accuracy.horizontal_m, accuracy.height_m
     e, _, _, n, _, h = point.covariance_m2
     return math.sqrt((e + n) / 2.0), math.sqrt(h)
+
+
+def _no_name_in_common(
+    points: Sequence[ControlPoint], measured: Mapping[str, MeasuredPosition]
+) -> GeoreferenceError:
+    def some(names: Sequence[str]) -> str:
+        return ", ".join(names[:5]) + (" …" if len(names) > 5 else "") if names else "none"
+
+    return GeoreferenceError(
+        f"no surveyed point was measured in the map: the survey has {some([p.id for p in points])},"
+        f" measured are {some([*measured])}; expected the same names"
+    )
 
 
 def _is_leveled(level: Path) -> bool:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.georeference.crs import CrsTransform, origin_near
+from recon4.georeference.survey_system import survey_system
 from recon4.model.targets import TargetKind
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.targets.candidate import TargetCandidate
@@ -87,7 +87,7 @@ def named(found: TargetList, points: Sequence[ControlPoint], *, crs: str = "") -
         return found
     xyz = np.array([one.xyz_m for one in points])
     middle = xyz.mean(axis=0)
-    system = CrsTransform(origin_near(crs, middle), crs) if crs else None
+    system = survey_system(crs, middle) if crs else None
     p_site = system.to_map(xyz) if system else xyz - middle
     survey = [SurveyedPlace(one.id, p, one.radius_m) for one, p in zip(points, p_site, strict=True)]
     match = match_targets(survey, [_candidate(row) for row in found.rows])

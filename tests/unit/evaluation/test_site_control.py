@@ -1,5 +1,7 @@
 """What may be said of the accuracy of a map at its check points."""
 
+from msgspec.structs import replace
+
 from recon4.evaluation.site_control import (
     ControlOutcome,
     ControlRow,
@@ -39,3 +41,12 @@ def test_a_blunder_is_named_although_a_direction_of_it_is_controlled_by_no_other
     german = outcome_text(outcome(FLAT, test=test), "de", ["P0 liegt falsch."])
     assert "P0 (Passpunkt)" in german and "9,0 (4,0)  GROBER FEHLER" in german
     assert german.endswith("Vermutet: P0 liegt falsch.")
+
+
+def test_residuals_that_are_larger_than_stated_are_said_beyond_chance():
+    test = PointTest((0.7, 0.7, 0.7), w=2.0, limit=4.0, single_handed=False)
+    found = outcome(*[FLAT] * 4, test=test)  # 8 degrees of freedom: χ² at 0.1 % is 26.1
+    assert "as large as stated" not in outcome_text(replace(found, sd0=1.8))
+    assert "The residuals are 3.1 times as large as stated; up to 1.8" in outcome_text(
+        replace(found, sd0=3.1)
+    )

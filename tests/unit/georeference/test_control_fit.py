@@ -259,3 +259,24 @@ def test_points_on_a_line_do_not_level_a_map() -> None:
     assert fit_control(targets(line), leveled=True).freedom == 4
     with pytest.raises(GeoreferenceError, match="on one line"):
         fit_control(targets(line), leveled=False)
+
+
+def test_heights_in_feet_beside_meters_are_named() -> None:
+    found = targets()
+    _, (one,) = named_blunders(surveyed(found, sites(found) / [1, 1, 0.3048]), leveled=True)
+    assert one.kind is BlunderKind.FEET_UP
+
+
+@pytest.mark.parametrize("unit", [1000.0, 0.001, [1 / 73_000, 1 / 111_000, 1.0]])
+def test_millimeters_kilometers_and_degrees_are_refused(unit) -> None:
+    found = targets()
+    with pytest.raises(GeoreferenceError, match="expected meters, neither degrees nor another"):
+        named_blunders(surveyed(found, sites(found) * unit), leveled=True)
+
+
+def test_one_point_that_is_far_off_is_no_other_unit() -> None:
+    found = targets(PLACES[:4])
+    p_site = sites(found)
+    p_site[2, 1] += 10_000.0
+    _, (one,) = named_blunders(surveyed(found, p_site), leveled=True)
+    assert (one.kind, one.points) == (BlunderKind.POINT, ("C3",))

@@ -1,0 +1,88 @@
+"""The system of a survey on earth, and which other reading of its coordinates would lie there."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from recon4.errors import GeoreferenceError
+from recon4.geometry.se3 import Array
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin, area_of_use, code_of, origin_near
+from recon4.georeference.tuning_control import SURVEY_SYSTEMS
+from recon4.units import FOOT_M
+
+_CODE = re.compile(r"EPSG:([0-9]+)(.*)")
+
+
+def survey_system(crs: str, p_crs: Array, *, origin: GeodeticOrigin | None = None) -> CrsTransform:
+    """The transformation of a survey at its place.
+
+    Args:
+        crs: EPSG code or codes.
+        p_crs: Middle of the survey: easting, northing, height [m], (3,).
+        origin: That of the map by GNSS; None = the survey alone says where it is.
+
+    Raises:
+        GeoreferenceError: If there is no such system or the survey is not there, with the reading
+            of its coordinates that would be.
+    """
+    try:
+        return _placed(crs, p_crs, origin)
+    except GeoreferenceError as error:
+        found = [words for words, code, p in _readings(crs, p_crs) if _is_there(code, p, origin)]
+        better = f"; {' or '.join(found)} they are there: correct the survey or the system"
+        raise GeoreferenceError(f"{error}{better if found else ''}") from error
+
+
+def _placed(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> CrsTransform:
+    place = origin or origin_near(crs, p_crs)
+    try:
+        system = CrsTransform(place, crs)
+    except GeoreferenceError as error:
+        if _in_area(crs, place):
+            raise
+        lat_deg, lon_deg = np.rad2deg([place.lat_rad, place.lon_rad])
+        raise GeoreferenceError(
+            f"easting {p_crs[0]:.3f}, northing {p_crs[1]:.3f} in {crs} are latitude {lat_deg:.2f}°,"
+            f" longitude {lon_deg:.2f}°, where this system is not used"
+        ) from error
+    if origin is not None:
+        off_m = float(np.linalg.norm(system.to_map(p_crs[None])))
+        if off_m > SURVEY_SYSTEMS.far_m:
+            raise GeoreferenceError(
+                f"the coordinates in {crs} are {off_m / 1000:.0f} km from where GNSS has the map"
+            )
+    return system
+
+
+def _is_there(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> bool:
+    """Whether a reading of the survey lies near the map, or else in the area of its system."""
+    try:
+        system = _placed(crs, p_crs, origin)
+    except GeoreferenceError:
+        return False
+    return origin is not None or _in_area(crs, system.origin)
+
+
+def _in_area(crs: str, place: GeodeticOrigin) -> bool:
+    west, south, east, north = area_of_use(crs)
+    lat, lon = np.rad2deg([place.lat_rad, place.lon_rad])
+    return bool(west <= lon <= east and south <= lat <= north)
+
+
+def _readings(crs: str, p_crs: Array) -> Iterator[tuple[str, str, Array]]:
+    """Other readings of coordinates: words, system, easting, northing, height [m]."""
+    exchanged = p_crs[[1, 0, 2]]
+    yield "with easting and northing exchanged", crs, exchanged
+    yield "as feet", crs, p_crs * FOOT_M
+    yield "as feet with easting and northing exchanged", crs, exchanged * FOOT_M
+    million = SURVEY_SYSTEMS.zone_m
+    if p_crs[0] > million:
+        without = p_crs - [p_crs[0] // million * million, 0.0, 0.0]
+        yield "without the number of the zone before the easting", crs, without
+    code = _CODE.fullmatch(code_of(crs))
+    for step in SURVEY_SYSTEMS.zones if code else ():
+        other = f"EPSG:{int(code[1]) + step}{code[2]}" if code else crs
+        yield f"in {other}", other, p_crs
