@@ -4,26 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin, to_enu
 from recon4.model.survey_covariance import Covariance
-from recon4.recording.tables.column_names import plain_word
+from recon4.recording.tables.column_names import ROLES, Role, plain_word
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
 from recon4.recording.tables.points import PointTable, TablePoint, read_point_table
 from recon4.slices.tuning_files import CONTROL_FILES
-
-Role = Literal["control", "check"]
-_CONTROL_WORDS = "control controlpoint gcp passpunkt vlicovacibod"
-_CHECK_WORDS = "check checkpoint kontrollpunkt prufpunkt pruefpunkt kontrolnibod"
-_ROLES: dict[str, Role] = {
-    "": "check",
-    **dict.fromkeys(_CONTROL_WORDS.split(), "control"),
-    **dict.fromkeys(_CHECK_WORDS.split(), "check"),
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,14 +113,14 @@ def read_control(
     for row in rows:
         if row.name in points:
             skipped.append(f"line {row.line}: point {row.name[:40]!r} is there already")
-        elif (role := plain_word(row.role)) not in _ROLES:
+        elif (role := plain_word(row.role)) not in ROLES:
             skipped.append(f"line {row.line}: expected control or check, got {row.role[:40]!r}")
         elif len(points) >= CONTROL_FILES.max_points:
             skipped.append(f"line {row.line}: more than {CONTROL_FILES.max_points} points")
             break
         else:
             points[row.name] = ControlPoint(
-                row.name, row.xyz_m, _ROLES[role], row.radius_m, row.covariance_m2
+                row.name, row.xyz_m, ROLES[role], row.radius_m, row.covariance_m2
             )
     if not points and not found.preview.question:
         raise CorruptFile(f"{name}: no line of ID,X,Y,Z found; {skipped[0] if skipped else ''}")

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from recon4.locales.texts import Texts
+from recon4.recording.tables.column_names import Role
 from recon4.slices.control_limits import ControlLimits
-from recon4.slices.control_points import Role
 from recon4.slices.tuning import CONTROL_VERDICT
 from recon4.slices.tuning_files import CONTROL_LIMITS
 

@@ -18,8 +18,9 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts
 from recon4.model.survey_covariance import covariance_matrix
 from recon4.model.tuning import GEOID
+from recon4.recording.tables.column_names import Role
 from recon4.slices.control_limits import ControlLimits, control_texts
-from recon4.slices.control_points import ControlPoint, Role
+from recon4.slices.control_points import ControlPoint
 from recon4.slices.control_verdict import (
     ControlVerdict,
     Requirement,

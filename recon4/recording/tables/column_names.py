@@ -89,6 +89,15 @@ _MEANINGS: tuple[tuple[Meaning, Family, frozenset[str]], ...] = (
     ("role", "", _words("role rolle")),
     ("radius", "", _words("radius radiusm")),
 )
+Role = Literal["control", "check"]
+_CONTROL_WORDS = "control controlpoint gcp passpunkt vlicovacibod"
+_CHECK_WORDS = "check checkpoint kontrollpunkt prufpunkt pruefpunkt kontrolnibod"
+ROLES: dict[str, Role] = {
+    "": "check",
+    **dict.fromkeys(_CONTROL_WORDS.split(), "control"),
+    **dict.fromkeys(_CHECK_WORDS.split(), "check"),
+}
+"""What the cells of a column of roles mean."""
 SIGMAS: tuple[Spread, ...] = ("se", "sn", "sh")
 COVARIANCES: tuple[Spread, ...] = ("cee", "cen", "ceh", "cnn", "cnh", "chh")
 _SPREAD = re.compile(r"(s|sd|std|stdev|stddev|sig|sigma)([enh])|(c|cov|q)([en][enh]|hh)")

@@ -32,6 +32,7 @@ from recon4.recording.tables.proposals import (
     columns_by_name,
     columns_by_order,
     with_id,
+    with_role,
 )
 from recon4.recording.tables.tuning import PLACES, SHOWN_TABLE
 
@@ -243,6 +244,8 @@ def _propose(
     found, question = columns_by_name(names) if names else columns_by_order(layout, purpose=purpose)
     if names and purpose != "cloud" and "id" not in found:
         found, question = with_id(found), question or "no column is named as the name of a point."
+    if names and purpose == "survey":
+        found = with_role(found, layout)
     if names and layout.stray_head and purpose == "cloud" and not question:
         question = f"the line {layout.stray_head[:60]!r} below the names is no row of numbers."
     units = _units(names, found, choice.unit)

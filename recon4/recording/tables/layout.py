@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from recon4.errors import CorruptFile
@@ -17,8 +18,13 @@ NUMBER = re.compile(
 _COUNT = re.compile(r"[0-9]{1,12}")
 _COMMA_NUMBER = re.compile(r"[-+]?[0-9]+,[0-9]+(?:[eE][-+]?[0-9]+)?")
 _QUOTED_COMMA = re.compile(r'"([-+]?[0-9]+),([0-9]+)"')
-_GROUPED = re.compile(r"[-+]?[0-9]{1,3}(?:[.' ,][0-9]{3})+(?:[.,][0-9]+)?")
+_GROUPED = re.compile(r"[-+]?[0-9]{1,3}(?:[.'’ ,][0-9]{3})+(?:[.,][0-9]+)?")
 """Digits in groups of three, as 1.234,5 or 1'234.5: nobody can tell a group from a decimal."""
+_CERTAIN = re.compile(
+    r"[-+]?[0-9]{1,3}(?:(?:['’ ][0-9]{3})+(?:[.,][0-9]+)?|(?:\.[0-9]{3})+,[0-9]+"
+    r"|(?:,[0-9]{3})+\.[0-9]+|(?:\.[0-9]{3}){2,}|(?:,[0-9]{3}){2,})"
+)
+"""Digits in groups that cannot be read otherwise: two signs, one sign twice, or blanks between."""
 NOT_MEASURED = ("", "-", "–")
 """Cells of a coordinate that was not measured."""
 
@@ -97,9 +103,12 @@ def split_row(line: str, delimiter: str, decimal: str) -> list[str]:
     text = line.replace("\t", " ").strip() if not delimiter else line.strip("\r\n")
     reader = csv.reader([text], delimiter=delimiter or " ", skipinitialspace=True)
     cells = [cell.strip() for cell in next(reader, [])]
-    if decimal == ",":
-        cells = [c.replace(",", ".") if _COMMA_NUMBER.fullmatch(c) else c for c in cells]
-    return cells
+    return with_decimal_points(cells) if decimal == "," else cells
+
+
+def with_decimal_points(cells: list[str]) -> list[str]:
+    """Cells whose decimal commas are points."""
+    return [c.replace(",", ".") if _COMMA_NUMBER.fullmatch(c) else c for c in cells]
 
 
 def with_points(text: str, delimiter: str) -> str:
@@ -114,8 +123,31 @@ def is_number(cell: str) -> bool:
     return NUMBER.fullmatch(cell) is not None
 
 
+def is_grouped(cell: str) -> bool:
+    """Whether a cell is a number in groups of three digits that has one reading only."""
+    return _CERTAIN.fullmatch(cell) is not None
+
+
+def group_sign(cell: str) -> str:
+    """The thousands separator of a number `is_grouped`, or that a cell as 1.234 may have."""
+    signs = [sign for sign in cell.lstrip("-+") if not sign.isdigit()]
+    return signs[0] if _GROUPED.fullmatch(cell) else ""
+
+
+def without_groups(cell: str) -> str:
+    """A number `is_grouped` with a decimal point and without thousands separators."""
+    signs = [sign for sign in cell.lstrip("-+") if not sign.isdigit()]
+    last = signs[-1]
+    if signs.count(last) > 1 or len({*signs}) == 1:
+        return cell.replace(last, "")
+    whole, _, part = cell.rpartition(last)
+    return f"{whole.replace(signs[0], '')}.{part}"
+
+
 def wrong_number(cell: str) -> str:
     """What is wrong with a cell that is expected to be a number."""
+    if "°" in cell:
+        return f"expected degrees with decimals, as 49.0203, got {cell[:40]!r}"
     if _GROUPED.fullmatch(cell):
         return f"expected numbers without thousands separators, got {cell[:40]!r}"
     return f"expected a number, got {cell[:40]!r}"
@@ -128,16 +160,22 @@ def is_content(line: str) -> bool:
 
 
 def _delimiter(lines: list[str]) -> str:
-    body = lines[2:] if len(lines) > 3 else lines[-1:]
+    body = lines[1:] or lines
     columns = TABLES.fewest_columns
     signs = columns - 1
     for sign in ";\t|":
-        if body and min(line.count(sign) for line in body) >= signs:
+        if _most(line.count(sign) >= signs for line in body):
             return sign
     by_blanks = [line.split() for line in body]
-    if by_blanks and all(sum(map(_loosely, cells)) >= columns for cells in by_blanks):
+    if _most(sum(map(_loosely, cells)) >= columns for cells in by_blanks):
         return ""
-    return "," if body and min(line.count(",") for line in body) >= signs else ""
+    return "," if _most(line.count(",") >= signs for line in body) else ""
+
+
+def _most(found: Iterable[bool]) -> bool:
+    """Whether more than half are: a line of text between or below the rows decides nothing."""
+    answers = list(found)
+    return 2 * sum(answers) > len(answers)
 
 
 def _loosely(cell: str) -> bool:
@@ -153,7 +191,9 @@ def _decimal(lines: list[str], delimiter: str) -> str:
 
 
 def _numbers(cells: list[str]) -> int:
-    return sum(is_number(cell) or cell in NOT_MEASURED[1:] for cell in cells)
+    """Numbers of a row, also those not measured; a row of units may begin with a hyphen."""
+    found = sum(map(is_number, cells))
+    return found + sum(cell in NOT_MEASURED[1:] for cell in cells) if found else 0
 
 
 def _names(
@@ -166,8 +206,8 @@ def _names(
     units: tuple[str, ...] = ()
     for at in range(len(head) - 1, -1, -1):
         cells = _name_cells(head[at].strip().lstrip("#/%! "), delimiter, width, exact=exact)
-        if cells and not units and all(map(is_unit, filter(None, cells))):
-            units = cells
+        if cells and not units and _all_units(cells):
+            units = tuple("" if cell in NOT_MEASURED else cell for cell in cells)
         elif cells:
             units += ("",) * (len(cells) - len(units))
             joined = (
@@ -196,12 +236,14 @@ def _name_cells(text: str, delimiter: str, width: int, *, exact: bool) -> tuple[
 def _stray(head: list[str], names_line: int) -> str:
     """A line between the names (or the begin) and the numbers that is neither."""
     below = [line for line in head[names_line + 1 :] if _is_text(line)]
-    others = [line for line in below if names_line < 0 or not _all_units(line)]
+    others = [
+        line for line in below if names_line < 0 or not _all_units(re.split(r"[;,|\s]+", line))
+    ]
     return others[-1].strip() if others else ""
 
 
-def _all_units(line: str) -> bool:
-    return all(map(is_unit, filter(None, re.split(r"[;,|\s]+", line))))
+def _all_units(cells: Iterable[str]) -> bool:
+    return all(is_unit(cell) for cell in cells if cell not in NOT_MEASURED)
 
 
 def _is_text(line: str) -> bool:

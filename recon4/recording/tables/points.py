@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError, CorruptFile
@@ -23,9 +24,13 @@ from recon4.recording.tables.layout import (
     NOT_MEASURED,
     NUMBER,
     TableLayout,
+    group_sign,
     is_content,
+    is_grouped,
     is_number,
     split_row,
+    with_decimal_points,
+    without_groups,
     wrong_number,
 )
 from recon4.recording.tables.proposals import Purpose
@@ -98,21 +103,35 @@ def _read(
 ) -> PointTable:
     points: list[TablePoint] = []
     skipped: list[str] = []
-    first = layout.names_line + 1  # a row that is no point may stand before the first that is one
-    for line, row in enumerate(text.split("\n")[first:], start=first + 1):
-        cells = split_row(row, layout.delimiter, layout.decimal) if is_content(row) else []
-        if not any(cells) or (line <= layout.head_lines and not _is_row(cells, columns)):
-            continue
+    rows = list(_rows(text, layout, columns))
+    places = [[cells[k] for k in columns.at if k < len(cells)] for _, cells in rows]
+    signs = {group_sign(cell) for cells in places for cell in cells if is_grouped(cell)}
+    for (line, cells), place in zip(rows, places, strict=True):
         try:
+            # Beside 1.234,5 nobody can tell whether 1.234 is a thousand.
+            doubt = [cell for cell in place if group_sign(cell) in signs and not is_grouped(cell)]
+            if doubt:
+                raise ValueError(f"{wrong_number(doubt[0])}, which other rows have")
+            cells = with_decimal_points(cells) if layout.decimal == "," else cells
             points.append(_point(line, cells, columns, partial=partial))
         except (ConfigError, ValueError) as error:
             skipped.append(f"line {line}: {error}")
     return PointTable(preview, tuple(points), tuple(skipped))
 
 
+def _rows(text: str, layout: TableLayout, columns: TableColumns) -> Iterator[tuple[int, list[str]]]:
+    """Lines with their number and cells as written: rows, and what was meant as one."""
+    first = layout.names_line + 1  # a row that is no point may stand before the first that is one
+    for line, row in enumerate(text.split("\n")[first:], start=first + 1):
+        cells = split_row(row, layout.delimiter, ".") if is_content(row) else []
+        if any(cells) and (line > layout.head_lines or _is_row(cells, columns)):
+            yield line, cells
+
+
 def _is_row(cells: list[str], columns: TableColumns) -> bool:
     """Whether a line above the first row was meant as one: it has a number in a coordinate."""
-    return any(k < len(cells) and is_number(cells[k]) for k in columns.at)
+    found = with_decimal_points([cells[k] for k in columns.at if k < len(cells)])
+    return any(is_number(cell) or is_grouped(cell) for cell in found)
 
 
 def _point(line: int, cells: list[str], columns: TableColumns, *, partial: bool) -> TablePoint:
@@ -161,6 +180,7 @@ def _number(text: str, *, partial: bool) -> float:
     """
     if partial and text in NOT_MEASURED:
         return math.nan
+    text = without_groups(text) if is_grouped(text) else text
     if not is_number(text):
         raise ValueError(wrong_number(text))
     value = float(text)

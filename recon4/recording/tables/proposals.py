@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from typing import Literal
 
-from recon4.recording.tables.column_names import COVARIANCES, SIGMAS, ColumnName, Meaning
+from recon4.recording.tables.column_names import (
+    COVARIANCES,
+    ROLES,
+    SIGMAS,
+    ColumnName,
+    Meaning,
+    plain_word,
+)
 from recon4.recording.tables.layout import TableLayout, is_number
 
 Purpose = Literal["cloud", "survey", "markers"]
@@ -65,8 +72,10 @@ def columns_by_order(layout: TableLayout, *, purpose: Purpose) -> tuple[tuple[Me
         columns = named if rest and (purpose != "cloud" or _is_id(layout)) else plain
         return columns, f"the line {layout.stray_head[:60]!r} does not name each column."
     if purpose != "cloud":
-        # name, x, y, z and the radius of a target
-        return (*named[:4], "radius") if layout.width == 5 else named, ""
+        # name, x, y, z, and the radius of a target or its role
+        if layout.width != 5:
+            return named, ""
+        return (*named[:4], "radius" if is_number(layout.rows[0][4]) else "role"), ""
     if rest and _is_id(layout):
         return named, "no column has a name, and the first one is like a point number."
     if rest and all(_is_whole(cell) for row in layout.rows for cell in row if is_number(cell)):
@@ -78,6 +87,17 @@ def with_id(columns: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
     """The columns with the first unused one as the names of the points."""
     at = columns.index("-") if "-" in columns else -1
     return tuple("id" if k == at else meaning for k, meaning in enumerate(columns))
+
+
+def with_role(columns: tuple[Meaning, ...], layout: TableLayout) -> tuple[Meaning, ...]:
+    """The columns with one of another name as the roles, if its cells are nothing else."""
+    if "role" in columns:
+        return columns
+    for k, meaning in enumerate(columns):
+        cells = [plain_word(row[k]) for row in layout.rows if k < len(row)]
+        if meaning == "-" and any(cells) and all(cell in ROLES for cell in cells):
+            return (*columns[:k], "role", *columns[k + 1 :])
+    return columns
 
 
 def _is_id(layout: TableLayout) -> bool:
