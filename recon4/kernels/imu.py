@@ -233,6 +233,80 @@ def turns_between(R: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def turned(w: NDArray[np.float64], R: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A rotation (3, 3) turned by a rotation vector [rad] in outer axes, (3,).
+
+    Products drift from SO(3): one step of Newton's iteration leads back (Higham 1986, Eq. 3.5).
+    """
+    M = rotation(w) @ R
+    return 1.5 * M - 0.5 * (M @ (M.T @ M))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def led_to(
+    part: NDArray[np.float64],
+    R: NDArray[np.float64],
+    p: NDArray[np.float64],
+    R_end: NDArray[np.float64],
+    p_end: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], ...]:
+    """Poses moved so that the last one is another one.
+
+    Args:
+        part: Of that motion which each takes, (K,).
+        R: Rotations, (K, 3, 3).
+        p: Positions [m], (K, 3).
+        R_end: Rotation to which the last one is led, (3, 3).
+        p_end: Its position [m], (3,).
+
+    Returns:
+        Rotations (K, 3, 3), positions (K, 3), and the whole turn [rad] and shift [m], (3,).
+    """
+    ends = np.empty((2, 3, 3))
+    ends[0], ends[1] = R[-1], R_end
+    turn, shift = R[-1] @ turns_between(ends)[0], p_end - p[-1]
+    R_out, p_out = np.empty_like(R), np.empty_like(p)
+    for k in range(len(part)):
+        R_out[k] = turned(part[k] * turn, R[k])
+        p_out[k] = p[k] + part[k] * shift
+    return R_out, p_out, turn, shift
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def samples_at(
+    t_ns: NDArray[np.int64], sample_t_ns: NDArray[np.int64], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Samples (N, 3) at other times (K,), linear between two, constant beyond the ends, (K, 3)."""
+    out = np.empty((len(t_ns), 3))
+    for k in range(len(t_ns)):
+        after = np.searchsorted(sample_t_ns, t_ns[k], side="right")
+        n = min(max(after - 1, 0), len(values) - 1)
+        m = min(after, len(values) - 1)
+        s = (t_ns[k] - sample_t_ns[n]) / (sample_t_ns[m] - sample_t_ns[n]) if m > n else 0.0
+        for axis in range(3):
+            out[k, axis] = values[n, axis] + s * (values[m, axis] - values[n, axis])
+    return out
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def middle_pose(
+    t_s: NDArray[np.float64], R: NDArray[np.float64], p: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Rotation (3, 3) and position (3,) halfway in time between the first and the last pose.
+
+    Args:
+        t_s: Times of the poses, increasing [s], (K,), K of 2 or more.
+        R: Rotations, (K, 3, 3).
+        p: Positions [m], (K, 3).
+    """
+    middle = (t_s[0] + t_s[-1]) / 2.0
+    k = np.searchsorted(t_s, middle) - 1
+    s = (middle - t_s[k]) / (t_s[k + 1] - t_s[k])
+    turn = turns_between(R[k : k + 2])[0]
+    return R[k] @ rotation(s * turn), p[k] + s * (p[k + 1] - p[k])
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def place_points(
     t_s: NDArray[np.float64],
     R: NDArray[np.float64],
@@ -255,8 +329,10 @@ def place_points(
     count = len(t_s)
     w = turns_between(R)
     out = np.empty((len(points), 3))
+    k = 0  # mostly the interval of the point before
     for n in range(len(points)):
-        k = min(max(np.searchsorted(t_s, t_points[n], side="right") - 1, 0), count - 2)
+        if not t_s[k] <= t_points[n] < t_s[k + 1]:
+            k = min(max(np.searchsorted(t_s, t_points[n], side="right") - 1, 0), count - 2)
         s = (t_points[n] - t_s[k]) / (t_s[k + 1] - t_s[k])
         x, y, z = points[n, 0], points[n, 1], points[n, 2]
         wx, wy, wz = s * w[k, 0], s * w[k, 1], s * w[k, 2]

@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.eigen import eigen_sym3
 from recon4.kernels.lanes import add_outer, add_row, add_scaled
 from recon4.kernels.plane_tables import CUBE, EMPTY, STATE, SUMS
 
@@ -70,19 +71,37 @@ def add_points(
     """Add (``sign`` 1) or remove (-1) points, (N, 3), beginning with row ``first``.
 
     Points of one ``batch`` were seen from the same place ``view`` (3,), NaN = unknown; a cube
-    counts its batches.
+    counts its batches. Points that follow each other in one of the smallest cubes are added at
+    once; the others take their moments, moved to their own centers.
 
     Stops early if the tables are half full. Returns the row to continue with and the number of
     cubes used.
     """
     levels, flat = len(sizes), sums.reshape(-1)
-    vx, vy, vz = sign * view[0], sign * view[1], sign * view[2]
-    # Neighboring points mostly lie in one cube: its row is searched once.
+    # Neighboring runs mostly lie in one cube of a coarser level: its row is searched once.
     last_key, last_row = np.full(levels, EMPTY), np.zeros(levels, np.int64)
-    for k in range(first, len(p)):
+    k, nx, ny, nz = first, EMPTY, EMPTY, EMPTY
+    if k < len(p):
+        nx, ny, nz = _cell(p[k, 0], sizes[0]), _cell(p[k, 1], sizes[0]), _cell(p[k, 2], sizes[0])
+    while k < len(p):
         if 2 * (used + levels) > len(keys):
             return k, used
-        ix, iy, iz = _cell(p[k, 0], sizes[0]), _cell(p[k, 1], sizes[0]), _cell(p[k, 2], sizes[0])
+        ix, iy, iz = nx, ny, nz
+        # Moments about a cube's center are small numbers: removal stays accurate.
+        cx, cy, cz = (ix + 0.5) * sizes[0], (iy + 0.5) * sizes[0], (iz + 0.5) * sizes[0]
+        n = mx = my = mz = xx = xy = xz = yy = yz = zz = 0.0
+        while nx == ix and ny == iy and nz == iz:
+            x, y, z = p[k, 0] - cx, p[k, 1] - cy, p[k, 2] - cz
+            wx, wy, wz = sign * x, sign * y, sign * z
+            n, mx, my, mz = n + sign, mx + wx, my + wy, mz + wz
+            xx, xy, xz = xx + wx * x, xy + wx * y, xz + wx * z
+            yy, yz, zz = yy + wy * y, yz + wy * z, zz + wz * z
+            k += 1
+            if k == len(p):
+                break
+            nx, ny, nz = (
+                _cell(p[k, 0], sizes[0]), _cell(p[k, 1], sizes[0]), _cell(p[k, 2], sizes[0]),
+            )  # fmt: skip
         for level in range(levels):
             jx, jy, jz = ix >> level, iy >> level, iz >> level
             key = _key(level, jx, jy, jz)
@@ -98,16 +117,19 @@ def add_points(
                     sums[row, CUBE.newest] = batch
                     sums[row, CUBE.batches] += 1.0
                 state[row] = STATE.dirty
-            # Moments about the cube's center are small numbers: removal stays accurate.
-            x = p[k, 0] - (jx + 0.5) * sizes[level]
-            y = p[k, 1] - (jy + 0.5) * sizes[level]
-            z = p[k, 2] - (jz + 0.5) * sizes[level]
-            wx, wy, wz = sign * x, sign * y, sign * z
+            dx = cx - (jx + 0.5) * sizes[level]
+            dy = cy - (jy + 0.5) * sizes[level]
+            dz = cz - (jz + 0.5) * sizes[level]
+            sx, sy, sz = mx + n * dx, my + n * dy, mz + n * dz
             at = row * CUBE.sums
-            add_row(flat, at, (sign, wx, wy, wz))
-            add_row(flat, at + 4, (wx * x, wx * y, wx * z, wy * y))
-            add_row(flat, at + 8, (wy * z, wz * z))
-            add_row(flat, at + CUBE.seen_from, (vx, vy, vz))
+            add_row(flat, at, (n, sx, sy, sz))
+            add_row(
+                flat, at + 4,
+                (xx + dx * (mx + sx), xy + dx * my + dy * sx, xz + dx * mz + dz * sx,
+                 yy + dy * (my + sy)),
+            )  # fmt: skip
+            add_row(flat, at + 8, (yz + dy * mz + dz * sy, zz + dz * (mz + sz)))
+            add_row(flat, at + CUBE.seen_from, (n * view[0], n * view[1], n * view[2]))
     return len(p), used
 
 
@@ -147,50 +169,6 @@ def rehash(
     return new_keys, new_rows
 
 
-@njit(cache=True, nogil=True, error_model="numpy", fastmath=True)
-def _eigen_sym3(
-    a: NDArray[np.float64], vals: NDArray[np.float64], vecs: NDArray[np.float64]
-) -> None:
-    """Eigenvalues (ascending) and vectors (columns) of a symmetric 3x3 by Jacobi rotations."""
-    for i in range(3):
-        for j in range(3):
-            vecs[i, j] = 1.0 if i == j else 0.0
-    for _ in range(8):
-        off = a[0, 1] ** 2 + a[0, 2] ** 2 + a[1, 2] ** 2
-        if off < 1e-24:
-            break
-        for p in range(2):
-            for q in range(p + 1, 3):
-                if abs(a[p, q]) < 1e-16:
-                    continue
-                theta = 0.5 * (a[q, q] - a[p, p]) / a[p, q]
-                t = 1.0 / (abs(theta) + np.sqrt(theta * theta + 1.0))
-                if theta < 0.0:
-                    t = -t
-                c = 1.0 / np.sqrt(t * t + 1.0)
-                s = t * c
-                for k in range(3):
-                    akp, akq = a[k, p], a[k, q]
-                    a[k, p] = c * akp - s * akq
-                    a[k, q] = s * akp + c * akq
-                for k in range(3):
-                    apk, aqk = a[p, k], a[q, k]
-                    a[p, k] = c * apk - s * aqk
-                    a[q, k] = s * apk + c * aqk
-                for k in range(3):
-                    vkp, vkq = vecs[k, p], vecs[k, q]
-                    vecs[k, p] = c * vkp - s * vkq
-                    vecs[k, q] = s * vkp + c * vkq
-    for i in range(3):
-        vals[i] = a[i, i]
-    for i in range(2):
-        for j in range(2 - i):
-            if vals[j] > vals[j + 1]:
-                vals[j], vals[j + 1] = vals[j + 1], vals[j]
-                for k in range(3):
-                    vecs[k, j], vecs[k, j + 1] = vecs[k, j + 1], vecs[k, j]
-
-
 @njit(cache=True, nogil=True, error_model="numpy")
 def _fit(
     key: np.int64,
@@ -215,7 +193,7 @@ def _fit(
     a[1, 2] = s[8] / n - my * mz
     a[2, 2] = s[9] / n - mz * mz
     a[1, 0], a[2, 0], a[2, 1] = a[0, 1], a[0, 2], a[1, 2]
-    _eigen_sym3(a, vals, vecs)
+    eigen_sym3(a, vals, vecs)
     across, along = max(vals[0], 0.0), max(vals[1], 1e-12)
     min_sd = max(0.1 * size, criteria[MIN_EXTENT])
     if across > criteria[MAX_SD] ** 2 or along < min_sd * min_sd:
@@ -273,8 +251,15 @@ def _finest_planes(
     """
     work = np.empty((7, 3))
     found = np.full(len(q), EMPTY, np.int64)
+    # Neighboring points mostly lie in one cube: it is searched once.
+    last = EMPTY
     for k in range(len(q)):
         ix, iy, iz = _cell(q[k, 0], sizes[0]), _cell(q[k, 1], sizes[0]), _cell(q[k, 2], sizes[0])
+        inside = _key(finest, ix >> finest, iy >> finest, iz >> finest)
+        if inside == last:
+            found[k] = found[k - 1]
+            continue
+        last = inside
         for level in range(finest, len(sizes)):
             key = _key(level, ix >> level, iy >> level, iz >> level)
             slot = _slot(keys, key)

@@ -174,7 +174,7 @@ def segment_ends(
     xyz: NDArray[np.float32],
     dt_ns: NDArray[np.int32],
     pairs: NDArray[np.int32],
-    ends: NDArray[np.float64],
+    ends: NDArray[np.float32],
     times_s: NDArray[np.float64],
     range_m: NDArray[np.float64],
 ) -> None:
@@ -194,9 +194,8 @@ def segment_ends(
             row = pairs[m, e]
             squared = 0.0
             for d in range(3):
-                value = np.float64(xyz[row, d])
-                ends[e, m, d] = value
-                squared += value * value
+                ends[e, m, d] = xyz[row, d]
+                squared += np.float64(xyz[row, d]) ** 2
             nearer_sq = min(nearer_sq, squared)
             times_s[e, m] = dt_ns[row] * 1e-9
         range_m[m] = np.sqrt(nearer_sq)

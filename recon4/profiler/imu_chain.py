@@ -14,12 +14,13 @@ from scipy.linalg import LinAlgError, solveh_banded
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log
+from recon4.kernels.imu import samples_at
 from recon4.kernels.imu_chain import SIZE, level_by_gravity, linearize_chain
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.tuning_solve import IMU_CHAIN
-from recon4.registration.motion import imu_at, imu_in_body, level_rotation
+from recon4.registration.motion import imu_in_body, level_rotation
 from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
@@ -114,8 +115,8 @@ def make_drive(
     s = tuned(OdometryTuning, settings)
     return Drive(
         knot_ns,
-        imu_at(t_ns, imu.t_ns, gyro),
-        imu_at(t_ns, imu.t_ns, accel),
+        samples_at(t_ns, imu.t_ns, gyro),
+        samples_at(t_ns, imu.t_ns, accel),
         np.array([s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk]),
         np.array([0.0, 0.0, -STANDARD_GRAVITY_M_S2]),
         np.repeat([IMU_CHAIN.gyro_bias_sd, IMU_CHAIN.accel_bias_sd], 3),

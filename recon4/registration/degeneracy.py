@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
+from recon4.kernels.frame_fit import observable, reductions
 from recon4.registration.plane_map import Match
 from recon4.registration.state import END_POSE, START
 from recon4.registration.tuning_matching import DEGENERACY
@@ -32,16 +33,7 @@ def observable_directions(
         ``H`` (12, 12) and ``g`` (12,) in the form of `Match`.
     """
     feigned = DEGENERACY.curved_information if with_imu else 0.0
-    root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad, least_of_turn=feigned)
-    both = _of_both(root)
-    return both.T @ match.H @ both, _of_both(full).T @ match.g
-
-
-def _of_both(reduction: Array) -> Array:
-    """The same matrix (6, 6) for the poses at start and end, (12, 12)."""
-    out = np.zeros((12, 12))
-    out[START, START] = out[END_POSE, END_POSE] = reduction
-    return out
+    return observable(match.H, match.g, normal_noise_rad, DEGENERACY.least_turn, feigned)
 
 
 def of_rigid_pose(H: Array) -> Array:
@@ -58,7 +50,7 @@ def observable_pose(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
     """The same for one rigid pose: reduced ``H`` (6, 6), rotation first, and what of a correction
     is kept, (6, 6): identity where everything is observed, zero where nothing is.
     """
-    root, full = _reductions(H, normal_noise_rad)
+    root, full = reductions(np.ascontiguousarray(H), normal_noise_rad, DEGENERACY.least_turn, 0.0)
     return root.T @ H @ root, full
 
 
@@ -83,25 +75,3 @@ def weakest_twist(H: Array) -> tuple[Array, float, float, float]:
     sd_m = float(max(information[0], 1e-4) ** -0.5)
     relative = float(max(information[0], 0.0) / weight)
     return scale * directions[:, 0], sd_m, float(typical_m), relative
-
-
-def _reductions(
-    H: Array, normal_noise_rad: float, *, least_of_turn: float = 0.0
-) -> tuple[Array, Array]:
-    """Matrices (6, 6) that reduce information: the square root for ``H``, the whole for ``g``.
-
-    Turns with less information than ``least_of_turn`` keep nothing of it.
-    """
-    weight = float(np.trace(H[TRANSLATION, TRANSLATION]))
-    if weight <= 0.0:
-        return np.eye(6), np.eye(6)
-    # Rotations in meters at the typical distance, so that they compare with shifts.
-    arm_m = np.sqrt(float(np.trace(H[ROTATION, ROTATION])) / weight)
-    scale = np.repeat([1.0 / max(arm_m, 1e-3), 1.0], 3)
-    normalized, V = np.linalg.eigh(scale[:, None] * H * scale / weight)
-    kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(normalized, 1e-12), 0.0, 1.0)
-    turns = np.sum(V[ROTATION] ** 2, axis=0) > DEGENERACY.least_turn
-    kept[turns & (normalized < least_of_turn)] = 0.0
-    root = scale[:, None] * (V * np.sqrt(kept)) @ V.T / scale
-    full = scale[:, None] * (V * kept) @ V.T / scale
-    return root, full

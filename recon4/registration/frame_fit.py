@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from recon4.geometry.se3 import ROTATION, SE3, Array, proper, so3_exp, so3_log, tangent_size_m
+from recon4.geometry.se3 import ROTATION, SE3, Array, so3_exp, so3_log, tangent_size_m
+from recon4.kernels.frame_fit import corrected_poses
 from recon4.kernels.imu import place_points
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import observable_directions, of_rigid_pose
@@ -32,7 +34,7 @@ _AT_REST = {
 has just stopped still sways more; the ground observes the height."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class FrameFit:
     """Result of the registration of one frame."""
 
@@ -55,7 +57,7 @@ class FrameFit:
         """Whether the points hardly observe a direction."""
         return self.weak_sd_m > FRAME_FIT.weak_sd_m
 
-    @property
+    @cached_property
     def weak_sd_m(self) -> float:
         """Standard deviation along the weak direction by the points [m], at most 100 m.
 
@@ -69,7 +71,7 @@ class FrameFit:
         return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class FrameFitter:
     """Fits frames to the plane map with the same bounds and weights."""
 
@@ -98,7 +100,6 @@ class FrameFitter:
         ``rest`` at the end has no velocity there. Both ends of a segment are used, not its
         midpoint: planes are fitted to ends. While stationary this halves the scatter of the pose.
         """
-        tuning = tuned(OdometryTuning, self.settings)
         information, g_prior = self._known(prediction, rest)
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
@@ -113,7 +114,7 @@ class FrameFitter:
                 p_odom, frame_fraction, center=center,
                 finest=max(self.coarse + 1 - rounds, 0), gate_m=self._gate_m(rounds),
             )  # fmt: skip
-            H_lidar, g_lidar = self._weighted(match, tuning)
+            H_lidar, g_lidar = self._weighted(match)
             if weak is not None:
                 gate_m = self._gate_m(rounds)
                 H_points, g_points = weak.pull(match, rounds, gate_m, T_odom_body=T_dense)
@@ -178,7 +179,12 @@ class FrameFitter:
             min(rounds - 1 + (0 if self.coarse else 1), len(FRAME_FIT.gates_m) - 1)
         ]
 
-    def _weighted(self, match: Match, tuning: OdometryTuning) -> tuple[Array, Array]:
+    @cached_property
+    def _tuning(self) -> OdometryTuning:
+        return tuned(OdometryTuning, self.settings)
+
+    def _weighted(self, match: Match) -> tuple[Array, Array]:
+        tuning = self._tuning
         H, g = observable_directions(match, tuning.normal_noise_rad, with_imu=self.with_imu)
         return tuning.information_scale * H, tuning.information_scale * g
 
@@ -218,14 +224,8 @@ def _add_speed_of_person(information: Array, g: Array, prediction: Prediction) -
 
 def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
     """Apply a correction to the predicted poses, interpolated linearly over the frame."""
-    s = (prediction.t_s / prediction.t_s[-1])[:, None]
-    start, end = delta[START], delta[END_POSE]
-    omega = (1.0 - s) * start[STATE.rotation] + s * end[STATE.rotation]
-    shift = (1.0 - s) * start[STATE.position] + s * end[STATE.position]
-    R = so3_exp(omega)
-    predicted = prediction.T_odom_body
-    arm = np.einsum("nij,nj->ni", R, predicted.t - center)
-    return SE3(proper(R @ predicted.R), center + arm + shift)
+    predicted, fraction = prediction.T_odom_body, prediction.t_s / prediction.t_s[-1]
+    return SE3(*corrected_poses(fraction, predicted.R, predicted.t, delta, center))
 
 
 def pose_correction(predicted: SE3, T_odom_body: SE3, center: Array) -> Array:

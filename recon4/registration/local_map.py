@@ -49,7 +49,8 @@ class LocalMap:
         """Whether the body moved or turned far enough since the last keyframe."""
         o = self._settings
         T_last_now = self._last_keyframe.inverse() @ T_odom_body
-        moved = np.linalg.norm(T_last_now.t) > o.keyframe_m or T_last_now.angle() > o.keyframe_rad
+        turned = np.trace(T_last_now.R) < 1.0 + 2.0 * np.cos(o.keyframe_rad)
+        moved = np.linalg.norm(T_last_now.t) > o.keyframe_m or turned
         return bool(moved) or self.is_empty
 
     def add(self, view: FrameView, t_s: Array, T_dense: SE3) -> None:
@@ -70,4 +71,4 @@ class LocalMap:
             self._keyframes.append(keyframe)
             if len(self._keyframes) > self._longest:
                 self.planes.remove(*self._keyframes.popleft())
-        self.points.add(view.points(), t_s, T_dense)
+        self.points.add(view.keyframe_points(), t_s, T_dense)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from statistics import median
 
 import numpy as np
 
@@ -41,14 +42,14 @@ class LostLimits:
         s = self._settings
         if not self.is_usual_known:
             return s.lost_match_ratio
-        usual = s.lost_usual_ratio * float(np.median(self._ratios))
+        usual = s.lost_usual_ratio * median(self._ratios)
         return float(np.clip(usual, s.lost_least_ratio, s.lost_match_ratio))
 
     def is_usual(self, match: Match) -> bool:
         """Whether as much of a frame matches as of those before it."""
         if not self.is_usual_known:
             return False
-        usual = LOST.usual_part * float(np.median(self._ratios))
+        usual = LOST.usual_part * median(self._ratios)
         return match.match_ratio >= usual and match.mean_m < self._settings.lost_error_m
 
     def is_lost(self, match: Match, *, sure: bool) -> bool:

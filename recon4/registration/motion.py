@@ -8,8 +8,8 @@ from enum import Enum, auto
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, interpolate, proper, so3_exp, so3_log
-from recon4.kernels.imu import ROWS, propagate
+from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
+from recon4.kernels.imu import ROWS, middle_pose, propagate, samples_at, turned
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
@@ -62,7 +62,7 @@ class MotionState:
 
     def corrected(self, delta: Array, P: Array) -> MotionState:
         """The state moved by an error (28,), with a new covariance."""
-        R = proper(so3_exp(delta[STATE.rotation]) @ self.R)
+        R = turned(delta[STATE.rotation], self.R)
         return replace(self, R=R, vector=self.vector + delta[STATE.position.start :], P=P)
 
 
@@ -235,7 +235,7 @@ class ImuMotion:
             state.vector[VECTOR.clock][0], -PREDICTION.most_clock_s, PREDICTION.most_clock_s
         )
         stamps = times + round(1e9 * float(ahead_s))
-        gyro, accel = (imu_at(stamps, self._t_ns, v) for v in (self._gyro, self._accel))
+        gyro, accel = (samples_at(stamps, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
             accel = np.zeros_like(gyro)
         noise = self._noise.copy()
@@ -311,11 +311,12 @@ def _predict(
     t_s = (t_ns - t_ns[0]) * 1e-9
     start = np.ascontiguousarray(state.P)  # a kernel is compiled for each layout
     R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, start, noise)
-    R = proper(R)
     vector = state.vector.copy()
     vector[VECTOR.position], vector[VECTOR.velocity] = p[-1], v
     cross = state.P[STATE.pose] @ Phi.T
-    prior = np.block([[state.P[STATE.pose, STATE.pose], cross], [cross.T, P]])
+    prior = np.empty((6 + len(P), 6 + len(P)))
+    prior[:6, :6], prior[:6, 6:] = state.P[STATE.pose, STATE.pose], cross
+    prior[6:, :6], prior[6:, 6:] = cross.T, P
     return Prediction(t_s, SE3(R, p), MotionState(int(t_ns[-1]), R[-1], vector, P), prior)
 
 
@@ -328,9 +329,7 @@ def _start_sd(first: Sequence[float]) -> Array:
 
 def middle_of(t_s: Array, T_a_b: SE3) -> SE3:
     """Pose halfway in time between the first and the last of dense poses."""
-    middle = (t_s[0] + t_s[-1]) / 2
-    k = int(np.searchsorted(t_s, middle)) - 1
-    return interpolate(T_a_b[k], T_a_b[k + 1], (middle - t_s[k]) / (t_s[k + 1] - t_s[k]))
+    return SE3(*middle_pose(t_s, T_a_b.R, T_a_b.t))
 
 
 def imu_in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
@@ -341,16 +340,6 @@ def imu_in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:
         turn_accel = np.gradient(gyro, imu.t_ns * 1e-9, axis=0)
         accel = accel - np.cross(turn_accel, r) - np.cross(gyro, np.cross(gyro, r))
     return np.ascontiguousarray(gyro), np.ascontiguousarray(accel)
-
-
-def imu_at(t_ns: Times, sample_t_ns: Times, values: Array) -> Array:
-    """Linear interpolation of samples (N, 3) at other times, constant beyond the ends."""
-    # float64 represents nanoseconds exactly only after the start is subtracted.
-    t = (t_ns - t_ns[0]).astype(np.float64)
-    first, last = np.searchsorted(sample_t_ns, [t_ns[0], t_ns[-1]])
-    rows = slice(max(first - 1, 0), last + 1)
-    known = (sample_t_ns[rows] - t_ns[0]).astype(np.float64)
-    return np.stack([np.interp(t, known, values[rows, axis]) for axis in range(3)], axis=1)
 
 
 def level_rotation(up_body: Array) -> Array:

@@ -22,6 +22,7 @@ from recon4.geometry.cubes import cubes_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.free_space import NO_SURFACE, find_moving_points, nearest_ranges
 from recon4.kernels.imu import place_points
+from recon4.kernels.points import points_in_body
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden_points import HiddenPoints
 from recon4.model.lidars import lidar_model
@@ -230,9 +231,8 @@ def _placed(frame: Multiframe, trajectory: Trajectory, rig: Rig) -> Array:
 def _in_body(frame: Multiframe, rig: Rig) -> Array:
     """Points of a multiframe in the body, each at its time [m], (N, 3)."""
     body = np.empty((len(frame), 3))
-    for number, sensor in enumerate(rig.sensors):
-        mine = frame.sensor == number
-        body[mine] = sensor.T_body_sensor @ frame.xyz[mine].astype(np.float64)
+    T = SE3.stack(sensor.T_body_sensor for sensor in rig.sensors)
+    points_in_body(T.R, T.t, frame.sensor, frame.xyz, body)
     return body
 
 

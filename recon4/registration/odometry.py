@@ -54,7 +54,8 @@ class Odometry:
         *,
         aiding: GnssAiding | None = None,
     ) -> None:
-        self._rig, self._settings = rig, settings
+        self._rig = rig
+        self._weak_eigenvalue = tuned(OdometryTuning, settings.odometry).weak_eigenvalue
         self._motion: MotionStrategy = (
             ImuStrategy(imu, rig, settings, aiding=aiding)
             if imu is not None and len(imu) > 1 and settings.odometry.use_imu
@@ -158,7 +159,7 @@ class Odometry:
             self._map.points,
             view.points,
             prediction,
-            max_eigenvalue=tuned(OdometryTuning, self._settings.odometry).weak_eigenvalue,
+            max_eigenvalue=self._weak_eigenvalue,
         )
         rest = self._motion.rest(prediction.end, weak=self._is_weak)
         fit = self._motion.fitter.fit(

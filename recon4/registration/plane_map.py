@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from recon4.registration.tuning import PLANES, PlaneTuning
 from recon4.registration.tuning_matching import PLANE_MAP
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Match:
     """Normal equations of one round; see `recon4.kernels.planes.accumulate`."""
 
@@ -31,22 +32,27 @@ class Match:
     normals: Array = field(default_factory=lambda: np.zeros((3, 3)))
     """Mean of n n^T over the matches, map axes, (3, 3)."""
 
+    @cached_property
+    def _directions(self) -> tuple[Array, Array]:
+        """Eigenvalues of `normals`, increasing, (3,), and their directions in columns, (3, 3)."""
+        values, vectors = np.linalg.eigh(self.normals)
+        return values, vectors
+
     @property
     def degeneracy(self) -> float:
         """Smallest eigenvalue of `normals`: 0 = unobservable direction, 1/3 = isotropic."""
-        return float(np.linalg.eigvalsh(self.normals)[0])
+        return float(self._directions[0][0])
 
     @property
     def weak_direction(self) -> Array:
         """Unit direction least constrained by the planes, map axes, (3,); NaN without a match."""
         if not self.matches:
             return np.full(3, np.nan)
-        direction: Array = np.linalg.eigh(self.normals)[1][:, 0]
-        return direction
+        return self._directions[1][:, 0]
 
     def weak_directions(self, max_eigenvalue: float) -> Array:
         """Unit directions in which `normals` has an eigenvalue below a bound, (M, 3), M ≤ 3."""
-        values, vectors = np.linalg.eigh(self.normals)
+        values, vectors = self._directions
         return vectors[:, values < max_eigenvalue].T
 
     @property

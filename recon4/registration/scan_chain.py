@@ -12,6 +12,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.carrier import CarrierPrior
+from recon4.registration.in_body import in_body
 from recon4.registration.result import StopReason
 from recon4.registration.scan_registration import make_scan, search_scans
 from recon4.registration.tuning import SCANS, ScanTuning
@@ -148,6 +149,5 @@ def body_points(frame: Multiframe, rig: Rig) -> Array:
     parts = [np.empty((0, 3))]
     for row, sensor in enumerate(rig.sensors):
         if sensor.enabled:
-            xyz = frame.xyz[frame.sensor == row].astype(np.float64)
-            parts.append(sensor.T_body_sensor @ xyz)
+            parts.append(in_body(sensor, frame.xyz[frame.sensor == row]))
     return np.concatenate(parts)

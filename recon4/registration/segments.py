@@ -13,6 +13,7 @@ from recon4.model.lidar_facts import LidarFacts
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
+from recon4.registration.in_body import in_body
 from recon4.registration.tuning import SEGMENTS, SegmentTuning
 
 
@@ -68,10 +69,10 @@ def _of_sensor(
         xyz, band, int(band.max()) + 1, settings.azimuth_bins, settings.generated,
         settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
     )  # fmt: skip
-    ends, times_s = np.empty((2, len(pairs), 3)), np.empty((2, len(pairs)))
+    ends, times_s = np.empty((2, len(pairs), 3), np.float32), np.empty((2, len(pairs)))
     range_m = np.empty(len(pairs))
     segment_ends(xyz, dt_ns, pairs, ends, times_s, range_m)
-    a_body, b_body = (sensor.T_body_sensor @ end for end in ends)
+    a_body, b_body = (in_body(sensor, end) for end in ends)
     return a_body, b_body, times_s[0], times_s[1], range_m
 
 

@@ -13,7 +13,8 @@ from itertools import islice
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, proper, so3_exp, so3_log
+from recon4.geometry.se3 import SE3
+from recon4.kernels.imu import led_to
 from recon4.registration.motion import middle_of
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_motion import DENSE, MOVING_START
@@ -78,10 +79,9 @@ def _led_to(step: OdometryStep, after: OdometryStep) -> OdometryStep:
     if step.lost or after.lost or step.piece != after.piece or step.t_ns[-1] != after.t_ns[0]:
         return step
     T, begin = step.T_dense, after.T_dense[0]
-    part = ((step.t_ns - step.t_ns[0]) / max(1, int(step.t_ns[-1] - step.t_ns[0])))[:, None]
-    turn, shift = so3_log(begin.R @ T.R[-1].T), begin.t - T.t[-1]
+    part = (step.t_ns - step.t_ns[0]) / max(1, int(step.t_ns[-1] - step.t_ns[0]))
+    R, p, turn, shift = led_to(part, T.R, T.t, begin.R, begin.t)
     if np.linalg.norm(turn) > DENSE.most_turn_rad or np.linalg.norm(shift) > DENSE.most_shift_m:
         return step
-    led = SE3(proper(so3_exp(part * turn) @ T.R), T.t + part * shift)
-    t_s = 1e-9 * (step.t_ns - step.t_ns[0])
+    led, t_s = SE3(R, p), 1e-9 * (step.t_ns - step.t_ns[0])
     return replace(step, T_dense=led, T_odom_body=middle_of(t_s, led))

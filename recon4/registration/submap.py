@@ -17,6 +17,7 @@ from recon4.kernels.imu import place_points
 from recon4.kernels.points import transform_points
 from recon4.model.frames import RecordedFrames
 from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.in_body import in_body
 from recon4.registration.segments import Segments, sample_segments
 
 Ends = NDArray[np.float64]
@@ -80,7 +81,7 @@ class Submaps:
         for k, sensor in enumerate(rig.sensors):
             of_sensor = frame.sensor == k
             if sensor.enabled:
-                p_body = sensor.T_body_sensor @ frame.xyz[of_sensor].astype(np.float64)
+                p_body = in_body(sensor, frame.xyz[of_sensor])
                 T = part.T_a_b
                 placed.append(place_points(t_s, T.R, T.t, dt_s[of_sensor], p_body))
         return self._T_odom_frame[row].inverse() @ np.concatenate(placed)

@@ -74,15 +74,15 @@ def _refine_lines(
     return found.save(context.out)
 
 
-LINE_ODOMETRY = Stage("odometry", 6, LineOdometryReads, _line_odometry, OdometryFigures)
+LINE_ODOMETRY = Stage("odometry", 7, LineOdometryReads, _line_odometry, OdometryFigures)
 TURN_GRAPH = Stage(
     "graph",
-    3,
+    4,
     LineGraphReads,
     _sweep_graph,
     GraphFigures,
 )
-LINE_REFINE = Stage("refine", 5, LineRefineReads, _refine_lines, RefineFigures)
+LINE_REFINE = Stage("refine", 6, LineRefineReads, _refine_lines, RefineFigures)
 PROFILER = Workflow(
     "profiler",
     imports=FRAMES,

@@ -176,7 +176,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 
 FRAMES = Stage("frames", 40, ImportReads, _frames, FrameFigures, percent=9.0)
 CALIBRATION = Stage(
-    "calibration", 15, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
+    "calibration", 16, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
 )
 VERIFICATION = Stage(
     "verification", 3, VerificationReads, _verification, VerificationFigures, percent=2.0

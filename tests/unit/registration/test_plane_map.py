@@ -106,6 +106,22 @@ def test_removing_points_restores_the_map():
     np.testing.assert_allclose(after.residual_m, before.residual_m, atol=1e-9)
 
 
+@pytest.mark.parametrize("level", [0, 2])
+def test_what_is_added_cube_by_cube_is_in_all_sizes_of_cubes(level):
+    points = patch((0.2, 0.4, 1), 0.05, noise_m=0.01)
+    asked = patch((0.2, 0.4, 1), 0.06, count=500, extent_m=1.0, seed=2)
+    in_runs = points[np.lexsort(np.floor(points / SETTINGS.finest_m).T)]
+    only = structs.replace(SETTINGS, finest_m=SETTINGS.finest_m * 2**level, levels=1)
+    of_one_size = PlaneMap(only)
+    of_one_size.add(points)
+
+    found, expected = hold(made_of(in_runs), asked, finest=level), hold(of_one_size, asked)
+
+    there = np.isfinite(expected.residual_m)
+    assert there.mean() > 0.5
+    np.testing.assert_allclose(found.residual_m[there], expected.residual_m[there], atol=1e-11)
+
+
 def test_an_emptied_map_matches_nothing():
     points = patch((0, 0, 1), 0.05)
     planes = made_of(points)
