@@ -88,8 +88,7 @@ def _coordinates(assessed: Assessment, words: Words) -> Section:
     results = assessed.results
     rows = [Row(words("front.crs"), shown(assessed.facts.crs))] if assessed.facts.crs else []
     # The points have a section of their own.
-    shared = {k: v for k, v in results.georeference.items() if k != "control"}
-    rows += _rows(placed_rows(shared, words.language), words)
+    rows += _rows(placed_rows(results.georeference, words.language, points=False), words)
     drawn = charts_on_paper(charts.gnss_charts(results.placement.gnss), words)
     return Section(title=words("section.coordinates"), rows=tuple(rows), drawings=drawn)
 

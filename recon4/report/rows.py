@@ -11,6 +11,7 @@ from recon4.evaluation.table import number
 from recon4.findings.wording import word_of
 from recon4.locales.languages import ENGLISH
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.height_system import HeightSystem, height_system
 from recon4.model.import_counts import count_label
 
 Rows = list[tuple[str, str]]
@@ -24,8 +25,16 @@ _NO_ROW = {"t_ns", "used", "residual_enu_m", "wkt", "warnings", "derived", "outc
 """Shown as charts or separate lists, or too long for a row."""
 
 
-def placed_rows(georeference: Mapping[str, Any], language: str = ENGLISH) -> Rows:
-    """Rows of ``georeference.json``: leveling and georeference."""
+def placed_rows(
+    georeference: Mapping[str, Any], language: str = ENGLISH, *, points: bool = True
+) -> Rows:
+    """Rows of ``georeference.json``: leveling and georeference.
+
+    Args:
+        georeference: The record.
+        language: Of reasons.
+        points: Whether control and check points are among them.
+    """
     level = dict(georeference.get("levelling", {}))
     out: Rows = []
     source = level.pop("source", None)
@@ -35,6 +44,9 @@ def placed_rows(georeference: Mapping[str, Any], language: str = ENGLISH) -> Row
         out += _rows(level, "leveling: ")
     stated = georeference.get("georeference", {})
     inner = {name: value for name, value in stated.items() if value is not None}
+    crs = dict(georeference.get("crs") or {})
+    if "control" in georeference:
+        _on_control(inner, crs)
     if "reason" in inner:
         inner["reason"] = word_of(FindingKind.GNSS_NOT_USED, inner["reason"], language)
     if "georeferenced" in inner:
@@ -42,11 +54,26 @@ def placed_rows(georeference: Mapping[str, Any], language: str = ENGLISH) -> Row
         out.append(("georeferenced", "yes" if inner.pop("georeferenced") else by_points))
     if "edges_rejected" in inner:
         out.append(("loop closures rejected by GNSS priors", str(len(inner.pop("edges_rejected")))))
-    out += _rows(inner, "") + _rows(georeference.get("crs") or {}, "CRS: ")
-    out += _control_rows(georeference)
+    out += _rows(inner, "") + _rows(crs, "CRS: ")
+    if points:
+        out += _control_rows(georeference)
     shown = {"levelling", "georeference", "crs", "control"}
     rest = {k: v for k, v in georeference.items() if k not in shown}
     return out + _rows(rest, "")
+
+
+def _on_control(placed: dict[str, object], crs: dict[str, object]) -> None:
+    """Leave out what does not hold for a map on control points.
+
+    Their heights are those of the survey unless the CRS has heights, and without fixes there is
+    nothing to say of GNSS. The survey is in the CRS: how exact the way to WGS 84 is, is no matter.
+    """
+    if height_system(str(crs.get("name", "")), controlled=True) is not HeightSystem.CRS:
+        placed["frame"] = "x east, y north, z up; heights of the control points"
+    crs.pop("accuracy_m", None)
+    if not placed.get("fixes"):
+        for name in ("fixes", "fixes_usable", "fixes_used", "rmse_enu_m", "edges_rejected"):
+            placed.pop(name, None)
 
 
 def _control_rows(georeference: Mapping[str, object]) -> Rows:

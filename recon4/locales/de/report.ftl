@@ -435,6 +435,7 @@ term =
     .site-grid = Baustellennetz
     .no-control-points-alone-placed-it = nein: allein Passpunkte haben sie platziert
     .frame = Achsen
+    .x-east-y-north-z-up-heights-of-the-control-points = x Ost, y Nord, z nach oben; Höhen der Passpunkte
     .x-east-y-north-z-up-wgs-84-ellipsoidal-height = x Ost, y Nord, z nach oben; WGS 84, ellipsoidische Höhe
     .origin-lat-deg = Ursprung: Breite
     .origin-lon-deg = Ursprung: Länge

@@ -434,6 +434,7 @@ term =
     .site-grid = site grid
     .no-control-points-alone-placed-it = no: control points alone placed it
     .frame = frame
+    .x-east-y-north-z-up-heights-of-the-control-points = x east, y north, z up; heights of the control points
     .x-east-y-north-z-up-wgs-84-ellipsoidal-height = x east, y north, z up; WGS 84, ellipsoidal height
     .origin-lat-deg = origin latitude
     .origin-lon-deg = origin longitude

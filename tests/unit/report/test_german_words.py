@@ -65,3 +65,26 @@ def test_the_place_of_a_map_is_german():
         "Koordinatensystem: Transformation": "auf Passpunkte ausgeglichen",
     }
     assert SAY.value("no positions") == "no positions", "no half of a sentence is translated"
+
+
+@pytest.mark.parametrize("fixes", [0, 90])
+def test_a_map_on_control_points_has_their_heights_and_no_empty_rows_of_gnss(fixes):
+    stated = {
+        "georeferenced": True,
+        "frame": "x east, y north, z up; WGS 84, ellipsoidal height",
+        "fixes": fixes,
+        "fixes_used": fixes,
+        "rmse_enu_m": [None, None, None],
+        "edges_rejected": [],
+    }
+    crs = {"name": "EPSG:25832", "operation": "UTM zone 32N", "accuracy_m": 1.0}
+    outcome = ControlOutcome(crs="EPSG:25832", freedom=4, scale=1.0, points=())
+    record = {"georeference": stated, "crs": crs, "control": msgspec.to_builtins(outcome)}
+
+    found = {SAY.label(a): SAY.value(b) for a, b in placed_rows(record, "de", points=False)}
+
+    assert found["Achsen"] == "x Ost, y Nord, z nach oben; Höhen der Passpunkte"
+    assert not [name for name in found if "Genauigkeit" in name]
+    assert ("RMSE" in found, "GNSS-Positionen" in found) == (fixes > 0, fixes > 0)
+    with_heights = record | {"crs": crs | {"name": "EPSG:5514+8357"}}
+    assert dict(placed_rows(with_heights))["frame"].endswith("WGS 84, ellipsoidal height")
