@@ -57,10 +57,13 @@ def test_the_map_before_the_last_one_is_shown_as_differences(server, page):
     made = server.get("/api/projects/office/comparisons").json()["comparisons"][0]
     counts = made["found"]["counts"]
     shown(page, counts["core_points"])
-    significant = panel.get_by_role("listitem").filter(has_text="Significant (95 %)")
+    colors = page.get_by_role("region", name="Colors")
+    expect(colors).to_contain_text("Differences: The map of ")
+    expect(colors.get_by_label("Color by")).to_have_count(0)  # the points have none of its colors
+    significant = colors.get_by_role("listitem").filter(has_text="Significant (95 %)")
     digits = re.sub(r"\D", "", significant.locator("small").text_content().split(",")[0])
     assert int(digits) == counts["significant"] > 1000
-    expect(panel.locator(".ends")).to_contain_text("50 mm in front")
+    expect(colors.locator(".ends")).to_contain_text("50 mm in front")
     assert on_canvas(page, color="red") > 1000 and on_canvas(page, color="blue") < 50
     expect(page).to_have_url(re.compile(f"compare={made['id']}"))
 
@@ -69,9 +72,10 @@ def test_the_map_before_the_last_one_is_shown_as_differences(server, page):
     expect(page).to_have_url(re.compile("reach=200"))
     page.reload()  # the address shows the same
     shown(page, counts["core_points"])
-    expect(panel.locator(".ends")).to_contain_text("200 mm in front")
+    expect(colors.locator(".ends")).to_contain_text("200 mm in front")
     panel.get_by_role("button", name="This map only").click()
     shown(page, 150_000)
+    expect(colors.get_by_label("Color by")).to_be_visible()
     assert on_canvas(page, color="red") < 50
 
 

@@ -84,3 +84,20 @@ def test_a_refused_clipboard_leads_to_the_address(server, page):
 
     expect(page.locator("#status .reading")).to_contain_text("The address of this page")
     expect(page.locator("#message")).to_be_empty()
+
+
+@looks("phone dark")
+def test_the_panel_of_a_phone_leaves_what_a_tool_says(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    page.get_by_role("button", name="Distance", exact=True).tap()
+    for x in (6.0, 10.0):
+        page.touchscreen.tap(*at(page, x, 4.0))
+    expect(page.locator("#status .reading")).to_contain_text("Distance 1")
+
+    page.get_by_role("button", name="Panel", exact=True).tap()
+
+    panel, reading, bar = (
+        page.locator(one).bounding_box() for one in ("#panel", "#status .reading", "#bar")
+    )
+    assert panel["y"] + panel["height"] <= reading["y"]
+    assert panel["y"] >= bar["y"] + bar["height"]

@@ -13,6 +13,8 @@
  * @typedef {{heights: Heights, box: ClipBox | null, section: Section | null}} Clip
  */
 
+const MOST_SLICE_M = 100; // thickness of a slice
+
 /** All planes of a clip. */
 export function planesOf(/** @type {Clip} */ { heights: [low, high], box, section }) {
   const planes = [];
@@ -91,4 +93,13 @@ export function boxOver(a, b, { yaw, heights }) {
     ],
     yaw,
   };
+}
+
+/**
+ * A vertical strip as the page of slices has it in its address.
+ * @param {{a_m: [number, number], b_m: [number, number], thickness_m: number}} strip
+ */
+export function sliceQuery({ a_m, b_m, thickness_m }) {
+  const [a, b] = [a_m, b_m].map((p) => p.map((x) => x.toFixed(3)).join(","));
+  return `kind=vertical&a=${a}&b=${b}&t=${Math.min(thickness_m, MOST_SLICE_M)}`;
 }

@@ -113,6 +113,7 @@ export function compareOf({ change, draw, canvas, values }) {
     async set(/** @type {Partial<Compared>} */ next) {
       change({ compare: { ...page.state.compare, ...next } });
       await show();
+      draw();
     },
     order: (/** @type {string} */ against) =>
       attempt(byId("message"), async () => {
@@ -155,11 +156,12 @@ export function drawDivider(element, act) {
   const { swipe } = page.state.compare;
   const slides = (/** @type {Event} */ event) =>
     act.compare.set({ swipe: Number(targetOf(event).value) / 100 });
+  const one = chosen();
   render(
-    swipe === null || !chosen()?.found
+    swipe === null || !one?.found || !known.other
       ? nothing
       : html`<span class="here" .style=${`right: ${100 - 100 * swipe}%`}>${t("cmp-here")}</span
-          ><span .style=${`left: ${100 * swipe}%`}>${t("cmp-there")}</span
+          ><span .style=${`left: ${100 * swipe}%`}>${titleOf(one.against)}</span
           ><input
             type="range"
             min="0"
@@ -271,7 +273,7 @@ function shown(/** @type {Act} */ act) {
       )}
       ${mode(t("cmp-off"), false, () => act.compare.set(NOT_COMPARED))}
     </div>
-    ${page.state.compare.swipe === null ? legend(one, act) : nothing}
+    ${page.state.compare.swipe === null ? figures(one, act) : nothing}
     <a class="button" href=${comparisonUrl(id, one.id)} download>${t("cmp-download")}</a>`;
 }
 
@@ -283,15 +285,11 @@ function shown(/** @type {Act} */ act) {
 const mode = (text, pressed, act) =>
   html`<button type="button" aria-pressed=${String(pressed)} @click=${act}>${text}</button>`;
 
-/**
- * What the colors mean, and how many core points have each.
- * @param {ComparisonView} one
- * @param {Act} act
- */
-function legend(one, act) {
-  const { found } = one;
-  if (!found) return nothing;
-  const { counts, distances, first, second } = found;
+/** What the colors of differences mean, and how many core points have each; null = none are. */
+export function differencesLegend() {
+  const one = chosen();
+  if (!one?.found || !one.kept || page.state.compare.swipe !== null) return null;
+  const { counts } = one.found;
   const mm = decimal(1000 * reachOf(one), 0);
   const ramp = `background: linear-gradient(to right, ${RAMP.map(css).join(", ")})`;
   const rows = /** @type {Array<[string, number[] | null, number]>} */ ([
@@ -300,7 +298,8 @@ function legend(one, act) {
     [t("cmp-alone"), ALONE, counts.without_partner],
     [t("cmp-other"), OTHER, counts.without_normal + counts.sparse],
   ]);
-  return html`<div class="ramp" .style=${ramp}></div>
+  return html`<p><b>${t("cmp-colors", { name: titleOf(one.against) })}</b></p>
+    <div class="ramp" .style=${ramp}></div>
     <p class="ends">
       <span>${t("cmp-behind", { mm })}</span><span>${t("cmp-front", { mm })}</span>
     </p>
@@ -312,24 +311,34 @@ function legend(one, act) {
             <small>${count(n)}, ${decimal((100 * n) / Math.max(counts.core_points, 1), 1)} %</small>
           </li>`,
       )}
-    </ul>
-    ${
-      distances
-        ? html`<p class="quiet">
-            ${t("cmp-figures", {
-              median: decimal(1000 * distances.p50_m, 1),
-              high: decimal(1000 * distances.p95_m, 1),
-              lod: decimal(1000 * distances.lod_p50_m, 1),
-            })}
-            ${[first, second].some((of) => of.registration === "usual") ? t("cmp-usual") : nothing}
-            ${one.of_this_map ? nothing : t("cmp-older")}
-          </p>`
-        : nothing
-    }
-    ${numberField(
-      t("cmp-reach"),
-      page.state.compare.reach === null ? null : 1000 * page.state.compare.reach,
-      (value) => act.compare.set({ reach: value && value > 0 ? value / 1000 : null }),
-      { usual: mm, step: 1 },
-    )}`;
+    </ul>`;
+}
+
+/**
+ * The distances, and the ends of their colors.
+ * @param {ComparisonView} one
+ * @param {Act} act
+ */
+function figures(one, act) {
+  if (!one.found) return nothing;
+  const { distances, first, second } = one.found;
+  return html`${
+    distances
+      ? html`<p class="quiet">
+          ${t("cmp-figures", {
+            median: decimal(1000 * distances.p50_m, 1),
+            high: decimal(1000 * distances.p95_m, 1),
+            lod: decimal(1000 * distances.lod_p50_m, 1),
+          })}
+          ${[first, second].some((of) => of.registration === "usual") ? t("cmp-usual") : nothing}
+          ${one.of_this_map ? nothing : t("cmp-older")}
+        </p>`
+      : nothing
+  }
+  ${numberField(
+    t("cmp-reach"),
+    page.state.compare.reach === null ? null : 1000 * page.state.compare.reach,
+    (value) => act.compare.set({ reach: value && value > 0 ? value / 1000 : null }),
+    { usual: decimal(1000 * reachOf(one), 0), step: 1 },
+  )}`;
 }

@@ -8,11 +8,12 @@ import { shareText } from "../shared/format.js";
 import { decimal, t, written } from "../shared/texts.js";
 import { numberField as field } from "./number_field.js";
 import { classColor, css, endText, rampOf } from "./colors.js";
-import { compareSection } from "./compare.js";
+import { compareSection, differencesLegend } from "./compare.js";
 import { corrections } from "./corrections.js";
 import { measuredSection } from "./measured_panel.js";
 import { notesSection } from "./notes.js";
 import { colorShown, colorsOf, endsShown, heightsOf, heightsShown, page } from "./page.js";
+import { sliceQuery } from "./clip.js";
 import { placesSections } from "./places_panel.js";
 import { savedSection } from "./saved.js";
 import { COLORS, LAYERS } from "./state.js";
@@ -58,16 +59,18 @@ function colors(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
   const shown = colorShown();
   const choose = (/** @type {Event} */ event) =>
     act.change({ color: /** @type {ColorBy} */ (targetOf(event).value), lo: null, hi: null });
-  return html`<label
-      ><span class="unseen">${t("color-by")}</span
-      ><select @change=${choose}>
-        ${colorsOf(index).map(
-          (color) =>
-            html`<option value=${color} ?selected=${color === shown}>${COLORS[color]}</option>`,
-        )}
-      </select></label
-    >
-    ${legend(index, act)}
+  const usual = () =>
+    html`<label
+        ><span class="unseen">${t("color-by")}</span
+        ><select @change=${choose}>
+          ${colorsOf(index).map(
+            (color) =>
+              html`<option value=${color} ?selected=${color === shown}>${COLORS[color]}</option>`,
+          )}
+        </select></label
+      >
+      ${legend(index, act)}`;
+  return html`${differencesLegend() ?? usual()}
     <label class="check"
       ><input
         type="checkbox"
@@ -193,6 +196,7 @@ function sectionFields(/** @type {Act} */ act) {
   const { clip: shown } = page.state;
   const { section } = shown;
   if (!section) return nothing;
+  const { thickness } = section;
   const set = (/** @type {Partial<typeof section>} */ next) =>
     act.change({ clip: { ...shown, section: { ...section, ...next } } });
   const move = (/** @type {number} */ times) => {
@@ -204,10 +208,7 @@ function sectionFields(/** @type {Act} */ act) {
       b: [section.b[0] + by[0], section.b[1] + by[1]],
     });
   };
-  const { a, b, thickness } = section;
-  const places = [...a, ...b].map((x) => x.toFixed(3));
-  const [from, to] = [places.slice(0, 2).join(","), places.slice(2).join(",")];
-  const query = `kind=vertical&a=${from}&b=${to}&t=${Math.min(thickness, 100)}`;
+  const query = sliceQuery({ a_m: section.a, b_m: section.b, thickness_m: section.thickness });
   return html`<details open>
     <summary>${t("section")}</summary>
     ${field(t("thickness"), thickness, (m) => m && m > 0 && set({ thickness: m }), { step: 0.05 })}

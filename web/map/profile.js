@@ -1,12 +1,13 @@
 // The profile of a strip of the map between two points, as a plot below the map.
 
 import { idHere } from "../shared/address.js";
-import { readSlice, sliceFileUrl } from "../shared/api.js";
+import { readSlice, sliceFileUrl, slicesUrl } from "../shared/api.js";
 import { asError, byId, html, nothing, render, svg, targetOf } from "../shared/dom.js";
 import { askFirst } from "../shared/download.js";
 import { count } from "../shared/format.js";
 import { roundStep } from "../shared/scale_bar.js";
 import { t, written } from "../shared/texts.js";
+import { sliceQuery } from "./clip.js";
 import { PROFILE_M } from "./measure.js";
 import { heightsShown, page } from "./page.js";
 
@@ -26,6 +27,9 @@ const MARGIN = { left: 46, bottom: 24, top: 8, right: 12 };
 const TICK_PX = { across: 120, up: 60 };
 /** What the plot leaves of half of the window, for its buttons and captions. */
 const AROUND_PX = 240;
+/** What is beside the plot with the panel of the map, and without: as in map.css. */
+const BESIDE_PX = { panel: 360, alone: 50 };
+const NARROW_PX = 800;
 const BEYOND_M = 0.05;
 
 /** The strip of a profile, as the slices take it: u counts from the first point. */
@@ -66,7 +70,7 @@ export function profileOf({ draw, dark, change }) {
     draw();
     try {
       const { plane, window } = stripOf(of);
-      const { wide, tall } = pixelsOf(window, room(byId("profile")));
+      const { wide, tall } = pixelsOf(window, room());
       shown.image = await readSlice(id, {
         plane,
         window,
@@ -123,25 +127,23 @@ export function drawProfile(element, act) {
             }}
         /></label>
         ${link("csv", "CSV")} ${link("dxf", "DXF")}
+        <a class="button" href="${slicesUrl(id)}?${sliceQuery(ask.plane)}">${t("open-as-slice")}</a>
         <button type="button" @click=${act.close}>${t("close")}</button>
       </div>
       ${problem ? html`<p class="error" role="alert">${problem}</p>` : nothing}
       ${
-        image
-          ? plot(image, room(element))
-          : problem
-            ? nothing
-            : html`<p class="quiet">${t("drawing")}</p>`
+        image ? plot(image, room()) : problem ? nothing : html`<p class="quiet">${t("drawing")}</p>`
       }`,
     element,
   );
 }
 
 /** Most pixels of a plot across and up: it is drawn in pixels of the screen, with its labels. */
-function room(/** @type {HTMLElement} */ element) {
+function room() {
   const { left, right } = MARGIN;
+  const beside = page.panel && innerWidth > NARROW_PX ? BESIDE_PX.panel : BESIDE_PX.alone;
   return [
-    Math.max(200, element.clientWidth - 30 - left - right),
+    Math.max(200, innerWidth - beside - left - right),
     Math.min(300, Math.max(LEAST_UP_PX, innerHeight / 2 - AROUND_PX)),
   ];
 }

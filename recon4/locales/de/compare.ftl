@@ -31,4 +31,4 @@ cmp-download = LAZ herunterladen
 cmp-swipe = Teiler
 cmp-divider = Teiler zwischen dieser Karte und der anderen
 cmp-here = Diese Karte
-cmp-there = Die andere
+cmp-colors = Unterschiede: { $name }

@@ -31,4 +31,4 @@ cmp-download = Download LAZ
 cmp-swipe = Swipe
 cmp-divider = Divider between this map and the other one
 cmp-here = This map
-cmp-there = The other one
+cmp-colors = Differences: { $name }
