@@ -28,6 +28,9 @@ export class SliceView extends HTMLElement {
   /** @type {number[] | null} */
   #center = null; // null before the first image
   #metersPerPx = 0.01;
+  /** All of the slice, which stays in sight in a view of another size; null = moved since.
+   * @type {WindowSpec | null} */
+  #whole = null;
   /** @type {{image: ImageBitmap, window: WindowSpec} | null} */
   #shown = null;
   #axes = ["", ""];
@@ -60,7 +63,7 @@ export class SliceView extends HTMLElement {
     });
     canvas.addEventListener("pointerleave", () => (this.#hover.value = ""));
     canvas.addEventListener("keydown", (event) => this.#key(event));
-    new ResizeObserver(() => (this.#center ? this.#changed() : this.draw())).observe(this);
+    new ResizeObserver(() => this.#resized()).observe(this);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
@@ -75,8 +78,10 @@ export class SliceView extends HTMLElement {
   }
 
   set frame(frame) {
+    const before = this.frame;
     this.#center = frame && [frame.u, frame.v];
     if (frame) this.#metersPerPx = Math.min(COARSEST_M, Math.max(FINEST_M, frame.m));
+    if (JSON.stringify(this.frame) !== JSON.stringify(before)) this.#whole = null;
     this.draw();
   }
 
@@ -112,7 +117,14 @@ export class SliceView extends HTMLElement {
     const [u, v] = [(window.left + window.right) / 2, (window.bottom + window.top) / 2];
     this.#center = [u - (m * EDGE.left) / 2, v - (m * EDGE.bottom) / 2];
     this.#metersPerPx = m;
+    this.#whole = window;
     this.#changed();
+  }
+
+  #resized() {
+    if (this.#whole) this.#fit(this.#whole);
+    else if (this.#center) this.#changed();
+    else this.draw();
   }
 
   clear() {
@@ -337,6 +349,7 @@ export class SliceView extends HTMLElement {
       this.#middle[0] - dx * this.#metersPerPx,
       this.#middle[1] + dy * this.#metersPerPx,
     ];
+    this.#whole = null;
     this.#changed();
   }
 
@@ -354,6 +367,7 @@ export class SliceView extends HTMLElement {
     const scale = next / this.#metersPerPx;
     this.#center = [u + (this.#middle[0] - u) * scale, v + (this.#middle[1] - v) * scale];
     this.#metersPerPx = next;
+    this.#whole = null;
     this.#changed();
   }
 
