@@ -150,16 +150,27 @@ def short_project(short_recording, tmp_path_factory) -> Path:
     return made_once(tmp_path_factory, "short-project", make)
 
 
-@pytest.fixture(scope="module")
-def undrawn() -> Iterator[None]:
-    """Charts are empty in reports that this process writes: they take a second of it for each map.
+@pytest.fixture(scope="session", autouse=True)
+def undrawn() -> Iterator[Callable[..., str]]:
+    """Charts are empty in reports that this process writes: they take a third of a short run.
 
-    For tests that make one map many times; charts: ``tests/unit/report``.
+    Programs that tests start draw them, and files of tests that ask for `drawn`.
     """
     from recon4.report.figures import Chart
 
+    draw = Chart.svg
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Chart, "svg", lambda *_, **__: '<svg class="chart"></svg>')
+        yield draw
+
+
+@pytest.fixture(scope="module")
+def drawn(undrawn: Callable[..., str]) -> Iterator[None]:
+    """Charts are drawn from here to the end of a file."""
+    from recon4.report.figures import Chart
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Chart, "svg", undrawn)
         yield
 
 

@@ -16,8 +16,6 @@ from recon4.review.journal import append, read_decided
 from recon4.store.project import read_artifacts
 from tests.service.review.reviewing import keys_of
 
-pytestmark = pytest.mark.usefixtures("undrawn")
-
 ALL = {"shape": "sphere", "center_m": [0.0, 0.0, 0.0], "radius_m": 1000.0}
 LEFT = {"shape": "box", "center_m": [-50.0, 0.0, 0.0], "size_m": [100.0, 100.0, 100.0]}
 

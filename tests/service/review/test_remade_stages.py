@@ -22,8 +22,6 @@ from recon4.store.stage import Artifact, read_figures, read_manifest
 from recon4.workflows.make_map import PLACE, POSES, SIGHT
 from tests.review_project import make
 
-pytestmark = pytest.mark.usefixtures("undrawn")
-
 CONFIRMED = (17, 77)
 """A loop that the program has accepted; without it the map moves by half a millimeter."""
 WRONG = (20, 90)

@@ -1,6 +1,7 @@
 """The page of a calibration, and the slices in it."""
 
 import numpy as np
+import pytest
 from scipy.spatial import cKDTree
 
 from recon4.calibration.slices import slice_points
@@ -9,6 +10,8 @@ from recon4.model.calibration_figures import CalibrationFigures, ParameterFigure
 from recon4.report.calibration_page import CalibrationPage, CloudSlice, write_calibration_page
 from recon4.store.frames import FrameStore, FrameWriter
 from tests.unit.calibration.conftest import mounted
+
+pytestmark = pytest.mark.usefixtures("drawn")
 
 
 def distance_m(slices):
