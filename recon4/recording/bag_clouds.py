@@ -50,6 +50,7 @@ class CloudReader:
             self._report.count("clouds_duplicate")
             return
         else:
+            self._order.shift_last(self._stamps.set_before, -self._stamps.set_ns)
             t_ns += self._stamps.shift_ns
             self._decoder.stamps_set_ns = -self._stamps.shift_ns
         yield from self._decoded(self._order.push(t_ns, (message, cloud)))

@@ -63,6 +63,8 @@ class SampleBatch:
             self._report.count(f"{self._kind}_without_stamp")
         elif self._stamps.is_sound(t_ns, message.t_ns):
             self._report.note_lag(self._kind.upper(), message.t_ns - t_ns)
+            for row in range(max(0, len(self._t_ns) - self._stamps.set_before), len(self._t_ns)):
+                self._t_ns[row] -= self._stamps.set_ns
         else:
             self._report.count(f"{self._kind}_wrong_time")
             return

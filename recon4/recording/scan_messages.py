@@ -104,6 +104,7 @@ class ScanCollector:
             self._report.count("scans_wrong_time")
             t_ns = self._stamps.expected_ns(message.t_ns)
         else:
+            self._order.shift_last(self._stamps.set_before, -self._stamps.set_ns)
             t_ns += self._stamps.shift_ns
         for stamp_ns, (topic, one) in self._order.push(t_ns, (message.topic, scan)):
             yield from self.add(one, stamp_ns, where=topic)

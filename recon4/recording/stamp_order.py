@@ -31,6 +31,12 @@ class StampOrder(Generic[Item]):
         self._held.append((stamp_ns, item))
         return self._next(ended=False) if len(self._held) > STAMPS.ahead else []
 
+    def shift_last(self, count: int, shift_ns: int) -> None:
+        """Move messages that were added last and not handed on; their clock had been set."""
+        for row in range(max(0, len(self._held) - count), len(self._held)):
+            stamp_ns, item = self._held[row]
+            self._held[row] = stamp_ns + shift_ns, item
+
     def flush(self) -> list[tuple[int, Item]]:
         """The remaining messages."""
         found = []

@@ -116,6 +116,12 @@ class StampTuning(Struct, frozen=True, kw_only=True):
     """Jumps of two topics that differ by less are one: messages travel for different times [ns]."""
     recorder_ns: int = 200_000_000
     """Stamps that jump by more than this with the recorder are by its clock [ns]."""
+    step_ns: int = 100_000_000
+    """Stamps that step by more between messages that arrive evenly are of a clock that was set."""
+    even_ns: int = 50_000_000
+    """Messages that arrive evenly are later than usual by less than this [ns]."""
+    usual_ns: float = 3e9
+    """The usual time between stamp and recording follows a change within this [ns]."""
     strays_ratio: float = 0.05
     """A larger ratio of stamps that are far from their neighbors is no set of wrong ones."""
     head: int = 120
