@@ -133,12 +133,6 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-if __name__ == "__main__":
-    from recon4.cli.terminal import write
-
-    write(markdown(), end="")
-
-
 class Alarms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Alarms of one kind in the runs of one source."""
 
@@ -182,3 +176,9 @@ def sources() -> tuple[MeasuredRuns, ...]:
     """All sources, the largest first."""
     text = resources.files("recon4.findings").joinpath("measured.toml").read_text("utf-8")
     return msgspec.convert(tomllib.loads(text), _Measured).sources
+
+
+if __name__ == "__main__":
+    from recon4.cli.terminal import write
+
+    write(markdown(), end="")
