@@ -185,6 +185,7 @@ class FindingKind(StrEnum):
     CLOCK_FREE = "CLOCK-FREE"
     CLOCK_FREE_IMU = "CLOCK-FREE-IMU"
     CLOCK_FOREIGN = "CLOCK-FOREIGN"
+    CLOCK_LIDARS = "CLOCK-LIDARS"
     SAMPLES_ELSEWHEN = "SAMPLES-ELSEWHEN"
     SAMPLES_SHORT = "SAMPLES-SHORT"
     RATE_UNFIT = "RATE-UNFIT"
@@ -266,6 +267,7 @@ CLOCK_DOUBTS = frozenset(
         FindingKind.CLOCK_FREE,
         FindingKind.CLOCK_FREE_IMU,
         FindingKind.CLOCK_FOREIGN,
+        FindingKind.CLOCK_LIDARS,
     }
 )
 """What readers say of clocks: it holds until the recording ends."""

@@ -13,7 +13,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import stamp_ns
-from recon4.recording.clock_compare import LIDAR
+from recon4.recording.clock_compare import note_lidar_lag
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import BagMessage
 from recon4.recording.formats.cloud_tables import cloud_table
@@ -73,7 +73,7 @@ class CloudReader:
                 # Recorded when it was complete: no point is later.
                 shots = moved(shots, -max(self._period_ns, late_ns) if late_ns > 0 else 0)
             if len(shots := moved(shots, self._offset_ns)):
-                self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
+                note_lidar_lag(message.topic, message.t_ns - int(shots.t_ns[-1]), self._report)
                 yield shots
 
     def _is_copy(self, t_ns: int, data: Any) -> bool:

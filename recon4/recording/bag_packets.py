@@ -13,7 +13,7 @@ from recon4.errors import ConfigError
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.clock_compare import LIDAR
+from recon4.recording.clock_compare import note_lidar_lag
 from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
 from recon4.recording.formats.shared_topics import SOURCE_MARK
@@ -181,7 +181,7 @@ class PacketReader:
         if len(rows):
             shots = decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, decoder.size))
             if len(shots):
-                self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
+                note_lidar_lag(self._name, message.t_ns - int(shots.t_ns[-1]), self._report)
                 yield shots
         samples = decoder.samples(datagrams.take(beside)) if beside.any() else None
         if samples is None:

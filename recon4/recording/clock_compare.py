@@ -75,6 +75,33 @@ def warn_of_free_clocks(report: ImportReport, *, imu_file: bool) -> None:
     )
 
 
+def note_lidar_lag(sensor: str, lag_ns: int, report: ImportReport) -> None:
+    """Remember how long after its last point a message of a LiDAR was recorded [ns]."""
+    report.note_lag(LIDAR, lag_ns)
+    report.note_lag(f"{LIDAR} {sensor}", lag_ns)
+
+
+def warn_of_lidar_clocks(report: ImportReport) -> None:
+    """Warn of LiDARs of one recording whose clocks differ; call once the lags are known.
+
+    Args:
+        report: Has the lags, and receives the warning.
+    """
+    first, *others = [what for what in report.lags_ns if what.startswith(f"{LIDAR} ")] or [""]
+    for what in others:
+        lags_s = [np.array(report.lags_ns[name]) * 1e-9 for name in (first, what)]
+        ahead_s = float(np.median(lags_s[0]) - np.median(lags_s[1]))
+        least_s = max(CLOCK_COMPARE.lidars_s, 2.0 * max(map(_spread, lags_s)))
+        if min(map(len, lags_s)) >= CLOCK_COMPARE.least and abs(ahead_s) > least_s:
+            report.warn(
+                FindingKind.CLOCK_LIDARS,
+                sensor=what.removeprefix(f"{LIDAR} "),
+                other=first.removeprefix(f"{LIDAR} "),
+                offset_s=-known_offset_s(ahead_s),
+                **offset_values(ahead_s),
+            )
+
+
 def warn_of_other_joint_clock(joint: str, report: ImportReport) -> None:
     """Warn of a joint whose poses are not on the clock of the sensor that it moves.
 

@@ -21,6 +21,7 @@ from recon4.recording.clock_compare import (
     IMU_CLOCK,
     is_same_clock,
     warn_of_free_clocks,
+    warn_of_lidar_clocks,
 )
 from recon4.recording.openers.request import Recording
 from recon4.recording.report import ImportReport
@@ -130,6 +131,7 @@ def judge_samples(
 
     A receiver may have no fix yet in the first second: only all positions are judged.
     """
+    warn_of_lidar_clocks(report)
     imu, gnss = join(head.imu), join(head.gnss) if whole else None
     offset_s = rig.imu_clock_offset_s
     if is_same_clock(IMU_CLOCK, offset_s, report) and imu is not None:

@@ -14,6 +14,8 @@ class ClockCompareTuning(Struct, frozen=True, kw_only=True):
     """Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
     travel_s: float = 0.1
     """Messages of sensors on one clock lag behind by amounts that differ by less [s]."""
+    lidars_s: float = 0.25
+    """Messages of two LiDARs travel for times that differ by less [s]."""
     joint_s: float = 0.25
     """Messages of a joint and of its sensor travel for times that differ by less [s]."""
     least: int = 3

@@ -246,6 +246,12 @@ CLOCK-FREE-IMU = IMU auf anderer Uhr?
     .meaning = Punkte und IMU passen vielleicht zeitlich nicht zusammen.
     .remedy = Wenn sie nicht passen, in der Rig-Datei [imu] time_offset_s angeben.
 
+CLOCK-LIDARS = Uhren der LiDARs verschieden
+    .text1 = Die Uhr von { $sensor } geht nach den Zeiten der Aufzeichnung { DECIMAL($ahead_s, digits: 3, sign: 1) } s vor der von { $other }: ihre Punkte passen zeitlich nicht zusammen.
+    .text2 = Das ist so viel wie: { WORD($looks) }.
+    .meaning = Ein Multiframe enthält Punkte von zwei Orten.
+    .remedy = In der Rig-Datei für { $sensor } time_offset_s = etwa { EXACT($offset_s, digits: 3) } angeben.
+
 CLOCK-FOREIGN = Messwerte auf anderer Uhr
     .text1 = Die Uhr ({ $what }) geht nach den Zeiten der Aufzeichnung { DECIMAL($ahead_s, digits: 3, sign: 1) } s vor der des LiDARs: ihre Messwerte werden nicht verwendet.
     .text2 = Das ist so viel wie: { WORD($looks) }.

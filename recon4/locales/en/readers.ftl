@@ -247,6 +247,12 @@ CLOCK-FREE-IMU = IMU on another clock?
     .remedy = If they do not fit, give [imu] time_offset_s in the rig file.
     .meaning = Points and IMU may not fit in time.
 
+CLOCK-LIDARS = Clocks of LiDARs differ
+    .text1 = The clock of { $sensor } is ahead of that of { $other } by { DECIMAL($ahead_s, digits: 3, sign: 1) } s, by when both were recorded: their points do not fit in time.
+    .text2 = That is as of { WORD($looks) }.
+    .remedy = Give { $sensor } time_offset_s = about { EXACT($offset_s, digits: 3) } in the rig file.
+    .meaning = One multiframe has points of two places.
+
 CLOCK-FOREIGN = Samples on another clock
     .text1 = The clock of the { $what } is ahead of the LiDAR's by { DECIMAL($ahead_s, digits: 3, sign: 1) } s, by when both were recorded: its samples are not used.
     .text2 = That is as of { WORD($looks) }.

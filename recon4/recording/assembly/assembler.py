@@ -19,6 +19,7 @@ from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation_rate import nominal, rotation_of_head
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.assembly.tuning import ASSEMBLY
+from recon4.recording.clock_compare import warn_of_lidar_clocks
 from recon4.recording.clock_names import clocks_text
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning
@@ -134,6 +135,7 @@ class Assembler:
         frames = list(self._cut(final=True))
         for stream in self._streams:
             self._report.count("points_late", stream.late)
+        warn_of_lidar_clocks(self._report)
         held, self._held = self._held, None
         return frames if held is None or self._too_small(held) else [*frames, held]
 

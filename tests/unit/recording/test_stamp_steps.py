@@ -3,11 +3,13 @@
 import numpy as np
 import pytest
 
+from recon4.recording.info import describe
 from recon4.recording.stamps import StampClock
 from recon4.units import SECOND_NS
-from tests.builders import T0_NS, Bag, noisy, room_cloud
+from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud
+from tests.robot_bags import RobotBag
 from tests.unit.recording.ingested import run
-from tests.warned import K, warned
+from tests.warned import K, warned, words
 
 TABLE = room_cloud()
 SHADE = TABLE["intensity"]
@@ -86,3 +88,20 @@ def test_a_clock_that_is_set_while_messages_are_held_up_now_and_then_is_found():
         found.append(clock.shift_ns)
 
     assert np.mean(np.abs(np.array(found) + SECOND_NS // 2) < 50_000_000) > 0.8
+
+
+@pytest.mark.parametrize("ahead_s", [0.0, 0.1, 0.3, -3.0])
+def test_two_lidars_whose_clocks_differ_are_named(tmp_path, ahead_s):
+    path = bag_path(tmp_path, "mcap")
+    with RobotBag(path, "mcap") as bag:
+        bag.tf(*(("base_link", name, (0, 0, z, 0, 0, 0, 1)) for z, name in enumerate("ab", 1)))
+        for k in range(40):
+            for bag.frame, late_s in (("a", 0.0), ("b", ahead_s)):
+                bag.recorded_ns = T0_NS + k * SECOND_NS // 10
+                stamp_ns = bag.recorded_ns + round(late_s * SECOND_NS)
+                bag.cloud(f"/{bag.frame}", stamp_ns, TABLE | {"intensity": np.full_like(SHADE, k)})
+
+    for where in (run(path, out=tmp_path / "o").report, describe(path)):
+        said = warned(where, K.CLOCK_LIDARS, sensor="/b", other="/a")
+        assert said == (abs(ahead_s) > 0.25)
+        assert not said or f"Give /b time_offset_s = about {-ahead_s:.3f}" in words(where)
