@@ -14,7 +14,7 @@ import gtsam
 import numpy as np
 
 from recon4.errors import GraphError
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import ARM_M, SE3, Array
 from recon4.model.pose_graph import Relations
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.priors import Kernel, PosePriors, Priors, TargetPriors
@@ -86,7 +86,8 @@ class FactorProblem:
         optimizer = gtsam.LevenbergMarquardtOptimizer(
             self.factors(weights, kernel=kernel), values, parameters
         )
-        found = _poses(optimizer.optimize(), self.nodes)
+        values = _stepped(optimizer, tuning) if tuning.last_step_m else optimizer.optimize()
+        found = _poses(values, self.nodes)
         # With a NaN inside, gtsam leaves the poses unchanged; only the error shows it.
         if not np.isfinite(optimizer.error()) or not np.isfinite(found.t).all():
             raise GraphError("the optimizer met a number that is not finite")
@@ -128,6 +129,20 @@ class FactorProblem:
         for factor in self.always:
             out.add(factor)
         return out
+
+
+def _stepped(optimizer: Any, tuning: SolveTuning) -> Any:
+    """The values after an iteration that moves no pose by more than ``tuning`` asks for."""
+    before = gtsam.utilities.extractPose3(optimizer.values())
+    while optimizer.iterations() < tuning.max_iterations:
+        optimizer.iterate()
+        after = gtsam.utilities.extractPose3(optimizer.values())
+        turn_rad = np.linalg.norm((after - before)[:, :9], axis=1) / np.sqrt(2.0)
+        step_m = np.linalg.norm((after - before)[:, 9:], axis=1) + ARM_M * turn_rad
+        if not step_m.max() > tuning.last_step_m:  # nor if it is not a number
+            break
+        before = after
+    return optimizer.values()
 
 
 def _check_prior(prior: Priors, *, nodes: int) -> None:

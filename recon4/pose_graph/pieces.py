@@ -40,6 +40,8 @@ def joined_pieces(graph: PoseGraph, pieces: Pieces) -> Pieces:
 
     Every edge but odometry joins; the number of a joined piece is the smallest of its parts.
     """
+    if not pieces.any():  # there is one
+        return pieces
     label = np.arange(int(pieces.max(initial=0)) + 1)
     for edge in graph.edges:
         if edge.in_graph and edge.kind is not EdgeKind.ODOMETRY:

@@ -17,7 +17,13 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import NodesPlaced, positions_of
 from recon4.model.figures import GraphFigures
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, accepted_unseen
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    PoseGraph,
+    accepted_unseen,
+    relations_of,
+)
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
@@ -30,6 +36,7 @@ from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.places import PlaceDrawer
 from recon4.pose_graph.priors import Kernel
 from recon4.pose_graph.recognition import recognize, without_settled
+from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.pose_graph.tuning_solve import COARSE, SEARCH, SOLVE, SolveTuning
@@ -39,8 +46,6 @@ from recon4.settings.reads import GraphReads
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.unfinished import unfinished_file
-
-_KERNELS: tuple[Kernel, ...] = ("none", "cauchy")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -281,14 +286,17 @@ class _Attempts:
     def add(self, graph: PoseGraph, recognized: list[Edge]) -> PoseGraph:
         """Add recognized places and optimize.
 
-        Without a kernel first: it would ignore loop closures that move the map by meters.
+        Without a kernel first, unless they fit as the graph is: a kernel would ignore loop closures
+        that move the map by meters.
         """
         graph = placed(graph, joined_pieces(graph, self._pieces), recognized)
         graph = graph.with_edges(_newest(graph.edges, recognized))
-        if any(edge.in_graph for edge in recognized):
-            for kernel in _KERNELS:
-                graph = self._solved(graph, kernel, COARSE)
-        return graph
+        used = relations_of([edge for edge in recognized if edge.in_graph])
+        if not len(used):
+            return graph
+        if squared_residuals(graph.T_map_body, used).max() > SOLVE.cauchy_sd**2:
+            graph = self._solved(graph, "none", COARSE)
+        return self._solved(graph, "cauchy", COARSE)
 
     def settled(self, graph: PoseGraph) -> PoseGraph:
         """The graph with its final poses."""

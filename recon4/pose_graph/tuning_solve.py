@@ -139,11 +139,15 @@ class SolveTuning(Struct, frozen=True, kw_only=True):
     """Upper bound on the iterations."""
     relative_decrease: float = 1e-7
     """A smaller relative decrease of the error has converged."""
+    last_step_m: float = 0.0
+    """An iteration that moves no pose by more is the last one [m, rotation as at 5 m]; 0 = the
+    decrease alone tells. On walks of 2500 and 10 000 nodes each iteration moves the poses by at
+    most a seventh of what the one before did (docs/studies/benchmarks.md)."""
 
 
 SOLVE = SolveTuning()
-COARSE = SolveTuning(relative_decrease=1e-3)
-"""Between the rounds of a search: millimeters are left, pairs need decimeters."""
+COARSE = SolveTuning(last_step_m=0.3)
+"""Between the rounds of a search: centimeters are left, pairs need decimeters."""
 GRADUAL = SolveTuning(max_iterations=ROBUST.inner_iterations)
 """Rounds of the graduated robust solve."""
 
