@@ -197,7 +197,7 @@ class _NodeWalls(NamedTuple):
     """What a node sees."""
 
     walls_m: Array
-    """Horizontal positions of the points on walls in the map [m], (N, 2)."""
+    """Horizontal positions of the points on walls in the map, axis by axis [m], (2, N)."""
     layers: Layers
     """Of all points."""
 
@@ -210,11 +210,11 @@ def _walls_of(graph: PoseGraph, views: NodeRangeImages, node: int) -> _NodeWalls
     p_map = T_map_body @ p_body
     height = p_map[:, 2] - T_map_body.t[2]
     is_wall = (height > -PLACES.below_m) & (height < PLACES.above_m)
-    return _NodeWalls(p_map[is_wall, :2], layers_of(height))
+    return _NodeWalls(np.compress(is_wall, p_map.T[:2], axis=1), layers_of(height))
 
 
 def _image_of(seen: Collection[_NodeWalls], t_m: Array) -> DensityImage:
     """The image of a place at ``t_m`` in the map, (3,)."""
-    walls_m = np.concatenate([one.walls_m for one in seen])
+    walls_m = np.concatenate([one.walls_m for one in seen], axis=1)
     layers = np.sum([one.layers for one in seen], axis=0)
-    return make_density_image(walls_m - t_m[:2], layers)
+    return make_density_image((walls_m - t_m[:2, None]).T, layers)
