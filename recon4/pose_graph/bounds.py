@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.pose_graph.best_paths import PathSums, links_of
+from recon4.pose_graph.relations import in_map_axes
 
 _YAW = 2
 """Row of the rotation about the vertical among the tangents of an edge in map axes."""
@@ -55,7 +55,7 @@ def relative_bounds(graph: PoseGraph, nodes: Rows, *, leveled: bool) -> Relative
     of = graph.relations
     used = np.flatnonzero(of.in_graph)
     cov_j = np.asarray(np.linalg.inv(of.information[used]), np.float64)
-    cov = _in_map_axes(graph.T_map_body, cov_j, of.j[used])
+    cov = in_map_axes(graph.T_map_body[of.j[used]], cov_j)
     sd = np.sqrt(np.maximum(np.einsum("eaa->ea", cov), 0.0))
     t_m = graph.T_map_body.t
     arm_m = 0.5 * float(np.linalg.norm(np.ptp(t_m[:, :2], axis=0)))
@@ -68,11 +68,3 @@ def relative_bounds(graph: PoseGraph, nodes: Rows, *, leveled: bool) -> Relative
         for weight in (horizontal, vertical, sd[:, _YAW])
     )
     return RelativeBounds(far_m, HeightSums(height) if leveled else height, turn_rad)
-
-
-def _in_map_axes(T_map_body: SE3, cov: Array, j: Rows) -> Array:
-    """Covariances of tangents at nodes ``j`` with the axes of the map, (E, 6, 6)."""
-    A = np.zeros((len(j), 6, 6))
-    A[:, :3, :3] = A[:, 3:, 3:] = T_map_body.R[j]
-    turned: Array = A @ cov @ np.swapaxes(A, 1, 2)
-    return turned

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.model.pose_graph import Flags, PoseGraph
 from recon4.pose_graph.carried_motion import CarriedMotion
+from recon4.pose_graph.relations import odometry_steps
 from recon4.pose_graph.tuning_solve import ERROR_MODEL
 
 
@@ -113,13 +114,12 @@ def agreement(
         measured = np.clip(np.median(sizes, axis=1) / usual, ERROR_MODEL.least, ERROR_MODEL.most)
         ratio = measured ** min(registered.sum() / ERROR_MODEL.enough_edges, 1.0)
     moved, weight = np.zeros((len(graph) - 1, 6, 6)), np.zeros(len(graph) - 1)
-    for edge, residual in zip(graph.edges, xi, strict=True):
-        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1 and _is_strong(edge, model):
-            into_map = graph.T_map_body.R[edge.j]
-            for part in (ROTATION, TRANSLATION):
-                r = into_map @ residual[part]
-                moved[edge.i, part, part] = np.outer(r, r)
-            weight[edge.i] = 1.0
+    steps = odometry_steps(graph)
+    steps = steps[_is_strong(of.information[steps], model)]
+    for part in (ROTATION, TRANSLATION):
+        r = np.einsum("nij,nj->ni", graph.T_map_body.R[of.j[steps]], xi[steps, part])
+        moved[of.i[steps], part, part] = r[:, :, None] * r[:, None, :]
+    weight[of.i[steps]] = 1.0
     if carried is not None:
         moved[:, TRANSLATION, TRANSLATION] *= _unexplained(
             moved[:, TRANSLATION, TRANSLATION], carried.in_map(graph)
@@ -143,7 +143,7 @@ def _unexplained(moved: Array, stated: Array) -> Array:
     return np.clip(1.0 - expected / np.maximum(squared, 1e-30), 0.0, 1.0)
 
 
-def _is_strong(edge: Edge, model: ErrorModel) -> bool:
-    """Whether odometry was sure of an edge: what was lost is moved by the graph as it should be."""
-    sd_m = np.linalg.eigvalsh(np.linalg.inv(edge.information)[TRANSLATION, TRANSLATION])[-1] ** 0.5
-    return bool(sd_m < model.weak_m)
+def _is_strong(information: Array, model: ErrorModel) -> Flags:
+    """Whether odometry was sure of edges, (E,): what was lost the graph moves as it should be."""
+    cov = np.linalg.inv(information)[:, TRANSLATION, TRANSLATION]
+    return np.asarray(np.sqrt(np.linalg.eigvalsh(cov)[:, -1]) < model.weak_m)

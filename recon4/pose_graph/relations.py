@@ -1,11 +1,11 @@
-"""Residuals of edges at given poses, and reversal of edges."""
+"""Residuals of edges at given poses, covariances in axes of the map, reversal of edges."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
-from recon4.model.pose_graph import PoseGraph, Relations
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Relations, Rows
 
 
 def squared_residuals(T_map_body: SE3, of: Relations) -> Array:
@@ -28,6 +28,29 @@ def adjoint(T_a_b: SE3) -> Array:
     out[..., ROTATION, ROTATION] = out[..., TRANSLATION, TRANSLATION] = T_a_b.R
     out[..., TRANSLATION, ROTATION] = skew(T_a_b.t) @ T_a_b.R
     return out
+
+
+def in_map_axes(T_map_body: SE3, cov: Array) -> Array:
+    """Covariances, or information, of tangents at some nodes with the axes of the map, (E, 6, 6).
+
+    Args:
+        T_map_body: Poses of the nodes, a batch of E.
+        cov: In the axes of each, (E, 6, 6).
+    """
+    A = np.zeros((len(T_map_body), 6, 6))
+    A[:, ROTATION, ROTATION] = A[:, TRANSLATION, TRANSLATION] = T_map_body.R
+    turned: Array = A @ cov @ np.swapaxes(A, 1, 2)
+    return turned
+
+
+def odometry_steps(graph: PoseGraph) -> Rows:
+    """Rows of the odometry edges from each node to the next."""
+    steps = [
+        row
+        for row, edge in enumerate(graph.edges)
+        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1
+    ]
+    return np.array(steps, np.intp)
 
 
 def reverse(T_i_j: SE3, information: Array) -> tuple[SE3, Array]:

@@ -15,13 +15,14 @@ from itertools import pairwise
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
-from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
+from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.trajectory import Times
 from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement, agreement
 from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.priors import PositionPriors
+from recon4.pose_graph.relations import in_map_axes, odometry_steps
 from recon4.pose_graph.single_poses import unseen_errors, weak_part
 from recon4.pose_graph.tuning_solve import UNCERTAINTY
 
@@ -288,10 +289,9 @@ def _steps(
 def _stated(graph: PoseGraph) -> Array:
     """Covariance that each odometry edge states, in axes of the map, (N - 1, 6, 6)."""
     stated = np.tile(np.eye(6), (len(graph) - 1, 1, 1))
-    for edge in graph.edges:
-        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1:
-            into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
-            stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
+    of, steps = graph.relations, odometry_steps(graph)
+    cov = np.asarray(np.linalg.inv(of.information[steps]), np.float64)
+    stated[of.i[steps]] = in_map_axes(graph.T_map_body[of.j[steps]], cov)
     return stated
 
 
@@ -336,14 +336,17 @@ def _add_edges(information: Array, graph: PoseGraph, chain: _Chain, *, factor: A
     _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
     move = _transport(chain.T_map_body.t[j[used]] - chain.T_map_body.t[i[used]])
     scale = 1.0 / np.repeat(factor, 3)
-    for row, F, shared in zip(used, move, count[which.ravel()], strict=True):
-        into_map = np.kron(np.eye(2), graph.T_map_body.R[of.j[row]])
-        W = scale * (into_map @ of.information[row] @ into_map.T) * scale[:, None] / shared
-        a, b = slice(6 * i[row], 6 * i[row] + 6), slice(6 * j[row], 6 * j[row] + 6)
-        information[a, a] += F.T @ W @ F
-        information[b, b] += W
-        information[a, b] -= F.T @ W
-        information[b, a] -= W @ F
+    measured = in_map_axes(graph.T_map_body[of.j[used]], of.information[used])
+    W = scale * measured * scale[:, None] / count[which.ravel()][:, None, None]
+    back = np.swapaxes(move, 1, 2) @ W
+    ends = 6 * i[used], 6 * j[used]
+    parts = zip(*(end.tolist() for end in ends), back @ move, W, back, W @ move, strict=True)
+    for first, second, at_a, at_b, across, again in parts:
+        a, b = slice(first, first + 6), slice(second, second + 6)
+        information[a, a] += at_a
+        information[b, b] += at_b
+        information[a, b] -= across
+        information[b, a] -= again
 
 
 def _add_positions(

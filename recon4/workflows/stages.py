@@ -182,5 +182,5 @@ VERIFICATION = Stage(
     "verification", 3, VerificationReads, _verification, VerificationFigures, percent=2.0
 )
 REVIEW = Stage("review", 5, VerificationReads, _review, ReviewFigures)
-LEVEL = Stage("level", 35, LevelReads, _level, LevelFigures, percent=1.0)
+LEVEL = Stage("level", 36, LevelReads, _level, LevelFigures, percent=1.0)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures, percent=1.0)
