@@ -8,11 +8,12 @@ points are measured: pairs are "registered" by the truth, with noise, and some o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import gettempdir
 
 import numpy as np
+from msgspec import structs
 from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import SE3, Array
@@ -142,14 +143,14 @@ class TrueRegistrar:
         if across_m[2] > SIGHT_M or across_m[1] > 0.5:
             return edge
         if np.linalg.norm(off.t) > CONVERGES_M or off.angle() > CONVERGES_RAD:
-            return replace(edge, judgments=(_rejected(Reason.NOT_CONVERGED),))
+            return structs.replace(edge, judgments=(_rejected(Reason.NOT_CONVERGED),))
         if pair.j % BARE_EVERY < BARE_NODES:
-            return replace(edge, judgments=(_rejected(Reason.FEW_MATCHES),))
+            return structs.replace(edge, judgments=(_rejected(Reason.FEW_MATCHES),))
         sd = np.array(PAIR_SD)
         if self._rng.random() < FALSE_PAIRS:
             sd = sd + np.array([0.0, 0.0, 0.02, 0.4, 0.4, 0.1])
         noise = SE3.exp(self._rng.normal(size=6) * sd)
-        return replace(
+        return structs.replace(
             edge, T_i_j=T_true @ noise, overlap=0.8, error_m=0.02, degeneracy=0.1,
             information=np.diag(np.array(STATED_SD) ** -2.0),
             judgments=(Judgment(Judge.SEARCH, Verdict.ACCEPTED),),

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from msgspec import Struct, field, structs
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
@@ -133,8 +134,7 @@ class Judgment:
         )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Edge:
+class Edge(Struct, frozen=True, eq=False, kw_only=True):
     """A measured relative pose of two nodes, with the history of the verdicts on it."""
 
     i: int
@@ -173,7 +173,7 @@ class Edge:
         """The edge with some fields changed; its judgments change by `judged` only."""
         if "judgments" in changes:
             raise TypeError("a verdict is given by Edge.judged, which keeps the earlier ones")
-        return replace(self, **changes)
+        return structs.replace(self, **changes)
 
     def judged(self, judgment: Judgment) -> Edge:
         """The edge with another verdict; the earlier ones stay in its history.
@@ -187,7 +187,7 @@ class Edge:
         if last.by is Judge.PERSON and judgment.by is not Judge.PERSON:
             raise ValueError(f"edge {self.i}-{self.j}: the decision of {last.person} stands")
         earlier = self.judgments[:-1] if judgment.repeats(last) else self.judgments
-        return replace(self, judgments=(*earlier, judgment))
+        return structs.replace(self, judgments=(*earlier, judgment))
 
     def after(self, earlier: Edge) -> Edge:
         """The edge with the history of its pair before its own.
@@ -200,7 +200,7 @@ class Edge:
             if one != other:
                 break
             known += 1
-        edge = replace(self, judgments=earlier.judgments)
+        edge = structs.replace(self, judgments=earlier.judgments)
         for judgment in self.judgments[known:]:
             edge = edge.judged(judgment)
         return edge
@@ -215,7 +215,7 @@ class Edge:
             count -= 1
         if count == len(self.judgments):
             return self
-        return replace(self, judgments=self.judgments[:count])
+        return structs.replace(self, judgments=self.judgments[:count])
 
     @property
     def verdict(self) -> Verdict:

@@ -212,7 +212,7 @@ def register_pair(
     overlap = _close_ratio(
         tree, some[1], edge.T_i_j, reach_m=tuned(LineTuning, settings.lines).link_distance_m
     )
-    return replace(edge, overlap=overlap), overlap * len(some[1])
+    return edge.evolve(overlap=overlap), overlap * len(some[1])
 
 
 def _register(

@@ -263,7 +263,7 @@ def test_classes_are_those_of_the_points_that_the_first_page_counts(tmp_path):
 def test_only_two_visits_of_a_place_are_counted_as_loop_closures(room):
     graph = assess(project_facts(room)).results.graph
     near = next(k for k, one in enumerate(graph.edges) if one.kind is EdgeKind.LOOP)
-    edges = [replace(one, kind=EdgeKind.NEIGHBOR) if k == near else one
+    edges = [one.evolve(kind=EdgeKind.NEIGHBOR) if k == near else one
              for k, one in enumerate(graph.edges)]  # fmt: skip
     graph = replace(graph, edges=edges)
     kinds = Counter(one.kind for one in edges if one.verdict is Verdict.ACCEPTED)

@@ -58,7 +58,7 @@ def stated(bound_m: float) -> PoseUncertainty:
     """Of 14 nodes, the 8th of which observes no shift, and states 20 cm as its edge does."""
     graph = chain(14, sd=np.repeat([1e-3, 0.005], 3))
     wide = np.diag(np.repeat([1e-3, 0.2], 3) ** -2.0)
-    edges = [replace(e, information=wide) if e.i == 6 else e for e in graph.edges]
+    edges = [e.evolve(information=wide) if e.i == 6 else e for e in graph.edges]
     bound, cov, observed = NOT_LONE.copy(), SURE.copy(), np.ones(14, bool)
     bound[7], observed[7] = bound_m**2 * np.eye(3), False
     cov[7, TRANSLATION, TRANSLATION] = 0.2**2 * np.eye(3)

@@ -306,7 +306,7 @@ def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> No
     cov = np.diag(STEP_SD**2)
     with_shift = np.tile(cov, (13, 1, 1))
     with_shift[:, TRANSLATION, TRANSLATION] += carried.between(graph.frame_ids)
-    edges = [replace(e, information=np.linalg.inv(with_shift[e.i])) for e in graph.edges]
+    edges = [e.evolve(information=np.linalg.inv(with_shift[e.i])) for e in graph.edges]
     graph = replace(graph, edges=tuple(edges))
 
     plain = pose_uncertainty(graph)
@@ -328,7 +328,7 @@ def test_a_step_that_points_observe_is_known_however_large_its_covariance(
     """As through a door without an IMU: 16 cm were stated, 2 cm are usual, and it was right."""
     graph = chain(14, sd=np.repeat([1e-3, 0.02], 3))
     wide = np.diag(np.repeat([1e3, 0.16], 3) ** np.repeat([2.0, -2.0], 3))
-    edges = [replace(e, information=wide) if e.i == 8 else e for e in graph.edges]
+    edges = [e.evolve(information=wide) if e.i == 8 else e for e in graph.edges]
     points = np.ones(14, bool)
     points[9] = observed
     carried = CarriedMotion(np.zeros((14, 3, 3)), graph.T_map_body.R, points, SURE, NOT_LONE)
