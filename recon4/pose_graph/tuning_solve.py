@@ -142,7 +142,7 @@ class SolveTuning(Struct, frozen=True, kw_only=True):
     last_step_m: float = 0.0
     """An iteration that moves no pose by more is the last one [m, rotation as at 5 m]; 0 = the
     decrease alone tells. On walks of 2500 and 10 000 nodes each iteration moves the poses by at
-    most a seventh of what the one before did (docs/studies/benchmarks.md)."""
+    most a sixth of what the one before did (docs/studies/benchmarks.md)."""
 
 
 SOLVE = SolveTuning()
