@@ -77,6 +77,10 @@ class CarrierCubes:
     around: NDArray[np.bool_]
     """And those that touch them, into which he moves, (I, J, K)."""
 
+    def surely(self, p_body: Array) -> NDArray[np.bool_]:
+        """Which near points lie where nothing but the carrier can be, (N, 3) -> (N,)."""
+        return np.asarray(self.inner.ravel()[_cubes(p_body)])
+
     def of(self, p_body: Array, verdict: NDArray[np.int8]) -> NDArray[np.bool_]:
         """Which near points are of the carrier, (N, 3) and (N,) -> (N,)."""
         cube = _cubes(p_body)

@@ -19,12 +19,13 @@ from numpy.typing import NDArray
 
 from recon4.classes.carrier import CarrierCubes, CarrierVolume, near_points
 from recon4.classes.class_parts import ClassedWalk, Classes, OrderedClasses, save_classes
-from recon4.classes.tuning import KNOWN_PLACES, SIGHT, SPREAD, VIEWS, VOLUME
+from recon4.classes.tuning import KNOWN_PLACES, SIGHT, SPREAD, THINGS, TOUCHING, VIEWS, VOLUME
 from recon4.classes.views import RegularViews
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
-from recon4.kernels.seen_through import Cubes, RangeViews, find_seen_through, spread_to_neighbors
+from recon4.kernels.seen_through import EVIDENCE, RangeViews, find_seen_through
+from recon4.kernels.things import Cubes, JudgedPoints, move_as_things, spread_to_neighbors
 from recon4.mapping.mirrors import Mirror, Sight, load_mirrors
 from recon4.mapping.threads import in_order
 from recon4.mapping.tuning import MAP_BUILD
@@ -192,7 +193,7 @@ def _learn_carrier(
         near = frame.take(rows)
         p_map = place(near, trajectory, rig)
         others = views.near(frame.t_mid_ns)
-        verdict = _verdicts(near, p_map, others, trajectory=trajectory, places=KnownPlaces())
+        verdict = _verdicts(near, p_map, others, of=trajectory, places=KnownPlaces())
         volume.learn(p_body, verdict)
     return volume.filled()
 
@@ -220,20 +221,22 @@ class KnownPlaces:
     def __init__(self) -> None:
         self.held = np.zeros(1 << KNOWN_PLACES.bits, np.int64)
         moving, met = np.empty((2, *KNOWN_PLACES.cubes), np.int32)
-        self.cubes = Cubes(moving, met, np.empty(KNOWN_PLACES.cubes[:2], np.float32))
+        self.cubes = Cubes(moving, met, *np.empty((2, *KNOWN_PLACES.cubes[:2]), np.float32))
 
 
 def _classes(
     frame: Multiframe, views: RangeViews | None, *, known: _Compared, places: KnownPlaces
 ) -> NDArray[np.uint8]:
-    rig = known.frames.rig
-    placed = place_with_origins(frame, known.trajectory, rig)
-    verdict = _verdicts(frame, placed.xyz_m, views, trajectory=known.trajectory, places=places)
+    rig, trajectory = known.frames.rig, known.trajectory
+    placed = place_with_origins(frame, trajectory, rig)
     classes = np.full(len(frame), PointClass.UNCLASSIFIED, np.uint8)
-    classes[verdict == VERDICT.seen_through] = PointClass.MOVING
     for mirror in known.mirrors:
         classes[mirror.reflects(Sight(placed.xyz_m, placed.origin_m))] = PointClass.REFLECTION
     near, p_body = near_points(frame, rig)
+    classes[near[known.carrier.surely(p_body)]] = PointClass.CARRIER
+    others = classes == PointClass.UNCLASSIFIED
+    verdict = _verdicts(frame, placed.xyz_m, views, of=trajectory, places=places, things=others)
+    classes[others & (verdict == VERDICT.seen_through)] = PointClass.MOVING
     classes[near[known.carrier.of(p_body, verdict[near])]] = PointClass.CARRIER
     return classes
 
@@ -243,13 +246,21 @@ def _verdicts(
     p_map: Array,
     views: RangeViews | None,
     *,
-    trajectory: Trajectory,
+    of: Trajectory,
     places: KnownPlaces,
+    things: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.int8]:
+    """What other scans say of points; ``things``: which points may be of a thing that moves."""
     verdict = np.full(len(frame), VERDICT.unknown, np.int8)
     if views is None:
         return verdict
-    find_seen_through(p_map, frame.sensor, views, SIGHT, places.held, verdict)
-    body_m = trajectory.at(np.array([frame.t_mid_ns]), slack_ns=frame.duration_ns).t[0]
-    spread_to_neighbors(p_map, body_m, SPREAD, places.cubes, verdict)
+    evidence, cubes = np.empty(len(frame), np.int8), places.cubes
+    find_seen_through(p_map, frame.sensor, views, SIGHT, places.held, evidence)
+    body_m = of.at(np.array([frame.t_mid_ns]), slack_ns=frame.duration_ns).t[0]
+    points = JudgedPoints(p_map, evidence, verdict)
+    spread_to_neighbors(points, body_m, SPREAD, cubes)
+    if things is not None:
+        move_as_things(points, things, body_m, THINGS, cubes)
+        unmet = things & (evidence > EVIDENCE.doubted)
+        move_as_things(points, unmet, body_m, TOUCHING, cubes)
     return verdict

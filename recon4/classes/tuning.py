@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from msgspec import Struct
 
-from recon4.kernels.seen_through import SightRules, SpreadRules
+from recon4.kernels.seen_through import SightRules
+from recon4.kernels.things import SpreadRules, ThingRules
 
 
 class ViewTuning(Struct, frozen=True, kw_only=True):
@@ -45,10 +46,11 @@ SIGHT = SightRules(
     farthest_m=30.0,
     enough=2,
     surely_moved=5,
-    surely_met=6,
+    surely_met=5,
     gone=2,
     least_ratio=0.5,
     place_m=0.15,
+    confirmed=0.7,
 )
 
 
@@ -66,6 +68,10 @@ KNOWN_PLACES = KnownPlaceTuning()
 SPREAD = SpreadRules(
     cube_m=0.2, few=3, most=1.0, stands=6.0, floor_m=0.1, feet_m=0.4, legs_m=1.5, above=5
 )
+
+THINGS = ThingRules(cube_m=SPREAD.cube_m, floor_m=0.25, around=2, few=10, surely=0.05, share=0.25)
+TOUCHING = ThingRules(cube_m=SPREAD.cube_m, floor_m=0.25, around=2, few=10, surely=0.5, share=0.5)
+"""Of what no scan meets: it is connected with nothing that stands, but may be a part of it."""
 
 
 class CarrierVolumeTuning(Struct, frozen=True, kw_only=True):

@@ -54,6 +54,35 @@ class SightRules(NamedTuple):
     """If all are asked, as many see through a moving point for each that meets it."""
     place_m: float
     """Edge of the cubes of which all points are like the first."""
+    confirmed: float
+    """Where scans also meet a surface, as many meet the end of a beam that sees through for each
+    that has something before it."""
+
+
+class PlaceEvidence(NamedTuple):
+    """What other scans say of a place, from what stands to what moved."""
+
+    stands: int = 1
+    """Many scans meet a surface there, and none sees through."""
+    met: int = 2
+    doubted: int = 3
+    """Some scans see through, too, but too few."""
+    unknown: int = 4
+    glimpsed: int = 5
+    """Too few scans see through, and none meets a surface."""
+    moved: int = 6
+
+
+EVIDENCE = PlaceEvidence()
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _limits(range_m: float, rules: SightRules) -> tuple[float, float]:
+    """How far everything behind a place lies, and a surface that is met there [m]."""
+    return (
+        rules.behind_m + rules.behind_per_m * range_m,
+        rules.same_m + rules.same_per_m * range_m,
+    )
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -74,10 +103,7 @@ def _vote(p: Place, own: int, v: int, views: RangeViews, rules: SightRules) -> i
         row, column, range_m = cell_towards(x, y, z, shape)
         if range_m < rules.nearest_m or range_m > rules.farthest_m:
             continue
-        limits = (
-            rules.behind_m + rules.behind_per_m * range_m,
-            rules.same_m + rules.same_per_m * range_m,
-        )
+        limits = _limits(range_m, rules)
         seen = sight(images, (v, s), (row, column), range_m, limits)
         if seen == VERDICT.met:
             return VERDICT.met
@@ -86,23 +112,112 @@ def _vote(p: Place, own: int, v: int, views: RangeViews, rules: SightRules) -> i
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _verdict(p: Place, own: int, views: RangeViews, rules: SightRules) -> int:
+def _evidence(p: Place, own: int, views: RangeViews, rules: SightRules) -> int:
     """Whether more scans see through a place than meet a surface there, or it was left for good."""
-    passes = meets = 0
+    passes: Any = 0
+    meets: Any = 0
     for v in views.asked:
         vote = _vote(p, own, v, views, rules)
         passes += vote == VERDICT.seen_through
         meets += vote == VERDICT.met
         if passes - meets >= rules.surely_moved or meets - passes >= rules.surely_met:
             break
-    if passes >= rules.enough and passes > rules.least_ratio * meets:
-        return VERDICT.seen_through
     if meets == 0:
-        return VERDICT.unknown
-    is_gone = _is_empty(p, own, views.after, views, rules) or _is_empty(
-        p, own, views.before, views, rules
+        if passes >= rules.enough:
+            return int(EVIDENCE.moved)
+        return int(EVIDENCE.glimpsed if passes else EVIDENCE.unknown)
+    if passes >= rules.enough and _moved_surely(p, own, meets, views, rules):
+        return int(EVIDENCE.moved)
+    gone = max(
+        _is_empty(p, own, views.after, views, rules), _is_empty(p, own, views.before, views, rules)
     )
-    return VERDICT.seen_through if is_gone else VERDICT.met
+    if gone == EVIDENCE.met and passes == 0:
+        return int(EVIDENCE.stands if meets >= rules.surely_met else EVIDENCE.met)
+    return int(max(gone, EVIDENCE.doubted))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _moved_surely(p: Place, own: int, meets: int, views: RangeViews, rules: SightRules) -> bool:
+    """Whether enough scans see through a place with beams whose ends others confirm."""
+    sure: Any = 0
+    for v in views.asked:
+        if _vote(p, own, v, views, rules) == VERDICT.seen_through:
+            sure += _is_confirmed(p, v, views, rules)
+            if sure >= rules.enough and sure > rules.least_ratio * meets:
+                return True
+    return False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _is_confirmed(p: Place, v: int, views: RangeViews, rules: SightRules) -> bool:
+    """Whether other scans meet the end of the beam with which a scan sees through a place.
+
+    A beam that a small mirror reflects has the range of its whole path. Its end seems to lie
+    beyond a wall, which hides it from nearly all others.
+    """
+    end, found = _end_of_beam(p, v, views, rules)
+    if not found:
+        return False
+    meets: Any = 0
+    hides: Any = 0
+    for w in views.asked:
+        if w != v:
+            vote = _vote(end, 0, w, views, rules)
+            meets += vote == VERDICT.met
+            hides += vote == VERDICT.unknown and _hides(end, w, views, rules)
+            if meets - rules.confirmed * hides >= rules.surely_met:
+                return True
+    return bool(meets >= rules.confirmed * hides)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _end_of_beam(p: Place, v: int, views: RangeViews, rules: SightRules) -> tuple[Place, bool]:
+    """Where the beam of a scan through a place ends, and whether there is one."""
+    images, t = views.sights.images, views.sights.t
+    for s in range(images.shape[1]):
+        x, y, z = to_sensor(p, views.sights, v, s)
+        row, column, range_m = cell_towards(x, y, z, images.shape[2:])
+        if range_m < rules.nearest_m or range_m > rules.farthest_m:
+            continue
+        limits = _limits(range_m, rules)
+        if sight(images, (v, s), (row, column), range_m, limits) == VERDICT.seen_through:
+            seen_m = images[v, s, row, column]
+            if seen_m == np.inf:
+                seen_m = _nearest(images, (v, s), (row, column))
+            part = seen_m / range_m
+            x, y, z = t[v, s, 0], t[v, s, 1], t[v, s, 2]
+            end = x + part * (p[0] - x), y + part * (p[1] - y), z + part * (p[2] - z)
+            return end, True
+    return p, False
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _nearest(images: NDArray[np.float32], image: tuple[int, int], cell: tuple[int, int]) -> float:
+    """Least range of a cell and those around it [m], inf = they are empty."""
+    nearest_m = np.inf
+    for i in range(max(cell[0] - 1, 0), min(cell[0] + 2, images.shape[2])):
+        for step in range(-1, 2):
+            seen_m = images[image[0], image[1], i, (cell[1] + step) % images.shape[3]]
+            nearest_m = min(nearest_m, seen_m)
+    return nearest_m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _hides(p: Place, v: int, views: RangeViews, rules: SightRules) -> bool:
+    """Whether all that a sensor of a scan has around the direction of a place lies before it."""
+    images = views.sights.images
+    for s in range(images.shape[1]):
+        x, y, z = to_sensor(p, views.sights, v, s)
+        row, column, range_m = cell_towards(x, y, z, images.shape[2:])
+        limit_m = range_m - rules.behind_m - rules.behind_per_m * range_m
+        is_hidden = images[v, s, row, column] < limit_m
+        for i in range(max(row - 1, 0), min(row + 2, images.shape[2])):
+            for step in range(-1, 2):
+                seen_m = images[v, s, i, (column + step) % images.shape[3]]
+                is_hidden = is_hidden and (seen_m <= limit_m or seen_m == np.inf)
+        if is_hidden:
+            return True
+    return False
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -112,17 +227,24 @@ def _is_empty(
     rows: NDArray[np.int64],
     views: RangeViews,
     rules: SightRules,
-) -> bool:
-    """Whether the first of some scans that see a place see through it, one after the other."""
-    passes = 0
+) -> int:
+    """Whether the first of some scans that see a place see through it, one after the other.
+
+    Returns:
+        `EVIDENCE.moved`; doubted, if too few of their beams are confirmed; met = no.
+    """
+    passes: Any = 0
+    sure: Any = 0
     for v in rows:
         vote = _vote(p, own, v, views, rules)
         if vote == VERDICT.met:
-            return False
-        passes += vote == VERDICT.seen_through
-        if passes >= rules.gone:
-            return True
-    return False
+            break
+        if vote == VERDICT.seen_through:
+            passes += 1
+            sure += _is_confirmed(p, v, views, rules)
+            if sure >= rules.gone:
+                return int(EVIDENCE.moved)
+    return int(EVIDENCE.doubted if passes >= rules.gone else EVIDENCE.met)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -132,7 +254,7 @@ def find_seen_through(
     views: RangeViews,
     rules: SightRules,
     held: NDArray[np.int64],
-    verdict: NDArray[np.int8],
+    evidence: NDArray[np.int8],
 ) -> None:
     """Which points of some scans other scans see through.
 
@@ -146,12 +268,12 @@ def find_seen_through(
         rules: Limits.
         held: What is known of places, zeros at first, for further calls with the same scans; a
             power of two. When three quarters are full all is forgotten, (H,).
-        verdict: Of `VERDICT`, filled, (N,).
+        evidence: Of `EVIDENCE`, filled, (N,).
     """
     size, bits = len(held), (1 << 20) - 1  # of an index of a cube
     room: Any = 3 * size // 4 - np.count_nonzero(held)
     last_key: Any = np.int64(-1)
-    last_verdict: Any = VERDICT.unknown
+    last: Any = EVIDENCE.unknown
     for n in range(len(p)):
         i = np.int64(math.floor(p[n, 0] / rules.place_m))
         j = np.int64(math.floor(p[n, 1] / rules.place_m))
@@ -160,140 +282,17 @@ def find_seen_through(
         if key != last_key:
             # Neighbors are near to each other in the table, too.
             at = ((i & 127) | ((j & 127) << 7) | (k << 14)) & (size - 1)
-            while held[at] != 0 and held[at] >> 2 != key:
+            while held[at] != 0 and held[at] >> 3 != key:
                 at = (at + 1) & (size - 1)
             if held[at] == 0:
                 if room == 0:
                     held[:] = 0
                     room = 3 * size // 4
                 place = p[n, 0], p[n, 1], p[n, 2]
-                known = 2 + _verdict(place, sensor[n], views, rules)
-                held[at] = (key << 2) | known
+                held[at] = (key << 3) | _evidence(place, sensor[n], views, rules)
                 room -= 1
-            last_key, last_verdict = key, (held[at] & 3) - 2
-        verdict[n] = last_verdict
-
-
-class SpreadRules(NamedTuple):
-    """What belongs to a moving thing although no scan sees through it, or the floor hides it."""
-
-    cube_m: float
-    """Edge of the cubes in which points are counted."""
-    few: int
-    """Moving points in the cubes around, or above, that are needed."""
-    most: float
-    """All of a cube moves if it has this many moving points for each met one …"""
-    stands: float
-    """… and nothing does if it has this many met ones for each moving one."""
-    floor_m: float
-    """The floor reaches this far above its lowest point around …"""
-    feet_m: float
-    """… and surfaces below something that moves are its feet up to this far above …"""
-    legs_m: float
-    """… and what no scan meets is its legs."""
-    above: int
-    """This many cubes above a point are looked at."""
-
-
-class Cubes(NamedTuple):
-    """Cubes around the body, which is in the middle."""
-
-    moving: NDArray[np.int32]
-    met: NDArray[np.int32]
-    """Points in them that move, and that others meet, (I, J, K): all points of a scan may lie in
-    one cube."""
-    low_m: NDArray[np.float32]
-    """Lowest point of each column [m], (I, J)."""
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def spread_to_neighbors(
-    p: NDArray[np.float64],
-    body_m: NDArray[np.float64],
-    rules: SpreadRules,
-    cubes: Cubes,
-    verdict: NDArray[np.int8],
-) -> None:
-    """Let neighbors decide: a thing moves as a whole.
-
-    Points near to several that move also move if no scan meets them: hands, seams. So do points
-    below them, between them and the floor: beams that pass above the floor meet it just behind a
-    foot.
-
-    Args:
-        p: In the leveled map [m], (N, 3).
-        body_m: Where the body was [m], (3,).
-        rules: Limits.
-        cubes: Memory, its content does not matter.
-        verdict: Of `find_seen_through`, changed, (N,).
-    """
-    at, shape = np.empty(3, np.int64), cubes.moving.shape
-    cubes.moving[:] = 0
-    cubes.met[:] = 0
-    cubes.low_m[:] = np.inf
-    for n in range(len(p)):
-        if _cube((p[n, 0], p[n, 1], p[n, 2]), body_m, rules.cube_m, shape, at):
-            i, j, k = at[0], at[1], at[2]
-            cubes.low_m[i, j] = min(cubes.low_m[i, j], p[n, 2])
-            cubes.moving[i, j, k] += verdict[n] == VERDICT.seen_through
-            cubes.met[i, j, k] += verdict[n] == VERDICT.met
-    for n in range(len(p)):
-        if _cube((p[n, 0], p[n, 1], p[n, 2]), body_m, rules.cube_m, shape, at):
-            verdict[n] = _by_neighbors(verdict[n], p[n, 2], at, rules, cubes)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _by_neighbors(
-    verdict: int, z_m: float, at: NDArray[np.int64], rules: SpreadRules, cubes: Cubes
-) -> int:
-    """Verdict of a point by those in the cubes around it, and above."""
-    i, j, k = at[0], at[1], at[2]
-    moving, met = cubes.moving[i, j, k], cubes.met[i, j, k]
-    if verdict == VERDICT.seen_through:
-        return VERDICT.met if met > rules.stands * moving else verdict
-    if verdict == VERDICT.met and moving >= rules.few and moving > rules.most * met:
-        return VERDICT.seen_through
-    if verdict == VERDICT.unknown and _around(cubes.moving, at) >= rules.few:
-        return VERDICT.seen_through
-    above: Any = 0
-    for higher in range(k + 1, min(k + 1 + rules.above, cubes.moving.shape[2])):
-        above += cubes.moving[i, j, higher]
-    if above < rules.few:
-        return verdict
-    floor_m = np.float64(np.inf)
-    for a in range(i - 1, i + 2):
-        for b in range(j - 1, j + 2):
-            floor_m = min(floor_m, cubes.low_m[a, b])
-    reach_m = rules.feet_m if verdict == VERDICT.met else rules.legs_m
-    is_below = rules.floor_m < z_m - floor_m < reach_m
-    return VERDICT.seen_through if is_below else verdict
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _around(count: NDArray[np.int32], at: NDArray[np.int64]) -> int:
-    """Points in the 27 cubes around one."""
-    found: Any = 0
-    for i in range(at[0] - 1, at[0] + 2):
-        for j in range(at[1] - 1, at[1] + 2):
-            for k in range(at[2] - 1, at[2] + 2):
-                found += count[i, j, k]
-    return int(found)
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _cube(
-    p: Place,
-    body_m: NDArray[np.float64],
-    cube_m: float,
-    shape: tuple[int, int, int],
-    at: NDArray[np.int64],
-) -> bool:
-    """Cube of a point; False = it is in the outermost ones or beyond."""
-    for d in range(3):
-        at[d] = math.floor((p[d] - body_m[d]) / cube_m) + shape[d] // 2
-        if at[d] < 1 or at[d] > shape[d] - 2:
-            return False
-    return True
+            last_key, last = key, held[at] & 7
+        evidence[n] = last
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -10,7 +10,8 @@ from recon4.classes.tuning import SPREAD
 from recon4.classes.views import RegularViews
 from recon4.errors import StoreError
 from recon4.kernels.free_space import VERDICT
-from recon4.kernels.seen_through import spread_to_neighbors
+from recon4.kernels.seen_through import EVIDENCE
+from recon4.kernels.things import JudgedPoints, spread_to_neighbors
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.classes import PointClass, is_delivered
 from recon4.store.classes import StoredClasses
@@ -171,9 +172,10 @@ def test_images_of_scans_stay_as_they_are_while_threads_read_them_across_a_gap()
 def test_all_points_of_a_dense_scan_may_lie_in_one_cube():
     """A hand before the sensor: more points than 16 bits count."""
     p = np.full((40_000, 3), 1.05)
-    verdict = np.full(len(p), VERDICT.met, np.int8)
-    verdict[:5000] = VERDICT.seen_through
+    evidence, verdict = np.full((2, len(p)), EVIDENCE.met, np.int8)
+    evidence[:5000] = EVIDENCE.moved
 
-    spread_to_neighbors(p, np.zeros(3), SPREAD, KnownPlaces().cubes, verdict)
+    points = JudgedPoints(p, evidence, verdict)
+    spread_to_neighbors(points, np.zeros(3), SPREAD, KnownPlaces().cubes)
 
     assert (verdict == VERDICT.met).all()
