@@ -54,6 +54,7 @@ SCENES = {
     "office": WalkScene("office", 20.0),
     "staircase": WalkScene("staircase", 25.0),
     "corridor": WalkScene("corridor", 20.0),
+    "tunnel": WalkScene("tunnel", 20.0),
     "people": WalkScene("office", 20.0, Crowd(people=2)),
     "cars": WalkScene("street", 20.0, Crowd(people=1, vehicles=2)),
     "mirrors": WalkScene("mirrors", 16.0),
