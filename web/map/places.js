@@ -2,7 +2,7 @@
 // No DOM, no network.
 
 import { decimal, t } from "../shared/texts.js";
-import { cornersOf, dot, fitted, toScreen } from "./camera.js";
+import { add, cornersOf, dot, fitted, toScreen } from "./camera.js";
 import { planesOf } from "./clip.js";
 import { positionAt } from "./flight.js";
 
@@ -55,8 +55,13 @@ export function lineOf({ span, place }, walk) {
 export function cameraAt(line, { yaw, pitch }, view) {
   const end = (/** @type {(...x: number[]) => number} */ most, /** @type {number} */ beside) =>
     [0, 1, 2].map((axis) => most(...line.map((p) => p[axis])) + beside);
-  const corners = cornersOf(end(Math.min, -AROUND_M), end(Math.max, AROUND_M));
-  return fitted({ yaw, pitch: Math.min(pitch, STEEP), parallel: false }, view, corners);
+  const [low, high] = [end(Math.min, -AROUND_M), end(Math.max, AROUND_M)];
+  const { left, right, up, down } = view.free;
+  const [side, rim] = [Math.min(left, right), Math.min(up, down)];
+  const middle = { screen: view.screen, free: { left: side, right: side, up: rim, down: rim } };
+  const look = { yaw, pitch: Math.min(pitch, STEEP), parallel: false };
+  const target = add([0, 0, 0], add(low, high), 0.5); // a drag turns about the place
+  return { ...fitted(look, middle, cornersOf(low, high)), target };
 }
 
 /**
