@@ -44,8 +44,6 @@ CONTROL_FIT = ControlFitTuning()
 class BlunderTuning(Struct, frozen=True, kw_only=True):
     """Blunders of a whole survey."""
 
-    scale: float = 0.02
-    """A scale within this of 0.3048 or its inverse is that of feet, relative."""
     better: float = 0.1
     """A swap is named if the squared misfit falls below this part of it …"""
     least_m: float = 0.10

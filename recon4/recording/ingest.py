@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from msgspec import to_builtins
@@ -50,7 +49,6 @@ from recon4.store.line_store import LineStoreWriter
 
 Span = tuple[int, int]
 """Start of the first and end of the last multiframe [ns]."""
-Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 Watch = Callable[[Multiframe | ImuSamples | GnssSamples | LaserScans], None]
 """Receives contents of a recording as they come in."""
 

@@ -302,9 +302,6 @@ class FreeMotion:
         return _predict(state, times, silent, accel=silent, noise=self._noise)
 
 
-Motion = ImuMotion | FreeMotion
-
-
 def _predict(
     state: MotionState, t_ns: Times, gyro: Array, *, accel: Array, noise: Array
 ) -> Prediction:

@@ -14,7 +14,6 @@ from recon4.slices.tuning_files import SLICE_COLORS
 
 ColorBy = Literal["height", "intensity", "normalized", "time", "sensor", "distance"]
 Ground = Literal["light", "dark"]
-Rgb = tuple[int, int, int]
 
 
 UNITS: dict[ColorBy, str] = {

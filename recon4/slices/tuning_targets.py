@@ -105,8 +105,6 @@ class SphereTuning(Struct, frozen=True, kw_only=True):
     """Length of the mean normal of a block above which it is flat (10°)."""
     near_m: float = 0.03
     """Normals that meet this near point to the same middle."""
-    neighbors: int = 16
-    """Cells whose plane is the normal of a cell, where the map has none."""
     covered: float = 0.1
     """Least part of the cells of a sphere whose normals meet."""
     shell_m: float = 0.03

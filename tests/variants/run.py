@@ -243,9 +243,3 @@ def _judge(outcome: Outcome) -> None:
         outcome.findings.append(f"SILENT: {outcome.error_m:.2f} m wrong")
     elif variant.exact:
         outcome.findings.append(f"{outcome.error_m:.2f} m wrong, though nothing is missing")
-
-
-def used_of(outcomes: list[Outcome]) -> float:
-    """Mean part of the sound data that is used, where it was read."""
-    ratios = [o.used_ratio for o in outcomes if np.isfinite(o.used_ratio)]
-    return float(np.mean(ratios))

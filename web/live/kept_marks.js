@@ -14,7 +14,7 @@ import { ApiError } from "../shared/http.js";
  */
 
 const KEPT = "recon4.live.marks";
-export const OLDEST_S = 3600; // an older mark gets this age
+const OLDEST_S = 3600; // an older mark gets this age
 const AGAIN_MS = 2000; // from a try in vain to the next one
 const LATER = [0, 401, 403, 408, 429]; // answers after which the same mark may be taken
 const sending = { on: false, again_ms: 0 };

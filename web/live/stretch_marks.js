@@ -14,7 +14,7 @@ import { circle, label } from "./shapes.js";
  * Color, dashes and message of the caption of each kind: no meaning rests on the color alone.
  * @type {Record<MarkedStretch["kind"], {color: "bad" | "poor", dash: number[], text: string}>}
  */
-export const LOOKS = {
+const LOOKS = {
   "TRACKING-LOST": { color: "bad", dash: [3, 9], text: "stretch-lost" },
   "WEAK-DIRECTION": { color: "poor", dash: [], text: "stretch-weak" },
 };

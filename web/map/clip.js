@@ -43,7 +43,7 @@ function planesOfBox(/** @type {ClipBox} */ { center, size, yaw }) {
 }
 
 /** Unit vector across a section, to the side from which it is seen. */
-export function acrossOf(/** @type {Section} */ { a, b }) {
+function acrossOf(/** @type {Section} */ { a, b }) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(dx, dy) || 1;
   return [dy / length, -dx / length, 0];

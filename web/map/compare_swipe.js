@@ -17,7 +17,7 @@ import { Matrix4, Scene, Vector2 } from "../shared/vendor/three/three.module.min
  * @param {MapIndex["tiles"]} tiles
  * @param {number[][]} T 4 x 4, row by row
  */
-export const movedBoxes = (tiles, T) =>
+const movedBoxes = (tiles, T) =>
   tiles.map((tile) => {
     const ends = [0, 1, 2].map((row) => {
       let [low, high] = [T[row][3], T[row][3]];

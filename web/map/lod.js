@@ -64,7 +64,7 @@ export function sidesOf(camera, screen) {
  * @param {{low_m: number[], high_m: number[]}} box
  * @param {Camera} camera
  */
-export function seenFrom({ low_m, high_m }, camera) {
+function seenFrom({ low_m, high_m }, camera) {
   return camera.parallel ? camera.distance : awayFrom({ low_m, high_m }, eyeOf(camera));
 }
 

@@ -71,7 +71,7 @@ export function areaOf(/** @type {number[][]} */ points) {
 }
 
 /** Standard deviation of a distance by those of its ends [m]; NaN if they are not stated. */
-export const sdOf = (/** @type {Measurement} */ { sd }) =>
+const sdOf = (/** @type {Measurement} */ { sd }) =>
   sd?.length === 2 ? Math.hypot(sd[0], sd[1]) : NaN;
 
 /**

@@ -33,7 +33,7 @@ const NARROW_PX = 800;
 const BEYOND_M = 0.05;
 
 /** The strip of a profile, as the slices take it: u counts from the first point. */
-export function stripOf(/** @type {Measurement} */ { points: [a, b], figure }) {
+function stripOf(/** @type {Measurement} */ { points: [a, b], figure }) {
   const [low, high] = heightsShown();
   const length = Math.hypot(b[0] - a[0], b[1] - a[1]);
   return {
@@ -52,7 +52,7 @@ export function stripOf(/** @type {Measurement} */ { points: [a, b], figure }) {
  * @param {{right: number, bottom: number, top: number}} window of the plane [m]; left is 0
  * @param {number[]} most pixels of the page across and up
  */
-export function pixelsOf({ right, bottom, top }, [across, up]) {
+function pixelsOf({ right, bottom, top }, [across, up]) {
   const pixel_m = Math.max(right / across, (top - bottom) / up);
   const px = (/** @type {number} */ m) =>
     Math.min(MOST_PX, Math.max(LEAST_PX, Math.round((m / pixel_m) * globalThis.devicePixelRatio)));

@@ -73,7 +73,7 @@ function numbers(text, count) {
 const number = (/** @type {string | null} */ text) => numbers(text, 1)?.[0] ?? null;
 
 /** @returns {MapState} */
-export const usualState = () => ({
+const usualState = () => ({
   camera: null,
   color: null,
   lo: null,

@@ -25,7 +25,7 @@ export function openDialog(title, content) {
 }
 
 /** The dialog an event began in. */
-export const dialogOf = (/** @type {Event} */ event) =>
+const dialogOf = (/** @type {Event} */ event) =>
   /** @type {HTMLDialogElement} */ (targetOf(event).closest("dialog"));
 
 /** A button that closes its dialog. */

@@ -21,7 +21,7 @@ import { axesOf } from "./state.js";
  * @param {Array<[number, number]>} corners
  * @returns {Volume | null}
  */
-export function prismOf(state, corners) {
+function prismOf(state, corners) {
   if (corners.length < 3) return null;
   const half = state.t / 2;
   return { shape: "prism", polygon_m: corners, low_m: -half, high_m: half, ...axesOf(state) };

@@ -10,7 +10,7 @@ import { t } from "../shared/texts.js";
  */
 
 /** @type {Array<[string, string]>} */
-export const MEANINGS = [
+const MEANINGS = [
   ["-", t("column-none")],
   ["id", t("column-id")],
   ["x", t("column-x")],

@@ -54,8 +54,6 @@ class ProjectListLimits(Struct, frozen=True, kw_only=True):
     """A longer description of a project's problem is cut [characters]."""
     large: int = 1 << 53
     """Greater numbers are not plausible, and not exact in a browser."""
-    max_entries: int = 2000
-    """A longer folder listing is cut."""
     max_tags: int = 20
     max_tag: int = 40
     """Characters."""

@@ -34,7 +34,7 @@ class Latency:
     def leave_out(self, end_ns: int) -> bool:
         """Whether to leave a multiframe with this end time (sensor clock) out of the mapping.
 
-        Leaves out every other multiframe above `LATENCY.late_ns`, and more of them at a higher
+        Leaves out one of n multiframes as `LATENCY.kept` says, more of them at a higher
         latency.
         """
         late_ns = self._now_ns() - self.on_recorder_clock(end_ns)

@@ -62,8 +62,6 @@ LAST_KNOWN = LastKnownTuning()
 class LatencyTuning(Struct, frozen=True, kw_only=True):
     """Multiframes that are left out."""
 
-    late_ns: int = 700_000_000
-    """Age from which a multiframe may be left out of the mapping [ns]."""
     kept: tuple[tuple[int, int], tuple[int, int], tuple[int, int]] = (
         (700_000_000, 2),
         (2_000_000_000, 3),
@@ -126,8 +124,6 @@ class LiveMapTuning(Struct, frozen=True, kw_only=True):
     """Distance between stored points of the path; an hour's walk has a few thousand."""
     offset_shown_ns: int = 3_000_000_000
     """An offset of the LiDARs is shown for this time [ns]."""
-    recent_ns: int = 10_000_000_000
-    """Period over which multiframes left out are counted."""
 
 
 LIVE_MAP = LiveMapTuning()

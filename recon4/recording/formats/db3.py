@@ -54,7 +54,6 @@ _LIMITS = {
     apsw.SQLITE_LIMIT_TRIGGER_DEPTH: 1,
     apsw.SQLITE_LIMIT_WORKER_THREADS: 0,
 }
-_READ = {apsw.SQLITE_SELECT, apsw.SQLITE_READ}
 _DEFINITIONS = "message_definitions"
 """Table of bags since ROS 2 Iron."""
 _COLUMNS = {

@@ -35,7 +35,7 @@ MAGIC = b"\x89MCAP0\r\n"
 _ROS = ("ros1msg", "ros2msg")
 """Encodings of definitions in ROS's language."""
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK = 2, 3, 4, 5, 6
-_CHUNK_INDEX, _STATISTICS, _DATA_END = 8, 11, 15
+_CHUNK_INDEX, _STATISTICS = 8, 11
 _RECORD = struct.Struct("<BQ")
 _MESSAGE_HEAD = struct.Struct("<HIQQ")
 _CHUNK_HEAD = struct.Struct("<QQQI")

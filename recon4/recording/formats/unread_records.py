@@ -15,7 +15,6 @@ _ETHERTYPES = {0x0806: "ARP", 0x86DD: "IPv6", 0x88CC: "LLDP", 0x88F7: "PTP"}
 _PROTOCOLS = {1: "ICMP", 2: "IGMP", 6: "TCP"}
 _MOST_KINDS, _LISTED = 256, 3
 
-Flags = NDArray[np.bool_]
 Numbers = NDArray[np.int64]
 
 

@@ -7,11 +7,8 @@ from dataclasses import replace
 import pytest
 
 from recon4_app.access.audit import entry_hash
-from recon4_app.access.login.login_service import LoginOrigin, open_access
+from recon4_app.access.login.login_service import open_access
 from recon4_app.access.people import LOCAL
-
-PASSWORD = "three green owls dance"
-HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")
 
 
 def test_the_log_is_a_chain_that_shows_what_was_changed(access, tmp_path):

@@ -13,7 +13,6 @@ from tests.unit.recording.ingested import run
 from tests.warned import K, derivations, kinds, warned
 
 STEP_NS = 5_000_000
-NAN = np.full(3, np.nan)
 
 
 def walked(count=400):
