@@ -34,6 +34,7 @@ TITLES = {
     "endings": "Reasons why jobs ended",
     "references": "What is said of references",
     "recordings": "What is said of recordings",
+    "files": "What is wrong with files, settings and projects",
 }
 
 

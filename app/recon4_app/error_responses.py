@@ -22,7 +22,7 @@ from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 
 from recon4.errors import NoSpace, Recon4Error, UnknownFormat, WrongSettings
-from recon4.locales.coded import CodedText, as_coded, coded, stored_text
+from recon4.locales.coded import CodedText, all_said, as_coded, coded, stored_text
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Shown, texts
 from recon4.store.atomic import is_full
@@ -160,7 +160,7 @@ def _problem_of(request: Request, error: str, text: CodedText) -> ProblemDetail:
 def _input_problem(request: Request, error: Recon4Error) -> ProblemDetail:
     problem = _problem_of(request, type(error).__name__, coded(error))
     if isinstance(error, WrongSettings):
-        problem.problems = error.problems
+        problem.problems = all_said(error.problems, language_of(request))
     elif isinstance(error, UnknownFormat):
         problem.candidates = [str(path) for path in error.candidates]
     return problem

@@ -10,7 +10,7 @@ it in another language, and a program compares the code.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import MappingProxyType
@@ -20,9 +20,9 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
 
-FILES = ("problems", "endings", "references", "recordings")
+FILES = ("problems", "endings", "references", "recordings", "files")
 """Files of the texts with a code: problems of requests, reasons why jobs ended, what is said of
-references, and of recordings."""
+references, of recordings, and of files, settings and projects."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
 COUNTS = ("counts",)
@@ -143,9 +143,13 @@ class StoredText:
         }
         return StoredText(text=str(text), code=text.code, values=values)
 
+    def again(self) -> str:
+        """The text that was stored: a `CodedText` if its code is known."""
+        return stored_text(self.code, self.values, self.text)
+
     def said(self, language: str) -> str:
         """The text in a language; in English if it has no code that is known."""
-        return said(stored_text(self.code, self.values, self.text), language)
+        return said(self.again(), language)
 
 
 def coded(error: BaseException) -> CodedText:
@@ -155,6 +159,8 @@ def coded(error: BaseException) -> CodedText:
     language; the message itself is the value ``detail``, in English.
     """
     text = error.args[0] if error.args else ""
+    if isinstance(error, errors.WrongSettings):
+        text = joined(error.problems.values())
     if isinstance(text, CodedText):
         return text
     kinds = (KINDS[one] for one in type(error).__mro__ if one in KINDS)
@@ -184,6 +190,11 @@ def said(text: str, language: str) -> str:
     return text.said(language) if isinstance(text, CodedText) else text
 
 
+def all_said(texts: Mapping[str, str], language: str) -> dict[str, str]:
+    """Texts by name, each as `said`."""
+    return {name: said(text, language) for name, text in texts.items()}
+
+
 def stored_text(code: str, values: Mapping[str, Shown], english: str) -> str:
     """A text that was stored with its code and `flat_values`; only English if they say nothing now.
 
@@ -199,6 +210,12 @@ def codes() -> tuple[str, ...]:
     """All codes, in the order of the files; words that texts quote are none."""
     names = [name for file in FILES for name in Texts(ENGLISH, file).names()]
     return tuple(name for name in names if not name.startswith("word-"))
+
+
+def joined(texts: Iterable[str]) -> str:
+    """Texts behind each other as one, which is coded if there are several; none give none."""
+    first, *others = (*texts,) or ("",)
+    return CodedText("and-further", first=first, further=joined(others)) if others else first
 
 
 def _again(code: str, values: dict[str, Shown]) -> CodedText:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.limits import RIG_LIMITS
 from recon4.model.toml_tables import TomlTable
 
@@ -109,12 +110,12 @@ def parse_beams(value: object, where: str, *, model: str) -> BeamCorrections | N
     table = TomlTable.of(value, where, set(_KEYS))
     given = [key for key in _KEYS if key in table]
     if not given:
-        raise ConfigError(f"{where}: expected some of {', '.join(_KEYS)}, got none")
+        raise ConfigError(CodedText("beams-none", where=where, known=", ".join(_KEYS)))
     first = table.get(given[0])
     count = BEAMS_OF_MODEL.get(model, len(first) if isinstance(first, list) else 0)
     if not 1 <= count <= RIG_LIMITS.beams:
         raise ConfigError(
-            f"{where}: expected 1 to {RIG_LIMITS.beams} beams in {given[0]}, got {count}"
+            CodedText("beams-number", where=where, limit=RIG_LIMITS.beams, key=given[0], got=count)
         )
     limit_m, limit_deg, zeros = RIG_LIMITS.beam_m, RIG_LIMITS.beam_deg, (0.0,) * count
     range_m, *degrees = (table.vector(key, count, zeros) for key in _KEYS)
@@ -127,7 +128,14 @@ def parse_beams(value: object, where: str, *, model: str) -> BeamCorrections | N
         worst = int(np.argmax(np.abs(values)))
         if abs(values[worst]) > largest:
             raise ConfigError(
-                f"{where}: {key} must be within ±{largest:g}, got {values[worst]:g} of beam {worst}"
+                CodedText(
+                    "beams-within",
+                    where=where,
+                    key=key,
+                    limit=f"{largest:g}",
+                    got=f"{values[worst]:g}",
+                    beam=worst,
+                )
             )
     elevation_rad, azimuth_rad = np.deg2rad(degrees)
     return BeamCorrections(range_m=range_m, elevation_rad=elevation_rad, azimuth_rad=azimuth_rad)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.limits import RIG_LIMITS
 from recon4.model.toml_tables import TomlTable
 
@@ -112,11 +113,12 @@ def parse_fields_text(text: str, where: str) -> PointRecipe:
         role, equals, column = (one.strip() for one in part.partition("="))
         if not equals or role not in UNITS_OF:
             raise ConfigError(
-                f"{where}: expected ROLE=COLUMN with a role of {', '.join(UNITS_OF)}, "
-                f"got {part[:80]!r}"
+                CodedText(
+                    "recipe-form", where=where, roles=", ".join(UNITS_OF), got=f"{part[:80]!r}"
+                )
             )
         if role in texts:
-            raise ConfigError(f"{where}: {role} is given twice")
+            raise ConfigError(CodedText("recipe-twice", where=where, role=role))
         texts[role] = column
     return recipe_of(texts, where)
 
@@ -134,12 +136,12 @@ def recipe_of(texts: Mapping[str, str], where: str) -> PointRecipe:
     terms = {role: _terms(role, texts[role], where) for role in UNITS_OF if role in texts}
     given = {role for places in PLACES for role in places if role in terms}
     if given not in [set(places) for places in PLACES]:
-        wanted = "; or ".join(", ".join(places) for places in PLACES)
+        wanted = "; ".join(", ".join(places) for places in PLACES)
         got = ", ".join(role for role in UNITS_OF if role in given)
-        raise ConfigError(f"{where}: expected {wanted}; got {got or 'none of them'}")
+        raise ConfigError(CodedText("recipe-places", where=where, wanted=wanted, got=got or "–"))
     names = [term.column for parts in terms.values() for term in parts]
     if twice := sorted({name for name in names if names.count(name) > 1}):
-        raise ConfigError(f"{where}: the column {twice[0]!r} has two roles")
+        raise ConfigError(CodedText("recipe-two-roles", where=where, column=f"{twice[0]!r}"))
     return PointRecipe(tuple((role, texts[role]) for role in terms), terms)
 
 
@@ -151,8 +153,13 @@ def _terms(role: str, text: str, where: str) -> tuple[Term, ...]:
     )
     if len(found) > 1 and not are_sum:
         raise ConfigError(
-            f"{where}: {role} must be one column (times may be a sum of up to "
-            f"{RIG_LIMITS.time_terms} columns that have units, as sec:s+nsec:ns), got {text[:80]!r}"
+            CodedText(
+                "recipe-one-column",
+                where=where,
+                role=role,
+                limit=RIG_LIMITS.time_terms,
+                got=f"{text[:80]!r}",
+            )
         )
     return found
 
@@ -160,10 +167,10 @@ def _terms(role: str, text: str, where: str) -> tuple[Term, ...]:
 def _term(role: str, text: str, where: str) -> Term:
     match = _TERM.fullmatch(text)
     if match is None:
-        raise ConfigError(f"{where} must be COLUMN or COLUMN:UNIT, got {text[:80]!r}")
+        raise ConfigError(CodedText("recipe-column", where=where, got=f"{text[:80]!r}"))
     sign, column, unit = match.groups()
     if sign and role in ("range", "time", "ring", "intensity"):
-        raise ConfigError(f"{where} cannot be negative, got {text[:80]!r}")
+        raise ConfigError(CodedText("recipe-negative", where=where, got=f"{text[:80]!r}"))
     return Term(column.lower(), _unit(role, unit, where) if unit else 0.0, bool(sign))
 
 
@@ -177,6 +184,7 @@ def _unit(role: str, unit: str, where: str) -> float:
     except ValueError:
         number = 0.0
     if not 1e-9 <= number <= 1e3:
-        expected = f"one of {', '.join(units)}, or a number of {base}" if base else "no unit"
-        raise ConfigError(f"{where}: expected {expected}, got {unit!r}")
+        code = "recipe-unit" if base else "recipe-no-unit"
+        known = {"units": ", ".join(units), "base": base} if base else {}
+        raise ConfigError(CodedText(code, where=where, got=repr(unit), **known))
     return number * units[base]

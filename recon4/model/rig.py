@@ -15,6 +15,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText, text_of
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
 from recon4.model.imu_mounts import imu_mount, is_in_holder
 from recon4.model.lidars import LIDARS, lidar_model
@@ -182,16 +183,14 @@ def load_rig(name_or_path: str | PathLike[str]) -> Rig:
     path = Path(name_or_path)
     if not path.suffix:
         if str(name_or_path) not in rig_presets():  # prevents paths outside of the folder
-            raise ConfigError(
-                f"no rig named {str(name_or_path)[:200]!r}; shipped: {', '.join(rig_presets())}; "
-                "or give the path of a .toml file"
-            )
+            name, shipped = repr(str(name_or_path)[:200]), ", ".join(rig_presets())
+            raise ConfigError(CodedText("rig-no-such", name=name, shipped=shipped))
         preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
         return parse_rig(preset.read_text("utf-8"), where=str(name_or_path))
     try:
         text = read_text_limited(path, RIG_LIMITS.file_bytes, failure=ConfigError)
     except ConfigError as error:
-        raise ConfigError(f"cannot read rig file {error}") from error
+        raise ConfigError(CodedText("rig-unreadable", why=text_of(error))) from error
     return parse_rig(text, where=path.name[:200])
 
 
@@ -205,17 +204,16 @@ def parse_rig(text: str, *, where: str) -> Rig:
     table = TomlTable.of(values, where, {"name", "sensor", "imu", "gnss", "calibration"})
     rows = table.get("sensor", [])
     if not isinstance(rows, list) or not 1 <= len(rows) <= RIG_LIMITS.sensors:
-        raise ConfigError(
-            f"{where}: a rig needs at least one [[sensor]] and at most {RIG_LIMITS.sensors}, "
-            f"got {len(rows) if isinstance(rows, list) else rows!r:.40}"
-        )
+        got = f"{(len(rows) if isinstance(rows, list) else rows)!r:.40}"
+        most = RIG_LIMITS.sensors
+        raise ConfigError(CodedText("rig-sensors", where=where, limit=most, got=got))
     sensors = tuple(
         _sensor(TomlTable.of(row, f"{where}: sensor {k}", _SENSOR_KEYS))
         for k, row in enumerate(rows)
     )
     names = [sensor.name for sensor in sensors]
     if len(set(names)) < len(names):
-        raise ConfigError(f"{where}: sensor names must differ, got {names}")
+        raise ConfigError(CodedText("rig-names-same", where=where, got=str(names)))
     imu = TomlTable.of(table.get("imu", {}), f"{where}: imu", _IMU_KEYS)
     gnss = TomlTable.of(table.get("gnss", {}), f"{where}: gnss", _GNSS_KEYS)
     built_in = _imu_sensor(imu, sensors)
@@ -247,7 +245,9 @@ def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:
         return None
     names = [sensor.name for sensor in sensors]
     if name not in names:
-        raise ConfigError(f"{imu.where}: sensor must be one of {names}, got {name[:80]!r}")
+        raise ConfigError(
+            CodedText("rig-imu-sensor", where=imu.where, names=str(names), got=f"{name[:80]!r}")
+        )
     return sensors[names.index(name)]
 
 
@@ -259,7 +259,7 @@ def _calibration(value: object, where: str) -> RigCalibration | None:
     try:
         date.fromisoformat(text)
     except ValueError:
-        raise ConfigError(f"{where}: date must be as 2026-11-22, got {text!r:.80}") from None
+        raise ConfigError(CodedText("rig-date", where=where, got=f"{text!r:.80}")) from None
     return RigCalibration(
         date=text,
         method=row.text("method"),
@@ -336,17 +336,16 @@ def _sensor(row: TomlTable) -> Sensor:
     model = row.text("model", "VLP-16" if kind == "lidar" else "generic")
     models = SENSOR_MODELS if kind == "lidar" else ("generic",)
     if model not in models:
-        raise ConfigError(
-            f"{row.where}: model must be one of {models} for a {kind}, got {model[:80]!r}"
-        )
+        values = {"models": str(models), "kind": kind, "got": repr(model[:80])}
+        raise ConfigError(CodedText("rig-model", where=row.where, **values))
     if kind != "profiler" and ("head_topic" in row or "head_rate_deg_s" in row):
-        raise ConfigError(f"{row.where}: only a profiler has a head, this is a {kind}")
+        raise ConfigError(CodedText("rig-head", where=row.where, kind=kind))
     for key, what in _OF_LIDARS.items():
         if kind != "lidar" and key in row:
-            raise ConfigError(f"{row.where}: only a lidar has {what}, this is a {kind}")
+            raise ConfigError(CodedText("rig-lidar-only", where=row.where, what=what, kind=kind))
     name = row.text("name")
     if not name:
-        raise ConfigError(f"{row.where}: name must be a text, got {row.get('name')!r:.80}")
+        raise ConfigError(CodedText("rig-name", where=row.where, got=f"{row.get('name')!r:.80}"))
     return Sensor(
         name=name,
         model=model,
@@ -372,13 +371,17 @@ def _kind(row: TomlTable) -> SensorKind:
     for kind in _KINDS:
         if found == kind:
             return kind
-    raise ConfigError(f"{row.where}: kind must be one of {_KINDS}, got {found!r:.80}")
+    raise ConfigError(
+        CodedText("rig-kind", where=row.where, kinds=str(_KINDS), got=f"{found!r:.80}")
+    )
 
 
 def _limited(row: TomlTable, key: str, most: float) -> float:
     number = row.number(key)
     if abs(number) > most:
-        raise ConfigError(f"{row.where}: {key} must be within ±{most:g}, got {number:g}")
+        raise ConfigError(
+            CodedText("rig-within", where=row.where, key=key, limit=f"{most:g}", got=f"{number:g}")
+        )
     return number
 
 
@@ -387,7 +390,7 @@ def _mounting(row: TomlTable) -> SE3:
     if "quat_xyzw" in row:
         quat = row.vector("quat_xyzw", 4)
         if not 0.99 < np.linalg.norm(quat) < 1.01:
-            raise ConfigError(f"{row.where}: quat_xyzw must have length 1, got {quat.tolist()}")
+            raise ConfigError(CodedText("rig-quaternion", where=row.where, got=str(quat.tolist())))
         return SE3.from_quat(quat, xyz_m)
     roll, pitch, yaw = row.angles_rad("rpy_deg")
     return SE3.from_rpy(roll, pitch, yaw, t=xyz_m)

@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.limits import RIG_LIMITS
 
 _NAME = re.compile(
@@ -17,10 +18,6 @@ _NAME = re.compile(
     r"|(cu|tty)\.[\w.-]{1,100}"  # macOS
     r")",
     re.ASCII,
-)
-_EXPECTED = (
-    "expected DEVICE:BAUD with a serial device, for example /dev/ttyUSB0:115200 or "
-    "/dev/serial/by-id/NAME:115200 (a link of your own begins with /dev/gps or /dev/gnss)"
 )
 
 
@@ -43,5 +40,5 @@ def parse_serial_device(text: str) -> SerialDevice:
     has_rate = bool(colon) and re.fullmatch("[0-9]{1,8}", rate) is not None
     device = SerialDevice(name, int(rate)) if has_rate else SerialDevice(text)
     if not _NAME.fullmatch(device.path) or not 0 < device.baud < RIG_LIMITS.baud:
-        raise ConfigError(f"gnss: serial: {_EXPECTED}, got {text!r:.200}")
+        raise ConfigError(CodedText("serial-form", got=f"{text!r:.200}"))
     return device

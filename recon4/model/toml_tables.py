@@ -11,6 +11,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.limits import RIG_LIMITS
 
 _BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
@@ -32,10 +33,17 @@ class TomlTable:
             ConfigError: If it is not.
         """
         if not isinstance(value, dict):
-            raise ConfigError(f"{where}: expected a table, got {value!r:.80}")
+            raise ConfigError(CodedText("table-expected", where=where, got=f"{value!r:.80}"))
         unknown = sorted(set(value) - known)
         if unknown:
-            raise ConfigError(f"{where}: unknown {str(unknown)[:200]}; known: {sorted(known)}")
+            raise ConfigError(
+                CodedText(
+                    "table-unknown",
+                    where=where,
+                    unknown=str(unknown)[:200],
+                    known=str(sorted(known)),
+                )
+            )
         return TomlTable(value, where)
 
     def __contains__(self, key: str) -> bool:
@@ -50,7 +58,7 @@ class TomlTable:
         value = self.get(key, default)
         if not _is_usable(value):
             raise ConfigError(
-                f"{self.where}: {key} must be a finite number, got {value!r:.80} (at most 4e9)"
+                CodedText("table-number", where=self.where, key=key, got=f"{value!r:.80}")
             )
         return float(value)
 
@@ -63,8 +71,9 @@ class TomlTable:
             or not all(map(_is_usable, value))
         ):
             raise ConfigError(
-                f"{self.where}: {key} must be {size} finite numbers, got {value!r:.80} "
-                "(at most 4e9)"
+                CodedText(
+                    "table-numbers", where=self.where, key=key, size=size, got=f"{value!r:.80}"
+                )
             )
         return np.asarray(value, dtype=np.float64)
 
@@ -73,8 +82,13 @@ class TomlTable:
         place = self.vector(key, 3)
         if np.linalg.norm(place) > RIG_LIMITS.place_m:
             raise ConfigError(
-                f"{self.where}: {key} must be within {RIG_LIMITS.place_m:g} m of the origin of the "
-                f"body, got {place.tolist()}: give meters, not millimeters"
+                CodedText(
+                    "table-place",
+                    where=self.where,
+                    key=key,
+                    limit_m=f"{RIG_LIMITS.place_m:g}",
+                    got=str(place.tolist()),
+                )
             )
         return place
 
@@ -85,8 +99,13 @@ class TomlTable:
         off = np.abs(np.abs(degrees)[:, None] - turns)
         if np.any(off < RIG_LIMITS.right_angle_rad):
             raise ConfigError(
-                f"{self.where}: {key} must be in degrees, got {degrees.tolist()}: in radians these "
-                f"were {np.round(np.rad2deg(degrees), 2).tolist()}"
+                CodedText(
+                    "table-degrees",
+                    where=self.where,
+                    key=key,
+                    got=str(degrees.tolist()),
+                    degrees=str(np.round(np.rad2deg(degrees), 2).tolist()),
+                )
             )
         return np.asarray(np.deg2rad(degrees))
 
@@ -95,8 +114,7 @@ class TomlTable:
         value = self.get(key, default)
         if not isinstance(value, str) or len(value) > most:
             raise ConfigError(
-                f"{self.where}: {key} must be a text of at most {most} characters, "
-                f"got {value!r:.80}"
+                CodedText("table-text", where=self.where, key=key, limit=most, got=f"{value!r:.80}")
             )
         return value
 
@@ -104,14 +122,16 @@ class TomlTable:
         """True or false."""
         value = self.get(key, default)
         if not isinstance(value, bool):
-            raise ConfigError(f"{self.where}: {key} must be true or false, got {value!r:.80}")
+            raise ConfigError(
+                CodedText("table-true-false", where=self.where, key=key, got=f"{value!r:.80}")
+            )
         return value
 
     def port(self, default: int) -> int:
         """The key ``port``, 0 to 65535."""
         port = self.number("port", default)
         if not 0 <= port <= 65535 or port != int(port):
-            raise ConfigError(f"{self.where}: port must be 0 to 65535, got {port:g}")
+            raise ConfigError(CodedText("table-port", where=self.where, got=f"{port:g}"))
         return int(port)
 
 
@@ -129,16 +149,16 @@ def parse_toml(text: str, where: str, *, max_characters: int) -> dict[str, objec
         ConfigError: If it is too long, too deep or not TOML.
     """
     if len(text) > max_characters:
-        raise ConfigError(f"{where}: expected at most {max_characters} characters, got {len(text)}")
+        raise ConfigError(CodedText("toml-large", where=where, limit=max_characters, got=len(text)))
     longest = max((part.count(".") for part in _BETWEEN_KEYS.split(text)), default=0)
     if longest > RIG_LIMITS.dots:
-        raise ConfigError(f"{where}: expected keys of few parts, got one with {longest} dots")
+        raise ConfigError(CodedText("toml-dots", where=where, got=longest))
     try:
         return tomllib.loads(text)
     except (tomllib.TOMLDecodeError, ValueError) as error:
-        raise ConfigError(f"{where}: not a TOML file: {str(error)[:300]}") from error
+        raise ConfigError(CodedText("toml-invalid", where=where, why=str(error)[:300])) from error
     except RecursionError as error:
-        raise ConfigError(f"{where}: not a TOML file: nested too deeply") from error
+        raise ConfigError(CodedText("toml-deep", where=where)) from error
 
 
 def _is_usable(value: object) -> TypeGuard[int | float]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recon4.locales.coded import CodedText, joined
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, BagTopic
@@ -12,7 +13,6 @@ from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import LISTED
 
-_BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
 _DRIVERS = (
     *("ouster", "os_ros", "pandar", "hesai", "rslidar", "robosense"),
     *("sick_scan", "cepton", "innovusion", "seyond", "blickfeld"),
@@ -46,30 +46,27 @@ def say_drivers(topics: Sequence[BagTopic], report: ImportReport) -> None:
 
 def unread_text(topics: Sequence[BagTopic]) -> str:
     """A sentence for each LiDAR in messages of its driver; empty = there is none."""
-    return "; ".join(
-        f"{topic.name} is of a LiDAR, but {short_type(topic.type)} is not read: {_BY_REPLAY}"
+    return joined(
+        CodedText("topic-unread", topic=topic.name, type=short_type(topic.type))
         for topic in driver_topics(topics)
     )
 
 
-def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
+def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> CodedText:
     """Why a bag has no LiDAR data that is read: what there is, what is read, what to do."""
     listed = ", ".join(f"{t.name} ({t.type})" for t in topics[: LISTED.names])
     listed += " …" * (len(topics) > LISTED.names)
     types = [*sorted(POINT_MESSAGES), *sorted(DATA_MESSAGES)]
     kinds = ", ".join(short_type(kind) for kind in (CLOUD, *types, LASER_SCAN))
-    why = unread_text(topics) or f"read are {kinds}"
+    why = [unread_text(topics) or CodedText("topics-read", kinds=kinds)]
     if any(topic.type == CLOUD and topic.messages for topic in topics):
-        why += (
-            "; the clouds are of a depth camera or a map (one is read with lidar_topic of ingest; "
-            "page: All settings; command: --set ingest.lidar_topic=TOPIC)"
-        )
+        why.append(CodedText("topics-other-clouds"))
     unknown = [topic for topic in topics if topic.columns and not topic.is_points]
-    why += "".join(f"; {needed_text(t.name, t.columns)}" for t in unknown[: LISTED.names])
-    return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
+    why += [needed_text(t.name, t.columns) for t in unknown[: LISTED.names]]
+    return CodedText("bag-no-lidar", file=name, topics=listed or "–", why=joined(why))
 
 
-def needed_text(name: str, columns: Sequence[str]) -> str:
+def needed_text(name: str, columns: Sequence[str]) -> CodedText:
     """What points of unknown columns lack to be read.
 
     Args:
@@ -77,12 +74,8 @@ def needed_text(name: str, columns: Sequence[str]) -> str:
         columns: Their names.
     """
     names = ", ".join(column[:40] for column in columns[: LISTED.names])
-    return (
-        f"{name} has lists of {names}: it is read as points of a LiDAR if they are named x, y, z, "
-        "and a time, ring or intensity, or if a rig file says which columns they are: fields = "
-        '{ x = "COLUMN", y = "COLUMN", z = "COLUMN", time = "COLUMN" } (or range, azimuth, '
-        "elevation) in its [[sensor]]"
-    )
+    fields = '{ x = "COLUMN", y = "COLUMN", z = "COLUMN", time = "COLUMN" }'
+    return CodedText("columns-needed", name=name, columns=names, fields=fields)
 
 
 def short_type(kind: str) -> str:

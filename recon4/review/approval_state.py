@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText, StoredText
+from recon4.locales.coded import CodedText, StoredText, text_of
 from recon4.locales.texts import Shown
 from recon4.review.approved import Approval, NotInJournal, approval_of
 from recon4.review.decisions import DecisionKind, fold
@@ -55,6 +55,10 @@ class ApprovalState:
     """What the line quotes, by name."""
     detail: str = ""
     """Why it does not count, and what to do; empty if there is no more to say."""
+    detail_code: str = ""
+    """Of that, to be said in another language; empty = it has none."""
+    detail_values: dict[str, int | float | str] = field(default_factory=dict)
+    """What it quotes, by name."""
     version: int | None = None
     who: str = ""
     time: str = ""
@@ -72,6 +76,17 @@ class ApprovalState:
     def line(self) -> StoredText:
         """The line with its code and values."""
         return StoredText(text=self.text, code=self.code, values=self.values)
+
+    def because(self, why: str) -> ApprovalState:
+        """The state with the reason why it does not count."""
+        kept = StoredText.of(why)
+        shown = visible(kept.text, most=APPROVAL_NAMES.max_detail)
+        return replace(self, detail=shown, detail_code=kept.code, detail_values=kept.values)
+
+    def in_language(self, language: str) -> ApprovalState:
+        """The state with that reason in a language."""
+        kept = StoredText(text=self.detail, code=self.detail_code, values=self.detail_values)
+        return replace(self, detail=visible(kept.said(language), most=APPROVAL_NAMES.max_detail))
 
 
 def _draft(code: str, text: str) -> ApprovalState:
@@ -98,7 +113,7 @@ def approval_state(root: Path, keys: Mapping[str, str]) -> ApprovalState:
         return _state(read_rows(root), approval_of(root, keys))
     except UnknownSigner as error:
         line = CodedText("approval-unknown-key", key=error.key)
-        return replace(_state_of(ApprovalKind.UNKNOWN_SIGNER, line), detail=str(error))
+        return _state_of(ApprovalKind.UNKNOWN_SIGNER, line).because(text_of(error))
     except Older as error:
         return not_valid(CodedText("approval-older"), error)
     except NotInJournal as error:
@@ -121,14 +136,13 @@ def latest_state(project: Path, *, draft: bool = False) -> ApprovalState:
 
 def not_valid(line: CodedText, error: StoreError) -> ApprovalState:
     """The state of an approval that was altered."""
-    state = _state_of(ApprovalKind.NOT_VALID, line)
-    return replace(state, detail=visible(str(error), most=800))
+    return _state_of(ApprovalKind.NOT_VALID, line).because(text_of(error))
 
 
 def altered(state: ApprovalState, why: str) -> ApprovalState:
     """The state when bytes turned out to differ from those that were approved."""
     line = CodedText("approval-altered", version=state.version or 0)
-    return replace(_with(state, ApprovalKind.NOT_VALID, line), detail=why)
+    return _with(state, ApprovalKind.NOT_VALID, line).because(why)
 
 
 def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalState:

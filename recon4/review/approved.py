@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from recon4.locales.coded import CodedText, text_of
 from recon4.review.decisions import (
     DecisionKind,
 )
@@ -67,15 +68,19 @@ class Approval:
             Altered: If no such file was issued, or this one is missing or has other bytes.
         """
         if path.name not in self.issued:
-            raise Altered(f"{path.name} was not issued with version {self.version}")
+            raise Altered(CodedText("approved-not-issued", file=path.name, version=self.version))
         try:
             size = path.stat().st_size
         except OSError as error:
-            raise Altered(f"{path.name} cannot be read: {error.strerror}") from error
+            raise Altered(
+                CodedText("approved-unreadable", file=path.name, why=f"{error.strerror}")
+            ) from error
         try:
             check_file(path, FileDigest(size, self.issued[path.name], b""))
         except Altered as error:
-            raise Altered(f"{self.evidence.refusal}: {error}") from error
+            raise Altered(
+                CodedText("approved-refused", what=self.evidence.refusal, why=text_of(error))
+            ) from error
 
 
 class NotInJournal(Altered):
@@ -146,19 +151,13 @@ def _refuse_without_row(root: Path, rows: Sequence[JournalRow], keys: Mapping[st
     """
     refuse_older(root, rows)
     if surplus := versions_without_row(root, rows):
-        raise NotInJournal(
-            f"versions/{surplus[-1]} is in no row of the journal: the row was removed, the journal "
-            "is an older one, or the approval was interrupted; approve the map again"
-        )
+        raise NotInJournal(CodedText("approved-no-row", folder=surplus[-1]))
     summary = read_summary(root) or {}
     stated = summary.get("approval")
     named = stated.get("hash") if isinstance(stated, dict) else stated
     approved = {_facts(row).approval for row in rows if row.kind == DecisionKind.APPROVE}
     if named and named not in approved and artifact_keys(summary) == dict(keys):
-        raise NotInJournal(
-            "summary.json names an approval that is in no row of the journal: put the journal "
-            "back, or approve the map again"
-        )
+        raise NotInJournal(CodedText("approved-named-no-row"))
 
 
 def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
@@ -190,38 +189,44 @@ def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
             decisions=str(statement["journal"]["decisions"]),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-        raise Altered(f"versions/{folder.name}/approval.json cannot be read: {error!r}") from error
+        raise Altered(
+            CodedText("approved-statement-unreadable", folder=folder.name, why=f"{error!r}")
+        ) from error
     if hash_json(statement) != stamp.hash or found["hash"] != stamp.hash:
-        raise Altered("the statement is not the one in the journal")
+        raise Altered(CodedText("approved-other-statement"))
     if not has_valid_signature({"hash": stamp.hash, "issued": issued}, signature):
-        raise Altered("the signature is not valid")
+        raise Altered(CodedText("approved-signature-invalid"))
     if signature.get("key") != key:
-        raise Altered(f"it names the key {signature.get('key')}, its signature is by {key}")
+        raise Altered(CodedText("approved-other-key", named=str(signature.get("key")), key=key))
     if signed_head != row.prev_hash:
-        raise Altered("it was signed over another journal")
+        raise Altered(CodedText("approved-other-journal"))
     if signed != (facts.version, facts.artifacts) or stamp.who != row.who:
-        raise Altered("version, artifacts or signer in the journal are not those that were signed")
+        raise Altered(CodedText("approved-row-differs"))
     return approval, str(signature["public_key"])
 
 
 def _counted(root: Path, rows: Sequence[JournalRow], row: JournalRow) -> Approval:
     version = str(_facts(row).version)
     if wrong := broken(rows):
-        raise Altered(f"the journal was altered: {wrong[0]}")
+        raise Altered(CodedText("approved-journal-altered", what=wrong[0]))
     try:
         approval, public_key = read_approval(root / VERSIONS / version, row)
         trusted_for(root).signer(public_key)
     except UnknownSigner as error:
-        raise UnknownSigner(f"version {version} is not counted: {error}", error.key) from error
+        raise UnknownSigner(
+            CodedText("approved-not-counted", version=version, why=text_of(error)), error.key
+        ) from error
     except Altered as error:
-        raise Altered(f"the approval of version {version} is not valid: {error}") from error
+        raise Altered(
+            CodedText("approved-not-valid", version=version, why=text_of(error))
+        ) from error
     return approval
 
 
 def _facts(row: JournalRow) -> ApprovalFacts:
     facts = row.decision().facts
     if facts is None:
-        raise Altered("the journal has an approval without version and hash")
+        raise Altered(CodedText("approved-no-hash"))
     return facts
 
 

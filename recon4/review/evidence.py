@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from recon4.locales.coded import CodedText, text_of
 from recon4.review.stamp import Stamp
 from recon4.store.checked import Altered, CheckedArtifact
 
@@ -35,11 +36,15 @@ class Evidence:
             Altered: If the approval is of another artifact, or the manifest was changed.
         """
         if stage not in self.manifests:
-            raise Altered(f"version {self.stamp.version} has no artifact of the stage {stage}")
+            raise Altered(
+                CodedText("approved-no-artifact", version=self.stamp.version, stage=stage)
+            )
         try:
             return CheckedArtifact.open(folder, self.manifests[stage])
         except Altered as error:
-            raise Altered(f"{self.refusal}: {error}") from error
+            raise Altered(
+                CodedText("approved-refused", what=self.refusal, why=text_of(error))
+            ) from error
 
     def open_map(self, folder: Path) -> TileSet:
         """Open the approved map; every tile is checked before it is used.
@@ -68,4 +73,4 @@ class Evidence:
     @property
     def refusal(self) -> str:
         """Start of the message when a check fails."""
-        return f"this is not what {self.stamp.who} approved as version {self.stamp.version}"
+        return CodedText("approved-not-this", who=self.stamp.who, version=self.stamp.version)

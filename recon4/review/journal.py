@@ -15,7 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, text_of
 from recon4.review.decisions import (
     ABOUT_CLASSES,
     ABOUT_WORK,
@@ -107,7 +107,9 @@ class JournalRow:
         try:
             body = json.loads(self.body)
         except ValueError as error:
-            raise StoreError(f"row {self.seq} of the journal is damaged: {error}") from error
+            raise StoreError(
+                CodedText("journal-row-damaged", row=self.seq, why=text_of(error))
+            ) from error
         found = Decision.of(self.kind, self.who, self.why, pair=pair, body=body)
         return replace(found, time=self.time)
 
@@ -287,7 +289,9 @@ def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection
         yield db
     except sqlite3.Error as error:
         raise_if_full(error, path)
-        raise StoreError(f"{path} is damaged or cannot be used: {error}") from error
+        raise StoreError(
+            CodedText("journal-damaged", file=str(path), why=text_of(error))
+        ) from error
     finally:
         if db is not None:
             db.close()  # what was not committed is rolled back

@@ -15,6 +15,7 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, text_of
 from recon4.review.decisions import DecisionKind
 from recon4.review.journal import JournalRow, read_rows
 from recon4.review.trusted_keys import STATE, TRUSTED_KEYS
@@ -68,12 +69,7 @@ def refuse_older(root: Path, rows: Sequence[JournalRow]) -> None:
     recorded = None if state is None else _read(record_path(state, root.name))
     if recorded is None or _has(rows, recorded):
         return
-    raise Older(
-        f"this project is older than what this server approved (version {recorded.version} of "
-        f"{recorded.time[:19]}Z): an earlier state, or another project, was put in its place; put "
-        "the newer one back, approve the map again, or take it as it is with the command recon4 "
-        "verify PROJECT --accept"
-    )
+    raise Older(CodedText("approved-older", version=recorded.version, time=recorded.time[:19]))
 
 
 def record_newest(root: Path, state: Path) -> None:
@@ -158,9 +154,7 @@ def _read(path: Path) -> NewestApproval | None:
         return msgspec.convert(record, NewestApproval)
     except msgspec.ValidationError as error:
         raise StoreError(
-            f"{APPROVALS}/{path.name} in the server's own files is damaged ({error}): compare the "
-            "project with a backup, then take it as it is with the command recon4 verify PROJECT "
-            "--accept"
+            CodedText("approved-list-damaged", folder=APPROVALS, file=path.name, why=text_of(error))
         ) from error
 
 

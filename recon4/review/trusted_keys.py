@@ -22,6 +22,7 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import ConfigError, StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.signature import ensure_key, fingerprint, public_key_of
 from recon4.review.tuning import KEY_LIMITS
 from recon4.store.atomic import make_folders, write_json
@@ -95,8 +96,13 @@ class TrustedKeys:
             raise UnknownSigner(self._unknown(public_key), fingerprint(public_key))
         if key.removed:
             raise UnknownSigner(
-                f"the signature is by the key {key.fingerprint} ({visible(key.name)}), which "
-                f"{visible(key.removed_by)} removed from the trusted keys on {key.removed[:10]}",
+                CodedText(
+                    "signer-removed",
+                    key=key.fingerprint,
+                    name=visible(key.name),
+                    who=visible(key.removed_by),
+                    date=key.removed[:10],
+                ),
                 key.fingerprint,
             )
         return key

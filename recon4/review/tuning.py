@@ -122,6 +122,8 @@ class ApprovalNameLimits(Struct, frozen=True, kw_only=True):
 
     max_name: int = 60
     """A longer name of a signer is cut [characters]."""
+    max_detail: int = 800
+    """A longer reason why an approval does not count is cut [characters]."""
 
 
 APPROVAL_NAMES = ApprovalNameLimits()

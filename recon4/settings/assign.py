@@ -8,6 +8,7 @@ from dataclasses import asdict, fields, is_dataclass, replace
 from typing import Any, get_args, get_type_hints
 
 from recon4.errors import ConfigError, WrongSettings
+from recon4.locales.coded import CodedText, text_of
 from recon4.settings.presets import Settings
 from recon4.settings.renamed import RENAMED, Retired, retired
 
@@ -29,7 +30,7 @@ def override(settings: Settings, assignments: list[str]) -> Settings:
             group, name, kind = _find(settings, text)
             values.setdefault(group, {})[name] = _parse(value, kind, path)
         except ConfigError as error:
-            problems[path] = str(error)
+            problems[path] = text_of(error)
     changed = {
         group: _replaced(getattr(settings, group), group, fresh, problems=problems)
         for group, fresh in values.items()
@@ -60,15 +61,21 @@ def _find(settings: Settings, text: str) -> tuple[str, str, Any]:
     path, sign, _ = text.partition("=")
     group_name, dot, name = path.strip().partition(".")
     if not sign or not dot:
-        raise ConfigError(f"expected group.field=value, got {text!r}")
+        raise ConfigError(CodedText("setting-form", got=f"{text!r}"))
     if group_name not in _names(settings):
-        raise ConfigError(f"no setting group {group_name!r}; known: {_names(settings)}")
+        raise ConfigError(
+            CodedText("setting-group-unknown", group=f"{group_name!r}", known=str(_names(settings)))
+        )
     group = getattr(settings, group_name)
     if (group_name, name) in RENAMED:
         fresh = f"{group_name}.{RENAMED[group_name, name]}"
-        raise ConfigError(f"the setting {path} is now called {fresh!r}")
+        raise ConfigError(CodedText("setting-renamed", setting=path, name=f"{fresh!r}"))
     if name not in _names(group):
-        raise ConfigError(f"no setting {path!r}; known in {group_name}: {_names(group)}")
+        raise ConfigError(
+            CodedText(
+                "setting-unknown", setting=f"{path!r}", group=group_name, known=str(_names(group))
+            )
+        )
     return group_name, name, get_type_hints(type(group))[name]
 
 
@@ -80,7 +87,7 @@ def _replaced(group: Any, name: str, values: dict[str, object], *, problems: dic
             return replace(group, **left)
         except ConfigError as error:
             # A rule may name two fields: the error is assigned to the first given one.
-            message = str(error)
+            message = text_of(error)
             named = [field for field in re.findall(r"\w+", message) if field in left]
             wrong = named[0] if named else next(iter(left))
             problems[f"{name}.{wrong}"] = message
@@ -108,16 +115,22 @@ def _parse(text: str, kind: Any, path: str) -> Any:
     choices = get_args(kind)
     if choices:
         if text not in choices:
-            raise ConfigError(f"{path} must be one of {', '.join(choices)}, got {text!r}")
+            raise ConfigError(
+                CodedText(
+                    "setting-choice", setting=path, choices=", ".join(choices), got=f"{text!r}"
+                )
+            )
         return text
     if kind is bool:
         if text.lower() not in {"true", "false"}:
-            raise ConfigError(f"{path} must be true or false, got {text!r}")
+            raise ConfigError(CodedText("setting-true-false", setting=path, got=f"{text!r}"))
         return text.lower() == "true"
     try:
         return kind(text)
     except ValueError as error:
-        raise ConfigError(f"{path} must be {kind.__name__}, got {text!r}") from error
+        raise ConfigError(
+            CodedText("setting-type", setting=path, type=kind.__name__, got=f"{text!r}")
+        ) from error
 
 
 def _names(group: object) -> list[str]:

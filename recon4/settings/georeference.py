@@ -40,6 +40,6 @@ class GnssSettings(Checked):
         """Orthometric heights need the separation of the geoid."""
         require(
             (self.heights == "orthometric") == (self.geoid_separation_m != 0.0),
-            "heights = orthometric needs geoid_separation_m, and only it has one",
+            "geoid",
             (self.heights, self.geoid_separation_m),
         )

@@ -45,11 +45,11 @@ class IngestSettings(Checked):
         # Points have their times from the start of a multiframe in 32 bits: 2.1 s.
         require(
             self.rate_hz == 0.0 or self.rate_hz >= 0.5,
-            "rate_hz must be 0 or at least 0.5",
+            "rate",
             self.rate_hz,
         )
         require(
             self.min_range_m < self.max_range_m,
-            "min_range_m must be below max_range_m",
+            "ranges",
             self.min_range_m,
         )

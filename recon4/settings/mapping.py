@@ -34,14 +34,14 @@ class MapSettings(Checked):
 
     def check(self) -> None:
         """Tiles that hold several cells; known names; a factor that keeps the nearest points."""
-        require(self.surface in {"raw", "fitted"}, "surface must be raw or fitted", self.surface)
+        require(self.surface in {"raw", "fitted"}, "surface", self.surface)
         require(
             self.tile_m >= 4 * max(self.normal_cell_m, self.voxel_m),
-            "tile_m must be at least four cells or voxels",
+            "tile",
             self.tile_m,
         )
         require(
             self.far_ratio == 0.0 or self.far_ratio > 1.0,
-            "far_ratio must be 0 or above 1",
+            "far-ratio",
             self.far_ratio,
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.settings.calibration import CalibrationSettings, RigSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
@@ -106,5 +107,7 @@ def preset(name: str) -> Settings:
     """
     name = EARLIER_PRESETS.get(name, name)
     if name not in PRESETS:
-        raise ConfigError(f"no preset named {name!r}; there are: {', '.join(sorted(PRESETS))}")
+        raise ConfigError(
+            CodedText("preset-unknown", name=f"{name!r}", known=", ".join(sorted(PRESETS)))
+        )
     return PRESETS[name]

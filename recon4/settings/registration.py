@@ -20,7 +20,6 @@ class RegistrationSettings(Checked):
         """Known solvers: single scans have none."""
         require(
             self.solver in {"planes", "common_normal", "svd"},
-            "solver must be planes, common_normal or svd (single scans are registered only inside "
-            "odometry without an IMU, by solver planes)",
+            "solver",
             self.solver,
         )

@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any, get_type_hints
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,11 +33,16 @@ def range_of(hint: Any) -> ValueRange | None:
 def require(valid: bool, rule: str, value: object) -> None:
     """Raise an error for an invalid value.
 
+    Args:
+        valid: Whether it is valid.
+        rule: The message ``setting-RULE``, which quotes the value as ``got``.
+        value: What was given.
+
     Raises:
         ConfigError: Names the rule and the value.
     """
     if not valid:
-        raise ConfigError(f"{rule}, got {value}")
+        raise ConfigError(CodedText(f"setting-{rule}", got=str(value)))
 
 
 @cache
@@ -57,7 +63,15 @@ class Checked:
         for name, limits in _ranges(group).items():
             value = getattr(self, name)
             if not limits.low <= value <= limits.high:
-                raise ConfigError(f"{name} must be {limits}, got {value}")
+                raise ConfigError(
+                    CodedText(
+                        "setting-range",
+                        setting=name,
+                        low=f"{limits.low:g}",
+                        high=f"{limits.high:g}",
+                        got=value,
+                    )
+                )
         self.check()
 
     def check(self) -> None:

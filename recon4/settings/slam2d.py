@@ -26,7 +26,7 @@ class Slam2dSettings(Checked):
         """Limits of the range in their order."""
         require(
             self.min_range_m < self.max_range_m,
-            "min_range_m must be below max_range_m",
+            "ranges",
             self.min_range_m,
         )
 

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.hashing import BLOCK_BYTES, FileDigest, files_below
 from recon4.store.tuning import CHECKED_FILES
 
@@ -53,15 +54,19 @@ class CheckedArtifact:
         try:
             data = path.read_bytes()
         except OSError as error:
-            raise Altered(f"{_short(path)} cannot be read: {error.strerror}") from error
+            raise Altered(
+                CodedText("seal-unreadable", file=_short(path), why=f"{error.strerror}")
+            ) from error
         got = hashlib.sha256(data).hexdigest()
         if manifest_sha256 and got != manifest_sha256:
-            raise Altered(_differs(path, "", manifest_sha256, got=got))
+            raise Altered(_differs(path, manifest_sha256, got=got))
         try:
             found = json.loads(data)["files"]
             files = {str(name): FileDigest.from_json(value) for name, value in found.items()}
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
-            raise Altered(f"{_short(path)} is not a manifest: {error!r}") from error
+            raise Altered(
+                CodedText("seal-no-manifest", file=_short(path), why=f"{error!r}")
+            ) from error
         return CheckedArtifact(folder, files)
 
     def check(self, name: str, start: int = 0, stop: int | None = None) -> None:
@@ -77,7 +82,7 @@ class CheckedArtifact:
         """
         expected = self.files.get(name)
         if expected is None:
-            raise Altered(f"{_short(self.folder / name)} is not in the manifest")
+            raise Altered(CodedText("seal-not-in-manifest", file=_short(self.folder / name)))
         check_file(self.folder / name, expected, start, stop=stop)
 
     def check_all(self) -> None:
@@ -88,8 +93,8 @@ class CheckedArtifact:
         """
         there = set(files_below(self.folder)) - {"manifest.json"}
         for name in sorted(there ^ self.files.keys()):
-            state = "is missing" if name in self.files else "does not belong here"
-            raise Altered(f"{_short(self.folder / name)} {state}")
+            state = "seal-missing" if name in self.files else "seal-surplus"
+            raise Altered(CodedText(state, file=_short(self.folder / name)))
         for name in self.files:
             self.check(name)
 
@@ -117,11 +122,15 @@ def check_file(
     try:
         descriptor = os.open(path, os.O_RDONLY | os.O_CLOEXEC)
     except OSError as error:
-        raise Altered(f"{_short(path)} cannot be read: {error.strerror}") from error
+        raise Altered(
+            CodedText("seal-unreadable", file=_short(path), why=f"{error.strerror}")
+        ) from error
     try:
         size = os.fstat(descriptor).st_size
         if size != expected.size:
-            raise Altered(_differs(path, "", f"{expected.size} bytes", got=f"{size} bytes"))
+            raise Altered(
+                CodedText("file-size", file=_short(path), expected=expected.size, got=size)
+            )
         flags = _flags(descriptor, expected) if remembered else _no_flags(expected)
         if not expected.blocks:
             _check_whole(descriptor, path, expected, flags=flags)
@@ -144,7 +153,7 @@ def _check_whole(descriptor: int, path: Path, expected: FileDigest, *, flags: by
         digest.update(block)
         offset += len(block)
     if digest.hexdigest() != expected.sha256:
-        raise Altered(_differs(path, "", expected.sha256, got=digest.hexdigest()))
+        raise Altered(_differs(path, expected.sha256, got=digest.hexdigest()))
     flags[0] = 1
 
 
@@ -153,8 +162,8 @@ def _check_block(descriptor: int, path: Path, expected: FileDigest, *, number: i
     block = os.pread(descriptor, BLOCK_BYTES, offset)
     wanted, got = expected.block(number), hashlib.sha256(block).digest()
     if got != wanted:
-        where = f", bytes {offset} to {offset + len(block)}"
-        raise Altered(_differs(path, where, wanted.hex(), got=got.hex()))
+        span = (offset, offset + len(block))
+        raise Altered(_differs(path, wanted.hex(), got=got.hex(), span=span))
 
 
 def _flags(descriptor: int, expected: FileDigest) -> bytearray:
@@ -183,5 +192,11 @@ def _short(path: Path) -> str:
     return path.name
 
 
-def _differs(path: Path, where: str, expected: str, *, got: str) -> str:
-    return f"{_short(path)}{where}: expected {expected[:16]}, got {got[:16]}"
+def _differs(
+    path: Path, expected: str, *, got: str, span: tuple[int, int] | None = None
+) -> CodedText:
+    """What is said of a file, or of a span of its bytes, with another hash."""
+    hashes = {"expected": expected[:16], "got": got[:16]}
+    if span is None:
+        return CodedText("seal-differs", file=_short(path), **hashes)
+    return CodedText("seal-block-differs", file=_short(path), start=span[0], stop=span[1], **hashes)

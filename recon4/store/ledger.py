@@ -9,6 +9,7 @@ from dataclasses import astuple, dataclass, fields
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, text_of
 from recon4.store.atomic import raise_if_full
 from recon4.store.formats import FORMATS
 from recon4.store.sqlite_files import (
@@ -76,9 +77,7 @@ class Ledger:
         self.path = path
         if path.is_file() and 0 < path.stat().st_size < _PAGE_BYTES:
             # SQLite takes a file of a few bytes for a new one.
-            raise StoreError(
-                f"{path} is cut: expected a page or more, got {path.stat().st_size} bytes"
-            )
+            raise StoreError(CodedText("ledger-cut", file=str(path), size=path.stat().st_size))
         with self._errors():
             if not read_only:
                 create_whole(path, _CREATE)
@@ -102,7 +101,9 @@ class Ledger:
                 self._db.executescript(_CREATE)
         if version not in {0, FORMATS.ledger}:
             raise StoreError(
-                f"{self.path} has version {version}, this recon4 reads version {FORMATS.ledger}"
+                CodedText(
+                    "ledger-version", file=str(self.path), version=version, known=FORMATS.ledger
+                )
             )
 
     @contextmanager
@@ -113,8 +114,7 @@ class Ledger:
         except (sqlite3.Error, UnicodeDecodeError) as error:
             raise_if_full(error, self.path)
             raise StoreError(
-                f"{self.path} is damaged or cannot be used ({error}); move it away and start "
-                "again: finished stages are found by their artifacts"
+                CodedText("ledger-damaged", file=str(self.path), why=text_of(error))
             ) from error
 
     # -- stages

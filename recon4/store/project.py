@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import NoSpace, StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
 from recon4.store.formats import FORMATS
 from recon4.store.json_files import read_object
@@ -59,7 +60,11 @@ class ProjectDescription:
             )
             return ProjectDescription(found["name"], found.get("preset", ""), inputs)
         except (KeyError, TypeError) as error:
-            raise StoreError(f"{root / 'project.json'} cannot be read: {error!r}") from error
+            raise StoreError(
+                CodedText(
+                    "project-file-unreadable", file=str(root / "project.json"), why=f"{error!r}"
+                )
+            ) from error
 
 
 class Project:
@@ -154,10 +159,10 @@ def read_description(root: Path) -> dict[str, Any]:
     """
     path = root / "project.json"
     if not path.exists():
-        raise StoreError(f"{root} is not a recon4 project: it has no project.json")
+        raise StoreError(CodedText("project-none", folder=str(root)))
     found = read_object(path, max_bytes=LIMITS.description_bytes)
     if found.get("format") != FORMATS.project:
-        raise StoreError(f"{path}: expected format {FORMATS.project}")
+        raise StoreError(CodedText("project-format", file=str(path), format=FORMATS.project))
     return found
 
 
@@ -175,10 +180,7 @@ class _Artifacts(dict[str, Path]):
     """Stage name -> folder of its artifact; a stage without one is an error with a remedy."""
 
     def __missing__(self, stage: str) -> Path:
-        raise StoreError(
-            f"there is no artifact of the stage {stage}: it was freed, or has not run yet. "
-            "Process the recording again"
-        )
+        raise StoreError(CodedText("project-no-artifact", stage=stage))
 
 
 def read_artifacts(root: Path) -> dict[str, Path]:
@@ -221,17 +223,16 @@ def _make_folder(root: Path) -> None:
         make_folders(root / "artifacts")
     except OSError as error:
         raise_if_full(error, root)
-        raise StoreError(f"cannot use {root} as a project: {error.strerror}") from error
+        raise StoreError(
+            CodedText("project-unusable", folder=str(root), why=f"{error.strerror}")
+        ) from error
 
 
 def _refuse_foreign(root: Path) -> None:
     sweep(root)
     others = sorted(entry.name for entry in root.iterdir())
     if others:
-        raise StoreError(
-            f"{root} is not empty and not a recon4 project (it contains {others[0]!r}); "
-            "give a new folder"
-        )
+        raise StoreError(CodedText("project-not-empty", folder=str(root), what=f"{others[0]!r}"))
 
 
 def _lock(path: Path) -> int:
@@ -239,13 +240,17 @@ def _lock(path: Path) -> int:
         descriptor = open_lock_file(path, 0o644)
     except OSError as error:
         raise_if_full(error, path)
-        raise StoreError(f"cannot lock {path.parent}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("lock-failed", folder=str(path.parent), why=f"{error.strerror}")
+        ) from error
     try:
         locked = try_lock(descriptor)
     except OSError as error:
         os.close(descriptor)
-        raise StoreError(f"cannot lock {path.parent}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("lock-failed", folder=str(path.parent), why=f"{error.strerror}")
+        ) from error
     if not locked:
         os.close(descriptor)
-        raise StoreError(f"{path.parent} is in use by another recon4 process")
+        raise StoreError(CodedText("project-in-use", folder=str(path.parent)))
     return descriptor

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, text_of
 from recon4.store.atomic import write_json
 from recon4.store.checked import Altered, check_file
 from recon4.store.formats import FORMATS
@@ -55,16 +56,16 @@ def read_seals(root: Path) -> dict[str, Seal]:
     except FileNotFoundError:
         return {}
     except OSError as error:
-        raise Altered(f"{SEALS} cannot be read: {error.strerror}") from error
+        raise Altered(CodedText("seal-unreadable", file=SEALS, why=f"{error.strerror}")) from error
     try:
         found = parse_object(data, SEALS)
         files: dict[str, Seal] = found["files"]
         if found["format"] != FORMATS.seal or found["sha256"] != hash_json(files):
-            raise ValueError("its own hash does not fit")
+            raise ValueError(CodedText("seal-hash"))
         if data != seals_text(files).encode():
-            raise ValueError("it is not as it was written")
+            raise ValueError(CodedText("seal-written"))
     except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise Altered(f"{SEALS} is not what was written: {error}") from error
+        raise Altered(CodedText("seal-altered", file=SEALS, why=text_of(error))) from error
     return files
 
 
@@ -202,7 +203,7 @@ def _compare(
         expected = FileDigest(int(seal["bytes"]), str(seal["sha256"]), b"")
         check_file(root / name, expected, remembered=remembered)
     except (KeyError, ValueError, TypeError) as error:
-        raise Altered(f"{SEALS}: the entry {name} makes no sense: {error!r}") from error
+        raise Altered(CodedText("seal-entry", file=SEALS, name=name, why=f"{error!r}")) from error
     except Altered as error:
         message = f"{name} is not what recon4 wrote: {error}"
         more = (
@@ -236,7 +237,9 @@ def _locked(path: Path) -> Iterator[None]:
     try:
         descriptor = open_lock_file(path, 0o644)
     except OSError as error:
-        raise StoreError(f"cannot lock {path}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("lock-failed", folder=str(path), why=f"{error.strerror}")
+        ) from error
     try:
         wait_for_lock(descriptor)
         yield

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from recon4.errors import CorruptFile, Recon4Error
+from recon4.locales.coded import CodedText, text_of
 from recon4.untrusted.limits import LIMITS
 
 Failure = type[Recon4Error]
@@ -39,7 +40,7 @@ def open_regular(path: Path, *, failure: Failure = CorruptFile) -> BinaryIO:
         raise _unreadable(path, error, failure) from error
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
-        raise failure(f"{path.name}: expected a regular file, got a folder, pipe or device")
+        raise failure(CodedText("file-not-regular", file=path.name))
     return os.fdopen(descriptor, "rb")
 
 
@@ -56,7 +57,7 @@ def read_bytes_limited(path: Path, max_bytes: int, *, failure: Failure = Corrupt
         except OSError as error:
             raise _unreadable(path, error, failure) from error
     if len(data) > max_bytes:  # it grew meanwhile
-        raise failure(f"{path.name}: expected at most {max_bytes} bytes, got more")
+        raise failure(CodedText("file-grew", file=path.name, limit=max_bytes))
     return data
 
 
@@ -70,7 +71,7 @@ def check_file_size(
     """
     size = os.fstat(file.fileno()).st_size
     if size > max_bytes:
-        raise failure(f"{path.name}: expected at most {max_bytes} bytes, got {size}")
+        raise failure(CodedText("file-large", file=path.name, limit=max_bytes, size=size))
     return size
 
 
@@ -96,14 +97,19 @@ def decode_text(data: bytes, name: str, *, failure: Failure = CorruptFile) -> st
     nul = data.find(b"\0")
     if nul >= 0:
         line = data.count(b"\n", 0, nul) + 1
-        raise failure(f"{name}: line {line}: expected text, got a NUL byte at offset {nul}")
+        raise failure(CodedText("text-nul-at", file=name, line=line, offset=nul))
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise failure(
-            f"{name}: line {line}: expected UTF-8 text, got byte 0x{data[error.start]:02x} "
-            f"at offset {error.start}"
+            CodedText(
+                "text-not-utf8-at",
+                file=name,
+                line=line,
+                byte=f"{data[error.start]:02x}",
+                offset=error.start,
+            )
         ) from error
 
 
@@ -140,8 +146,9 @@ def lines_limited(
             try:
                 if len(line) > max_line_bytes:
                     raise failure(
-                        f"{path.name}: line {number}: expected at most {max_line_bytes} bytes, "
-                        "got a longer line"
+                        CodedText(
+                            "text-line-long", file=path.name, line=number, limit=max_line_bytes
+                        )
                     )
                 text = _line(line, number, path.name, failure=failure)
             except failure as error:
@@ -178,8 +185,7 @@ def text_blocks(
             if len(rest) > LIMITS.line_bytes:
                 line = number + block.count(b"\n")
                 raise failure(
-                    f"{path.name}: line {line}: expected at most {LIMITS.line_bytes} bytes, "
-                    "got a longer line"
+                    CodedText("text-line-long", file=path.name, line=line, limit=LIMITS.line_bytes)
                 )
             if block:
                 yield _block(block, number, path.name, failure=failure)
@@ -220,11 +226,9 @@ def parse_json(
         check = _finite if finite else None
         value = json.loads(text, parse_constant=check, parse_float=check)
     except ValueError as error:
-        raise failure(f"{name}: expected JSON, got something else: {error}") from error
+        raise failure(CodedText("json-invalid", file=name, why=text_of(error))) from error
     except RecursionError as error:
-        raise failure(
-            f"{name}: expected JSON of at most {LIMITS.depth} levels, got more"
-        ) from error
+        raise failure(CodedText("json-deep", file=name, limit=LIMITS.depth)) from error
     _check_depth(value, name, failure)
     if _SURROGATE.search(text):
         _check_surrogates(value, name, failure)
@@ -251,14 +255,14 @@ def read_json_object(
     """
     found = read_json_limited(path, max_bytes, failure=failure)
     if not isinstance(found, dict):
-        raise failure(f"{path.name}: expected a JSON object, got {type(found).__name__}")
+        raise failure(CodedText("json-no-object", file=path.name, got=type(found).__name__))
     return found
 
 
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):
-        raise ValueError(f"expected a finite number, got {text[:40]}")
+        raise ValueError(CodedText("not-finite", got=text[:40]))
     return value
 
 
@@ -273,14 +277,14 @@ def _check_depth(value: Any, name: str, failure: Failure) -> None:
         ]
         if not level:
             return
-    raise failure(f"{name}: expected JSON of at most {LIMITS.depth} levels, got more")
+    raise failure(CodedText("json-deep", file=name, limit=LIMITS.depth))
 
 
 def _check_surrogates(value: Any, name: str, failure: Failure) -> None:
     try:
         json.dumps(value, ensure_ascii=False).encode("utf-8")
     except UnicodeEncodeError as error:
-        raise failure(f"{name}: expected Unicode text, got a lone surrogate: {error}") from error
+        raise failure(CodedText("json-surrogate", file=name, why=str(error))) from error
 
 
 def _block(block: bytes, number: int, name: str, *, failure: Failure) -> str:
@@ -291,26 +295,31 @@ def _block(block: bytes, number: int, name: str, *, failure: Failure) -> str:
         pass
     for k, line in enumerate(block.splitlines(keepends=True)):
         _line(line, number + k, name, failure=failure)
-    raise failure(f"{name}: behind line {number}: expected UTF-8 text, got something else")
+    raise failure(CodedText("text-not-utf8-behind", file=name, line=number))
 
 
 def _line(line: bytes, number: int, name: str, *, failure: Failure) -> str:
     if number == 1:
         _refuse_utf16(line, name, failure)
     if b"\0" in line:
-        raise failure(f"{name}: line {number}: expected text, got a NUL byte")
+        raise failure(CodedText("text-nul", file=name, line=number))
     try:
         return line.decode("utf-8-sig" if number == 1 else "utf-8")
     except UnicodeDecodeError as error:
         raise failure(
-            f"{name}: line {number}: expected UTF-8 text, got byte 0x{line[error.start]:02x} "
-            f"in column {error.start + 1}"
+            CodedText(
+                "text-not-utf8",
+                file=name,
+                line=number,
+                byte=f"{line[error.start]:02x}",
+                column=error.start + 1,
+            )
         ) from error
 
 
 def _refuse_utf16(data: bytes, name: str, failure: Failure) -> None:
     if data.startswith(_UTF16):
-        raise failure(f"{name}: expected UTF-8 text, got UTF-16; save it as UTF-8")
+        raise failure(CodedText("text-utf16", file=name))
 
 
 def _unreadable(path: Path, error: Exception, failure: Failure) -> Recon4Error:

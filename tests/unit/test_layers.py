@@ -33,13 +33,13 @@ MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/units.py": set(),
     "recon4/locales": {"recon4.errors", "recon4.locales"},
-    "recon4/untrusted": {"recon4.errors", "recon4.untrusted"},
+    "recon4/untrusted": {"recon4.errors", "recon4.locales", "recon4.untrusted"},
     "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
     "recon4/system/compile_kernels.py": {"recon4.kernels.signatures", "recon4.progress"}
     | {"recon4.sandbox", "recon4.store.locks", "recon4.system"},
     "recon4/archive": STAGE | {"recon4.archive", "recon4.review"},
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
-    "recon4/settings": {"recon4.errors", "recon4.settings"},
+    "recon4/settings": {"recon4.errors", "recon4.locales", "recon4.settings"},
     "recon4/executors": {"recon4.errors", "recon4.executors"},
     "recon4/executors/chosen.py": {"recon4.errors", "recon4.executors", "recon4.locales"}
     | {"recon4.store.atomic", "recon4.store.json_files"},

@@ -101,6 +101,8 @@ export interface ApprovalState {
   code: string;
   values: Record<string, number | string>;
   detail: string;
+  detail_code: string;
+  detail_values: Record<string, number | string>;
   version: number | null;
   who: string;
   time: string;

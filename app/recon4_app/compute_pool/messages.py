@@ -17,7 +17,7 @@ from typing import Any, get_type_hints
 from pydantic import BaseModel, TypeAdapter
 
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
-from recon4.locales.coded import CodedText, flat_values, stored_text
+from recon4.locales.coded import CodedText, StoredText, flat_values, stored_text
 from recon4.untrusted.names import is_unnameable
 from recon4_app.compute_pool.model import FileAccess
 from recon4_app.compute_pool.tuning import POOL_MESSAGES
@@ -57,7 +57,7 @@ class CallError(BaseModel):
     code: str = ""
     """Of the message; empty = it has none."""
     values: dict[str, bool | int | float | str] = {}
-    problems: dict[str, str] = {}
+    problems: dict[str, StoredText] = {}
     candidates: list[str] = []
 
 
@@ -109,11 +109,12 @@ def declared(function: Callable[..., Any]) -> Any:
 
 def encode_error(error: Exception) -> bytes:
     """Encode an error of the library (child's side)."""
-    problems = error.problems if isinstance(error, WrongSettings) else {}
+    found = error.problems if isinstance(error, WrongSettings) else {}
+    problems = {field: StoredText.of(text) for field, text in found.items()}
     name = f"{type(error).__module__}.{type(error).__qualname__}"
     message = str(error)[: POOL_MESSAGES.max_message].encode(errors="backslashreplace").decode()
-    found = error.candidates if isinstance(error, UnknownFormat) else ()
-    candidates = [str(one) for one in found if not is_unnameable(one)]
+    several = error.candidates if isinstance(error, UnknownFormat) else ()
+    candidates = [str(one) for one in several if not is_unnameable(one)]
     reply = CallError(name=name, message=message, problems=problems, candidates=candidates)
     if error.args and isinstance(text := error.args[0], CodedText):
         reply.code, reply.values = text.code, flat_values(text.values)
@@ -127,7 +128,7 @@ def decode_error(data: bytes) -> Exception:
     except ValueError:
         return ComputeFailed(CodedText("helper-bad-error"))
     if error.problems:
-        return WrongSettings(error.problems)
+        return WrongSettings({field: one.again() for field, one in error.problems.items()})
     if error.candidates:
         return UnknownFormat(error.message, candidates=tuple(map(Path, error.candidates)))
     message = stored_text(error.code, error.values, error.message)

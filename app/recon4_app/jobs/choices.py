@@ -10,6 +10,7 @@ from fastapi import APIRouter, Depends
 from pydantic import BaseModel, ConfigDict, Field
 
 from recon4.errors import WrongSettings
+from recon4.locales.coded import all_said
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
 from recon4.model.rig import rig_presets
@@ -100,13 +101,13 @@ def read_settings(language: Language, of: str = "indoor") -> list[GroupView]:
 
 
 @router.post("/settings/check", summary="Check settings")
-def check_settings(given: Assignments) -> SettingsCheck:
+def check_settings(given: Assignments, language: Language) -> SettingsCheck:
     """Check whether a job would accept these settings; lists every problem."""
     chosen = preset(given.preset)
     try:
         override(chosen, given.settings)
     except WrongSettings as error:
-        return SettingsCheck(problems=error.problems)
+        return SettingsCheck(problems=all_said(error.problems, language))
     return SettingsCheck(problems={})
 
 

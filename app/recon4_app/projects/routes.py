@@ -84,11 +84,12 @@ class Restored(BaseModel):
 
 
 @router.get("/projects", dependencies=LOOK, summary="Projects")
-def list_projects(server: Server) -> list[ProjectCard]:
+def list_projects(server: Server, language: Language) -> list[ProjectCard]:
     """List all projects, the newest first."""
     root = server.settings.root.resolve()
+    known = server.checks.known
     return [
-        replace(card, approval=server.checks.known(root / card.id, card.approval))
+        replace(card, approval=known(root / card.id, card.approval).in_language(language))
         for card in server.projects.all()
     ]
 
@@ -99,14 +100,14 @@ def read_project(project_id: str, server: Server, who: Who, *, language: Languag
 
     The findings in its summary are in the language of the request.
     """
-    project = _compared(server, server.projects.get(project_id))
+    project = _compared(server, server.projects.get(project_id), language)
     project = replace(project, summary=summary_in(language, project.summary))
     return for_guests(project) if who.project else project
 
 
 @router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Change a project")
 def change_project(
-    project_id: str, new: ProjectChanges, server: Server, *, request: Request
+    project_id: str, new: ProjectChanges, server: Server, *, request: Request, language: Language
 ) -> ProjectView:
     """Change display name or tags of a project, or archive it. Not while a job runs.
 
@@ -116,7 +117,7 @@ def change_project(
     server.projects.describe(project_id, fields)
     said = ", ".join(f"{name} {value}" for name, value in fields.items())
     audit(request, "change project", f"{project_id}: {said}")
-    return _compared(server, server.projects.get(project_id))
+    return _compared(server, server.projects.get(project_id), language)
 
 
 @router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete a project")
@@ -258,14 +259,13 @@ async def look(
     )
 
 
-def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
+def _compared(server: ServerParts, project: ProjectView, language: str) -> ProjectView:
     """A project with the outcome of the comparison of its files with their signature."""
     found = project.approval
-    if not found.hash:
-        return project
-    root, keys = server.projects.folder(project.id), artifact_keys(project.summary)
-    found = server.checks.compared(root, keys, found, within_s=LOOKS.compared_within_s)
-    return replace(project, approval=found)
+    if found.hash:
+        root, keys = server.projects.folder(project.id), artifact_keys(project.summary)
+        found = server.checks.compared(root, keys, found, within_s=LOOKS.compared_within_s)
+    return replace(project, approval=found.in_language(language))
 
 
 def _refuse_while_busy(server: ServerParts, project_id: str) -> None:

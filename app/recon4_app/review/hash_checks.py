@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from recon4.errors import Recon4Error
+from recon4.locales.coded import CodedText, text_of
 from recon4.review.approval_state import ApprovalState, altered, approval_state
 from recon4.review.approved import Approval, approval_of
 from recon4.store.checked import Altered
@@ -76,10 +77,10 @@ def compare(root: Path, keys: Mapping[str, str]) -> str:
     try:
         approval = approval_of(root, keys)
         if approval is None:
-            raise Altered("the approval is gone")
+            raise Altered(CodedText("approved-gone"))
         _compare_bytes(root, approval)
     except Recon4Error as error:
-        return str(error)
+        return text_of(error)
     return ""
 
 

@@ -321,6 +321,7 @@ def view_of(project_id: str, server: ServerParts, reader: Reader) -> ReviewView:
     decisions = [row.decision() for row in rows]
     decided = fold(decisions)
     in_map = decisions_in_map(root)
+    approval = server.checks.state(root, artifact_keys(read_summary(root) or {}))
     return ReviewView(
         seq=len(rows),
         key=decided.key,
@@ -347,7 +348,7 @@ def view_of(project_id: str, server: ServerParts, reader: Reader) -> ReviewView:
         busy=server.jobs.is_busy(project_id),
         may_review=reader.who.may(Permission.REVIEW),
         may_process=reader.who.may(Permission.PROCESS),
-        approval=server.checks.state(root, artifact_keys(read_summary(root) or {})),
+        approval=approval.in_language(reader.language),
     )
 
 

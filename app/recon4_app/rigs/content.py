@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, WrongSettings
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText, text_of
 from recon4.model.beams import BeamCorrections, parse_beams
 from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
@@ -102,7 +103,7 @@ def problems_of(content: RigContent) -> dict[str, str]:
 
 def warnings_of(content: RigContent) -> list[str]:
     """What can be wrong with a valid rig."""
-    found = []
+    found: list[str] = []
     ports: dict[int, list[SensorContent]] = {}
     for sensor in content.sensors:
         ports.setdefault(sensor.port, []).append(sensor)
@@ -110,15 +111,12 @@ def warnings_of(content: RigContent) -> list[str]:
         addresses = {sensor.address for sensor in sensors}
         if len(sensors) > 1 and (len(addresses) < len(sensors) or "" in addresses):
             names = ", ".join(sensor.name for sensor in sensors)
-            found.append(
-                f"{names} all send to port {port}: a live capture needs an address for each, or "
-                "a port of its own"
-            )
+            found.append(CodedText("rig-port-shared", names=names, port=port))
     if not any(sensor.enabled for sensor in content.sensors):
-        found.append("no sensor is enabled: there is nothing to map")
+        found.append(CodedText("rig-all-disabled"))
     places = [(sensor.xyz_m, sensor.rpy_deg) for sensor in content.sensors]
     if len(set(places)) < len(places):
-        found.append("two sensors have the same pose")
+        found.append(CodedText("rig-same-pose"))
     return found
 
 
@@ -140,71 +138,76 @@ def rpy_deg(R: Array) -> Triple:
 
 def _problems(content: RigContent) -> Iterator[Problem]:
     if not content.name.strip():
-        yield "name", "the rig needs a name"
+        yield "name", CodedText("rig-needs-name")
     taken: set[str] = set()
     for k, sensor in enumerate(content.sensors):
         where = f"sensors.{k}"
-        label = sensor.name.strip() or f"sensor {k + 1}"
+        label = sensor.name.strip() or CodedText("rig-sensor-number", number=k + 1)
         yield from _sensor_problems(sensor, where, label)
         if sensor.name.strip() in taken:
-            yield f"{where}.name", f"{label}: another sensor has this name"
+            yield f"{where}.name", CodedText("rig-name-taken", sensor=label)
         taken.add(sensor.name.strip())
         yield from _mount_problems(sensor.xyz_m, sensor.rpy_deg, where=where, label=label)
         yield from _port_problems(sensor.port, f"{where}.port", label)
     names = [one.name for one in content.sensors]
     if content.imu.sensor and content.imu.sensor not in names:
-        yield "imu.sensor", f"must be the name of a LiDAR ({', '.join(names)}) or empty"
+        yield "imu.sensor", CodedText("rig-imu-holder", names=", ".join(names))
     yield from _mount_problems(content.imu.xyz_m, content.imu.rpy_deg, where="imu", label="IMU")
     yield from _port_problems(content.imu.port, "imu.port", "IMU")
-    yield from _distance_problems(content.gnss.lever_arm_m, "gnss.lever_arm_m", "GNSS antenna")
+    yield from _distance_problems(
+        content.gnss.lever_arm_m, "gnss.lever_arm_m", CodedText("rig-antenna")
+    )
     yield from _port_problems(content.gnss.port, "gnss.port", "GNSS")
     yield from _serial_problems(content.gnss)
 
 
 def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[Problem]:
     if not sensor.name.strip():
-        yield f"{where}.name", f"{label}: each sensor needs a name"
+        yield f"{where}.name", CodedText("rig-sensor-needs-name", sensor=label)
     models = SENSOR_MODELS if sensor.kind == "lidar" else ("generic",)
     if sensor.model not in models:
         expected = ", ".join(models)
-        yield f"{where}.model", f"{label}: expected {expected}, got {visible(sensor.model)!r}"
+        yield (
+            f"{where}.model",
+            CodedText("rig-model-of", sensor=label, expected=expected, got=visible(sensor.model)),
+        )
     if sensor.kind != "profiler" and (sensor.head_topic or sensor.head_rate_deg_s):
-        yield f"{where}.head_topic", f"{label}: only a profiler has a head"
+        yield f"{where}.head_topic", CodedText("rig-profiler-head", sensor=label)
     if abs(sensor.head_rate_deg_s) > RIG_CONTENT.largest_head_deg_s:
         yield (
             f"{where}.head_rate_deg_s",
-            f"{label}: expected at most {RIG_CONTENT.largest_head_deg_s:g} °/s",
+            CodedText("rig-at-most", sensor=label, limit=f"{RIG_CONTENT.largest_head_deg_s:g} °/s"),
         )
     if sensor.clock_rate_ppm and sensor.kind != "lidar":
-        yield f"{where}.clock_rate_ppm", f"{label}: only a lidar has a rate of its clock"
+        yield f"{where}.clock_rate_ppm", CodedText("rig-lidar-clock", sensor=label)
     if abs(sensor.clock_rate_ppm) > RIG_LIMITS.clock_ppm:
-        text = f"{label}: expected at most {RIG_LIMITS.clock_ppm:g} ppm"
+        text = CodedText("rig-at-most", sensor=label, limit=f"{RIG_LIMITS.clock_ppm:g} ppm")
         yield f"{where}.clock_rate_ppm", text
     yield from _beams_problems(sensor, f"{where}.beams", label)
     yield from _fields_problems(sensor, f"{where}.fields", label)
     if sensor.address and not _is_address(sensor.address):
         got = visible(sensor.address)
-        yield f"{where}.address", f"{label}: expected an address like 192.168.1.201, got {got!r}"
+        yield f"{where}.address", CodedText("rig-address", sensor=label, got=got)
 
 
 def _beams_problems(sensor: SensorContent, field: str, label: str) -> Iterator[Problem]:
     if sensor.beams is not None and sensor.kind != "lidar":
-        yield field, f"{label}: only a lidar has corrections of beams"
+        yield field, CodedText("rig-lidar-beams", sensor=label)
         return
     try:
         _beams(sensor)
     except ConfigError as error:
-        yield field, visible(str(error), most=300)
+        yield field, text_of(error)
 
 
 def _fields_problems(sensor: SensorContent, field: str, label: str) -> Iterator[Problem]:
     if sensor.fields and sensor.kind != "lidar":
-        yield field, f"{label}: only a lidar has columns of points"
+        yield field, CodedText("rig-lidar-columns", sensor=label)
         return
     try:
         _fields(sensor)
     except ConfigError as error:
-        yield field, str(error)
+        yield field, text_of(error)
 
 
 def _mount_problems(xyz_m: Triple, rpy: Triple, *, where: str, label: str) -> Iterator[Problem]:
@@ -212,7 +215,7 @@ def _mount_problems(xyz_m: Triple, rpy: Triple, *, where: str, label: str) -> It
     if any(abs(angle) > RIG_CONTENT.largest_deg for angle in rpy):
         yield (
             f"{where}.rpy_deg",
-            f"{label}: expected angles within ±{RIG_CONTENT.largest_deg:g}°, got {rpy}",
+            CodedText("rig-angles", sensor=label, limit_deg=RIG_CONTENT.largest_deg, got=str(rpy)),
         )
 
 
@@ -220,13 +223,13 @@ def _distance_problems(xyz_m: Triple, field: str, label: str) -> Iterator[Proble
     if any(abs(value) > RIG_CONTENT.largest_m for value in xyz_m):
         yield (
             field,
-            f"{label}: expected a position within ±{RIG_CONTENT.largest_m:g} m, got {xyz_m}",
+            CodedText("rig-position", sensor=label, limit_m=RIG_CONTENT.largest_m, got=str(xyz_m)),
         )
 
 
 def _port_problems(port: int, field: str, label: str) -> Iterator[Problem]:
     if not 0 <= port <= RIG_CONTENT.largest_port:
-        yield field, f"{label}: port must be 0 to {RIG_CONTENT.largest_port}, got {port}"
+        yield field, CodedText("rig-port", sensor=label, limit=RIG_CONTENT.largest_port, got=port)
 
 
 def _serial_problems(gnss: GnssContent) -> Iterator[Problem]:
@@ -235,9 +238,9 @@ def _serial_problems(gnss: GnssContent) -> Iterator[Problem]:
     try:
         parse_serial_device(gnss.serial.strip())
     except ConfigError as error:
-        yield "gnss.serial", visible(str(error), most=300)
+        yield "gnss.serial", text_of(error)
     if not gnss.port:
-        yield "gnss.serial", "GNSS: a serial line needs a port, to which its sentences are recorded"
+        yield "gnss.serial", CodedText("gnss-port")
 
 
 def _is_address(text: str) -> bool:

@@ -9,9 +9,10 @@ from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, Response
 from starlette.concurrency import run_in_threadpool
 
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, said
 from recon4.model.lidars import LIDARS
 from recon4.model.rig import SENSOR_MODELS, format_rig, load_rig, rig_presets
+from recon4.untrusted.names import visible
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
@@ -73,9 +74,15 @@ def list_models() -> list[SensorModel]:
 
 
 @router.post("/rigs/check", summary="Check a rig")
-def check_content(content: RigContent) -> RigCheck:
+def check_content(content: RigContent, language: Language) -> RigCheck:
     """List every problem of a rig; nothing is stored."""
-    return RigCheck(problems=problems_of(content), warnings=warnings_of(content))
+    return RigCheck(
+        problems={
+            field: visible(said(one, language), most=300)
+            for field, one in problems_of(content).items()
+        },
+        warnings=[said(one, language) for one in warnings_of(content)],
+    )
 
 
 @router.get("/rigs/{rig_id}", summary="One rig")

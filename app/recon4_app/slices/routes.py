@@ -92,7 +92,7 @@ async def read_facts(
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
     references = [] if guest else await run_in_threadpool(slices.references, project_id, language)
     sources = [] if guest else await run_in_threadpool(slices.sources, project_id)
-    approval = await run_in_threadpool(slices.approval, project_id, source)
+    approval = await run_in_threadpool(slices.approval, project_id, source, language)
     terms = slices.terms(project_id, caller.name, source)
     return await caller.wait(
         slices.run_interactive(

@@ -156,15 +156,16 @@ class Slices:
         except (UnknownSigner, NotInJournal):
             return None
 
-    def approval(self, project_id: str, source: str = "") -> ApprovalState:
+    def approval(self, project_id: str, source: str, language: str) -> ApprovalState:
         """State of the approval of the requested map, with the outcome of the comparison."""
         try:
             root, found = self._approval(project_id, source)
         except StoreError:
             root, found = self._root(project_id, source), None
         if found is not None:
-            return self._checks.state(root, found.artifacts)
-        return approval_state(root, {} if source.startswith("map:") else _keys(root))
+            return self._checks.state(root, found.artifacts).in_language(language)
+        keys = {} if source.startswith("map:") else _keys(root)
+        return approval_state(root, keys).in_language(language)
 
     def _root(self, project_id: str, source: str) -> Path:
         kind, _, name = source.partition(":")

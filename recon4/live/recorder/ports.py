@@ -12,6 +12,7 @@ from recon4.errors import ConfigError
 from recon4.live.recorder.capture_file import Datagram
 from recon4.live.recorder.serial_port import check_serial_device
 from recon4.live.recorder.tuning import PORTS
+from recon4.locales.coded import CodedText
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.model.serial_device import parse_serial_device
@@ -19,9 +20,9 @@ from recon4.model.serial_device import parse_serial_device
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
 _SO_RXQ_OVFL = 40
 _HINTS = {
-    errno.EADDRINUSE: "; is another recorder or VeloView running?",
-    errno.EACCES: "; ports below 1024 need administrator rights: send to other ports",
-    errno.EADDRNOTAVAIL: "; no network card of this computer has that address now",
+    errno.EADDRINUSE: "hint-port-in-use",
+    errno.EACCES: "hint-port-low",
+    errno.EADDRNOTAVAIL: "hint-no-address",
 }
 _TIMESPEC = struct.Struct("@qq")
 
@@ -78,7 +79,7 @@ def check_sources(rig: Rig) -> None:
     if rig.gnss_serial:
         check_serial_device(parse_serial_device(rig.gnss_serial))
         if not rig.gnss_port:
-            raise ConfigError("gnss: serial needs a port, to which its sentences are recorded")
+            raise ConfigError(CodedText("gnss-port"))
     ports: dict[int, list[Sensor]] = {}
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor)
@@ -89,8 +90,7 @@ def check_sources(rig: Rig) -> None:
         if len(sensors) > 1 and (len(addresses) < len(sensors) or "" in addresses):
             names = ", ".join(sensor.name for sensor in sensors)
             raise ConfigError(
-                f"rig {rig.name}: {names} all send to port {port}: give each its address = "
-                '"…" in the rig file, or a port of its own'
+                CodedText("capture-port-shared", rig=rig.name, names=names, port=port)
             )
 
 
@@ -103,10 +103,7 @@ def _check_kinds(rig: Rig) -> None:
     if with_laser and kinds.count("profiler") <= 1:
         return
     names = ", ".join(f"{s.name} (kind {s.kind})" for s in rig.sensors if s.enabled)
-    raise ConfigError(
-        f"rig {rig.name}: live capture maps LiDARs, or one 2-D laser with or without one profiler; "
-        f"got {names}: record their topics in a bag and process that"
-    )
+    raise ConfigError(CodedText("capture-kinds", rig=rig.name, names=names))
 
 
 def _check_address(sensor: Sensor) -> None:
@@ -114,7 +111,7 @@ def _check_address(sensor: Sensor) -> None:
         IPv4Address(sensor.address)
     except ValueError as error:
         raise ConfigError(
-            f"{sensor.name}: address must be like 192.168.1.201, got {sensor.address!r}"
+            CodedText("capture-address", sensor=sensor.name, got=f"{sensor.address!r}")
         ) from error
 
 
@@ -136,9 +133,17 @@ def open_ports(rig: Rig, *, address: str = "0.0.0.0") -> list[Port]:
     except OSError as error:
         for port in opened:
             port.socket.close()
-        hint = _HINTS.get(error.errno or 0, "")
+        known = _HINTS.get(error.errno or 0)
+        hint = CodedText(known) if known else ""
         raise ConfigError(
-            f"UDP port {number} ({expected}) cannot be opened on {address}: {error.strerror}{hint}"
+            CodedText(
+                "capture-port-taken",
+                port=number,
+                expected=expected,
+                address=address,
+                why=f"{error.strerror}",
+                hint=hint,
+            )
         ) from error
     return opened
 

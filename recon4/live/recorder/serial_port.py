@@ -14,6 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.serial_device import SerialDevice
 
 DRIVERS = Path("/proc/tty/drivers")
@@ -31,7 +32,9 @@ def check_serial_device(device: SerialDevice) -> None:
         with suppress(FileNotFoundError), _serial_line(device.path):
             pass
     except OSError as error:
-        raise ConfigError(f"gnss: serial: {device.path}: {error.strerror or error}") from error
+        raise ConfigError(
+            CodedText("serial-failed", path=str(device.path), why=str(error.strerror or error))
+        ) from error
 
 
 def open_serial_device(device: SerialDevice) -> int:
@@ -84,7 +87,7 @@ def _serial_line(path: str) -> Iterator[str]:
 
 def _check_kind(status: os.stat_result, path: str) -> None:
     if not stat.S_ISCHR(status.st_mode):
-        raise ConfigError(f"gnss: serial: {path} is no device: expected a serial line")
+        raise ConfigError(CodedText("serial-no-device", path=str(path)))
 
 
 def _check_driver(device: int, path: str) -> None:
@@ -95,10 +98,7 @@ def _check_driver(device: int, path: str) -> None:
             "it is not opened"
         )
     if device in _consoles():
-        raise ConfigError(
-            f"gnss: serial: {path} is a console of this computer: it is not opened; take the "
-            "console away from it (kernel parameter console=), or use another line"
-        )
+        raise ConfigError(CodedText("serial-console", path=str(path)))
 
 
 def driver_kind(device: int, table: str) -> str:

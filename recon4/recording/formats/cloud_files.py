@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.bin_layout import bin_layout, is_bin
 from recon4.recording.formats.cloud_headers import (
     HEADER_BYTES,
@@ -162,12 +163,7 @@ ENDING_FORMATS = (
 )
 CLOUD_SUFFIXES = tuple(one.suffix for one in (*HEADER_FORMATS, *ENDING_FORMATS))
 """Of files that are frames of a folder."""
-CLOUD_FORMATS = " or ".join(
-    [
-        ", ".join(one.name for one in (*HEADER_FORMATS, *ENDING_FORMATS[:-1])),
-        ENDING_FORMATS[-1].name,
-    ]
-)
+CLOUD_FORMATS = ", ".join(one.name for one in (*HEADER_FORMATS, *ENDING_FORMATS))
 """Their formats, for messages."""
 
 
@@ -182,7 +178,7 @@ def _layout(file: BinaryIO, path: Path) -> CloudLayout:
         return known.layout(head, path.name)
     if path.suffix.lower() == ".bin":
         return bin_layout(head, _size(file), path.name)
-    raise UnknownFormat(f"{path.name}: expected a {CLOUD_FORMATS} file")
+    raise UnknownFormat(CodedText("cloud-unknown", file=path.name, formats=CLOUD_FORMATS))
 
 
 def _check_size(file: BinaryIO, layout: CloudLayout, name: str) -> None:

@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from recon4.errors import UnknownFormat
+from recon4.locales.coded import CodedText
 
 _APART_NS = 3 * 3600 * 1_000_000_000
 """Files of one walk follow each other sooner, also after a break for lunch and other batteries."""
@@ -50,8 +51,12 @@ def require_one_walk(files: Sequence[FileTimes]) -> None:
     named = [_text(walk) for walk in walks[:_NAMED]]
     more = " …" * (len(walks) > _NAMED)
     raise UnknownFormat(
-        f"{len(walks)} recordings of different times, more than {_APART_NS // 3600_000_000_000} "
-        f"hours apart: {'; '.join(named)}{more}; give those of one walk",
+        CodedText(
+            "recordings-of-times",
+            number=len(walks),
+            hours=_APART_NS // 3600_000_000_000,
+            walks="; ".join(named) + more,
+        ),
         candidates=tuple(file.path for file in ordered),
     )
 

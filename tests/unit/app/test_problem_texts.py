@@ -15,6 +15,7 @@ from recon4.locales.coded import (
     KINDS,
     CodedText,
     StoredText,
+    all_said,
     as_coded,
     coded,
     codes,
@@ -24,6 +25,7 @@ from recon4.locales.coded import (
 )
 from recon4.locales.languages import ENGLISH, ROOT, languages
 from recon4.locales.texts import messages_of, texts
+from recon4.settings import Settings, override
 from recon4_app.compute_pool.messages import decode_error, encode_error
 from recon4_app.error_responses import field_message
 from recon4_app.errors import NotFound
@@ -31,7 +33,16 @@ from recon4_app.jobs.reason import in_language, reason_of
 from recon4_app.network.close_codes import close_reason
 
 OTHERS = languages()[1:]
-SAME = {"webhook-url", "recording-bag1", "recording-bag2", "missing-contents", "missing-imu-table"}
+SAME = {
+    "and-further",
+    "approved-refused",
+    "serial-failed",
+    "webhook-url",
+    "recording-bag1",
+    "recording-bag2",
+    "missing-contents",
+    "missing-imu-table",
+}
 SAME |= {"missing-topic", "samples-sender", "samples-topic", "word-topic-imu"}
 SAME |= {"info-head", "info-start", "held-one", "held-more", "detail-times", "detail-protocols"}
 """Codes whose text is the same in German."""
@@ -118,6 +129,19 @@ def test_the_error_of_a_helper_process_keeps_its_code():
     here = decode_error(encode_error(there))
 
     assert isinstance(here, ConfigError) and coded(here).said("de") == "die Karte hat keine Punkte"
+
+
+def test_wrong_settings_are_said_in_a_language_each_and_together():
+    with pytest.raises(WrongSettings) as refused:
+        override(Settings(), ["map.voxel_m=thick", "ingest.rate_hz=0.1"])
+    here = decode_error(encode_error(refused.value))
+    assert isinstance(here, WrongSettings) and here.problems == refused.value.problems
+
+    german = all_said(here.problems, "de")
+
+    assert german["map.voxel_m"] == "map.voxel_m muss float sein, erhalten: 'thick'"
+    assert german["ingest.rate_hz"].startswith("rate_hz muss 0 oder mindestens 0.5 sein")
+    assert coded(here).said("de") == "; ".join(german.values())
 
 
 def test_a_stored_code_that_says_nothing_now_leaves_the_english_text():

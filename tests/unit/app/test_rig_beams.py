@@ -38,4 +38,4 @@ def test_an_edited_rig_keeps_the_recipe_of_its_points_and_names_what_is_wrong_wi
     assert rig_of(edited).sensors[0].fields == fields
     wrong = edited.sensors[0].model_copy(update={"fields": "x=px"})
     problems = problems_of(edited.model_copy(update={"sensors": [wrong]}))
-    assert "expected x, y, z; or" in problems["sensors.0.fields"]
+    assert "x, y, z; range, azimuth" in problems["sensors.0.fields"]

@@ -257,7 +257,7 @@ def test_points_that_are_mirrored_are_a_warning(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("x=a,y=b", "expected x, y, z; or range, azimuth, elevation; .*; got x, y"),
+        ("x=a,y=b", "lists: x, y, z; range, azimuth, elevation; .*; got x, y"),
         ("x=a,y=b,z=c,range=d", "got x, y, z, range"),
         ("x=a,y=b,z=b", "the column 'b' has two roles"),
         ("x=a:ft,y=b,z=c", "x: expected one of m, cm, mm, or a number of m, got 'ft'"),

@@ -308,6 +308,20 @@ def test_a_changed_approval_is_found(root, key, change, words):
     assert any(words in what for what in damage(root))
 
 
+def test_why_an_approval_does_not_count_is_said_in_the_language_of_the_reader(root, key):
+    path = approve(root, key, SIGNER, confirmed=False).folder / "approval.json"
+    record = json.loads(path.read_text())
+    other_signature(record)
+    path.chmod(0o644)
+    path.write_text(json.dumps(record))
+
+    state = approval_state(root, {"map": "ab"})
+
+    assert state.detail == "the approval of version 1 is not valid: the signature is not valid"
+    german = state.in_language("de").detail
+    assert german == "die Freigabe von Version 1 ist nicht gültig: die Signatur ist nicht gültig"
+
+
 def test_added_and_removed_files_of_a_version_are_found(root, key):
     folder = approve(root, key, SIGNER, confirmed=False).folder
     (folder / "more.txt").write_text("x")
