@@ -193,7 +193,7 @@ def _learn_carrier(
         near = frame.take(rows)
         p_map = place(near, trajectory, rig)
         others = views.near(frame.t_mid_ns)
-        verdict = _verdicts(near, p_map, others, of=trajectory, places=KnownPlaces())
+        verdict = _verdicts(near, p_map, KnownPlaces(others), of=trajectory)
         volume.learn(p_body, verdict)
     return volume.filled()
 
@@ -210,23 +210,21 @@ class _Compared:
     def classes(self, given: tuple[NDArray[np.intp], RangeViews | None]) -> Classes:
         """Classes of the multiframes of a span, compared with some scans."""
         rows, others = given
-        places = KnownPlaces()
-        frames = self.frames
-        return [_classes(frames[k], others, known=self, places=places) for k in rows.tolist()]
+        places = KnownPlaces(others)
+        return [_classes(self.frames[k], places, known=self) for k in rows.tolist()]
 
 
 class KnownPlaces:
     """What scans say of places, as it is found out."""
 
-    def __init__(self) -> None:
+    def __init__(self, views: RangeViews | None = None) -> None:
+        self.views = views
         self.held = np.zeros(1 << KNOWN_PLACES.bits, np.int64)
         moving, met = np.empty((2, *KNOWN_PLACES.cubes), np.int32)
         self.cubes = Cubes(moving, met, *np.empty((2, *KNOWN_PLACES.cubes[:2]), np.float32))
 
 
-def _classes(
-    frame: Multiframe, views: RangeViews | None, *, known: _Compared, places: KnownPlaces
-) -> NDArray[np.uint8]:
+def _classes(frame: Multiframe, places: KnownPlaces, *, known: _Compared) -> NDArray[np.uint8]:
     rig, trajectory = known.frames.rig, known.trajectory
     placed = place_with_origins(frame, trajectory, rig)
     classes = np.full(len(frame), PointClass.UNCLASSIFIED, np.uint8)
@@ -235,7 +233,7 @@ def _classes(
     near, p_body = near_points(frame, rig)
     classes[near[known.carrier.surely(p_body)]] = PointClass.CARRIER
     others = classes == PointClass.UNCLASSIFIED
-    verdict = _verdicts(frame, placed.xyz_m, views, of=trajectory, places=places, things=others)
+    verdict = _verdicts(frame, placed.xyz_m, places, of=trajectory, things=others)
     classes[others & (verdict == VERDICT.seen_through)] = PointClass.MOVING
     classes[near[known.carrier.of(p_body, verdict[near])]] = PointClass.CARRIER
     return classes
@@ -244,18 +242,17 @@ def _classes(
 def _verdicts(
     frame: Multiframe,
     p_map: Array,
-    views: RangeViews | None,
+    places: KnownPlaces,
     *,
     of: Trajectory,
-    places: KnownPlaces,
     things: NDArray[np.bool_] | None = None,
 ) -> NDArray[np.int8]:
     """What other scans say of points; ``things``: which points may be of a thing that moves."""
     verdict = np.full(len(frame), VERDICT.unknown, np.int8)
-    if views is None:
+    if places.views is None:
         return verdict
     evidence, cubes = np.empty(len(frame), np.int8), places.cubes
-    find_seen_through(p_map, frame.sensor, views, SIGHT, places.held, evidence)
+    find_seen_through(p_map, frame.sensor, places.views, SIGHT, places.held, evidence)
     body_m = of.at(np.array([frame.t_mid_ns]), slack_ns=frame.duration_ns).t[0]
     points = JudgedPoints(p_map, evidence, verdict)
     spread_to_neighbors(points, body_m, SPREAD, cubes)
