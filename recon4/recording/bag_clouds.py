@@ -15,6 +15,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import stamp_ns
 from recon4.recording.clock_compare import note_lidar_lag
 from recon4.recording.cloud_points import CloudDecoder
+from recon4.recording.even_stamps import EvenStamps
 from recon4.recording.formats.bags import BagMessage
 from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.report import ImportReport
@@ -40,6 +41,7 @@ class CloudReader:
         self._offset_ns = round(offset_s * 1e9)
         self._recent: deque[tuple[int, Any]] = deque(maxlen=LIDAR_CHOICE.copies_within)
         self._order: StampOrder[tuple[BagMessage, Any]] = StampOrder()
+        self._even, self._topic = EvenStamps(), ""
 
     def push(self, message: BagMessage, cloud: Any) -> Iterator[Shots]:
         t_ns = stamp_ns(cloud.header.stamp)
@@ -53,10 +55,13 @@ class CloudReader:
             self._order.shift_last(self._stamps.set_before, -self._stamps.set_ns)
             t_ns += self._stamps.shift_ns
             self._decoder.stamps_set_ns = -self._stamps.shift_ns
+        self._even.add(t_ns)
+        self._topic = message.topic
         yield from self._decoded(self._order.push(t_ns, (message, cloud)))
 
     def flush(self) -> Iterator[Shots]:
         yield from self._decoded(self._order.flush())
+        self._even.say(self._topic, self._report)
         self._report.count("clouds_late", self._order.too_late)
 
     def _decoded(self, clouds: Iterable[tuple[int, tuple[BagMessage, Any]]]) -> Iterator[Shots]:
@@ -68,13 +73,20 @@ class CloudReader:
                 self._report.count("messages_corrupt")
                 self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=error)
                 continue
-            if self._stamps.offset_ns is None and len(shots):
-                late_ns = int(shots.t_ns[-1]) - message.t_ns
-                # Recorded when it was complete: no point is later.
-                shots = moved(shots, -max(self._period_ns, late_ns) if late_ns > 0 else 0)
-            if len(shots := moved(shots, self._offset_ns)):
+            if len(shots):
+                shots = moved(shots, self._offset_ns - self._late_ns(shots, t_ns, message.t_ns))
                 note_lidar_lag(message.topic, message.t_ns - int(shots.t_ns[-1]), self._report)
                 yield shots
+
+    def _late_ns(self, shots: Shots, stamp_ns: int, recorded_ns: int) -> int:
+        """How much too late the points of a cloud are by its stamp [ns]."""
+        last_ns = int(shots.t_ns[-1])
+        if self._stamps.offset_ns is None and last_ns > recorded_ns:
+            # Recorded when it was complete: no point is later.
+            return max(self._period_ns, last_ns - recorded_ns)
+        if self._decoder.absolute:
+            return 0
+        return self._even.late_ns(stamp_ns, shots.t_ns)
 
     def _is_copy(self, t_ns: int, data: Any) -> bool:
         """Whether a cloud was recorded before, as in bags that were merged."""

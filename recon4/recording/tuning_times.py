@@ -137,6 +137,34 @@ class StampTuning(Struct, frozen=True, kw_only=True):
 STAMPS = StampTuning()
 
 
+class EvenStampTuning(Struct, frozen=True, kw_only=True):
+    """Clouds that follow each other evenly, with stamps that do not (`even_stamps.py`)."""
+
+    least: int = 6
+    """Stamps that show a scatter."""
+    most: int = 60
+    """Stamps through which a line is fitted: a motor keeps its rate for some seconds."""
+    gap: float = 10.0
+    """Stamps farther apart than this many usual ones are not counted together."""
+    near: float = 3.0
+    """Those farther off than this many times their scatter do not count."""
+    right_ns: float = 1e6
+    """Stamps that scatter by no more are right: packets last for about a millisecond [ns]."""
+    clouds: int = 3
+    """Clouds that show whether their points have times of their own."""
+    again: float = 0.5
+    """Part of it that is right once stamps were not."""
+    than_points: float = 4.0
+    """Stamps scatter this many times as much as the points after them, or the clouds are uneven."""
+    most_of_period: float = 0.12
+    """Stamps that scatter by more of the time from one to the next cannot be numbered."""
+    follows: float = 0.3
+    """Part of the way to a stamp that the even time goes while they are numbered."""
+
+
+EVEN_STAMPS = EvenStampTuning()
+
+
 class RecorderStepTuning(Struct, frozen=True, kw_only=True):
     """Recorders of bags that were set back (`formats/bag_clock.py`)."""
 

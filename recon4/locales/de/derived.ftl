@@ -255,6 +255,9 @@ CLOCK-SHIFTED =
     .text1-if-hours = { $sensor }: seine Uhr weicht um { DECIMAL($ahead_s, digits: 3, sign: 1) } s und ganze Stunden von der des Aufzeichnenden ab, und kein GPS stellt sie: seine Zeiten werden auf die Uhr des Aufzeichnenden verschoben.
     .text2-if-past_hour = { $sensor }: seine Uhr weicht um { DECIMAL($ahead_s, digits: 3, sign: 1) } s von der des Aufzeichnenden ab, und kein GPS stellt sie: seine Zeiten werden auf die Uhr des Aufzeichnenden verschoben.
 
+STAMPS-EVENED =
+    .text1 = { $where }: die Zeitstempel streuen um { DECIMAL($scatter_ms, digits: 1) } ms, wie die eines Rechners, der beim Eintreffen stempelt. Die Wolken dauern gleich lang: sie werden auf gleichmäßige Zeiten gelegt.
+
 CLOCK-OF-POINTS =
     .text1 = { $where }: die Uhr der Punkte ist nicht die der Zeitstempel, sie geht um { DECIMAL($ahead_s, digits: 3, sign: 1) } s vor.
     .text2 = Das sieht aus wie: { WORD($looks) }.

@@ -252,6 +252,9 @@ CLOCK-SHIFTED =
     .text1-if-hours = { $sensor }: its clock is { DECIMAL($ahead_s, digits: 3, sign: 1) } s and whole hours off the recorder's and no GPS drives it: its times are shifted to the recorder's clock.
     .text2-if-past_hour = { $sensor }: its clock is { DECIMAL($ahead_s, digits: 3, sign: 1) } s off the recorder's and no GPS drives it: its times are shifted to the recorder's clock.
 
+STAMPS-EVENED =
+    .text1 = { $where }: its stamps scatter by { DECIMAL($scatter_ms, digits: 1) } ms, as those of a computer that stamps what arrives do. The clouds last equally long: they are put where even stamps would be.
+
 CLOCK-OF-POINTS =
     .text1 = { $where }: the points' clock is not the stamps' clock, it is ahead by { DECIMAL($ahead_s, digits: 3, sign: 1) } s.
     .text2 = That looks like: { WORD($looks) }.

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec import structs
 
 from recon4.findings.audit import check_walk
 from recon4.findings.walk import WalkRecord
@@ -25,7 +26,7 @@ def only(walked, kind):
 def unverified() -> PoseGraph:
     graph = chain(20)
     open_loop = edge(graph.T_map_body, 0, 19, EdgeKind.LOOP, 0.01 * np.ones(6))
-    loop = replace(open_loop, judgments=known_history(Verdict.UNVERIFIED))
+    loop = structs.replace(open_loop, judgments=known_history(Verdict.UNVERIFIED))
     return replace(graph, edges=(*graph.edges, loop))
 
 
