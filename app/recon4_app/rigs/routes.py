@@ -9,10 +9,9 @@ from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, Response
 from starlette.concurrency import run_in_threadpool
 
-from recon4.locales.coded import CodedText, said
+from recon4.locales.coded import CodedText, all_said, said
 from recon4.model.lidars import LIDARS
 from recon4.model.rig import SENSOR_MODELS, format_rig, load_rig, rig_presets
-from recon4.untrusted.names import visible
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
@@ -77,10 +76,7 @@ def list_models() -> list[SensorModel]:
 def check_content(content: RigContent, language: Language) -> RigCheck:
     """List every problem of a rig; nothing is stored."""
     return RigCheck(
-        problems={
-            field: visible(said(one, language), most=300)
-            for field, one in problems_of(content).items()
-        },
+        problems=all_said(problems_of(content), language),
         warnings=[said(one, language) for one in warnings_of(content)],
     )
 
