@@ -112,9 +112,16 @@ def _font_lists() -> Iterator[Path]:
     yield from _files(_user_caches() / "matplotlib", ".json")
 
 
-def is_compiled() -> bool:
-    """Whether `recon4.system.compile_kernels` has run with the kernels as they are now."""
-    return any((cache / _mark()).exists() for cache in shared_caches())
+def is_compiled(*, where_chosen: bool = False) -> bool:
+    """Whether `recon4.system.compile_kernels` has run with the kernels as they are now.
+
+    Args:
+        where_chosen: Whether only the folder counts that NUMBA_CACHE_DIR names, if it names one.
+    """
+    caches = list(shared_caches())
+    if where_chosen and os.environ.get("NUMBA_CACHE_DIR"):
+        del caches[1:]
+    return any((cache / _mark()).exists() for cache in caches)
 
 
 def mark_compiled() -> None:

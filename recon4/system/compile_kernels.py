@@ -35,7 +35,7 @@ def compile_kernels(progress: Progress) -> bool:
     lock = open_lock_file(runtime_folder() / "compiling.lock")
     try:
         wait_for_lock(lock)
-        if is_compiled():
+        if is_compiled(where_chosen=True):
             return False
         calls = {name: set(kernel.calls) for name, kernel in kernels().items()}
         spawn = multiprocessing.get_context("spawn")
