@@ -55,6 +55,7 @@ def test_a_chosen_tool_leaves_the_image_where_it_is_and_keys_follow_a_number(ser
 
 def test_an_impatient_person_makes_one_note_and_sees_its_place_before(server, page):
     opened(page, server, f"?{TOP}&z=..")
+    expect(page.get_by_role("button", name="Note", exact=True)).to_be_visible()  # may write some
     page.keyboard.press("n")
     page.mouse.click(*at(page, 6.0, 4.0))
     page.get_by_label("Note at").fill("Crack")
