@@ -55,6 +55,8 @@ class CloudReader:
             self._order.shift_last(self._stamps.set_before, -self._stamps.set_ns)
             t_ns += self._stamps.shift_ns
             self._decoder.stamps_set_ns = -self._stamps.shift_ns
+        if self._stamps.was_set:
+            self._even.forget()
         self._even.add(t_ns)
         self._topic = message.topic
         yield from self._decoded(self._order.push(t_ns, (message, cloud)))

@@ -32,19 +32,27 @@ class EvenStamps:
         """Take the stamp of the next message."""
         self._stamps_ns.append(stamp_ns)
 
+    def forget(self) -> None:
+        """Begin again: the clock of the stamps was set."""
+        self._stamps_ns.clear()
+
     def late_ns(self, stamp_ns: int, points_ns: Times) -> int:
         """How much later a stamp is than an even one [ns]; 0 = the stamps are right.
 
         Args:
-            stamp_ns: One of those that were added.
+            stamp_ns: One of those that were added; others are right.
             points_ns: Times of the points of its cloud, (N,).
         """
         self._points_ns.append((int(points_ns[0]) - stamp_ns, int(points_ns[-1]) - stamp_ns))
+        if stamp_ns not in self._stamps_ns or len(self._points_ns) < EVEN_STAMPS.clouds:
+            return 0
         # Times since 1970 would be rounded.
         since_ns = _without_gap([one - stamp_ns for one in self._stamps_ns])
-        if len(since_ns) < EVEN_STAMPS.least or len(self._points_ns) < EVEN_STAMPS.clouds:
+        if len(since_ns) < EVEN_STAMPS.least:
             return 0
         period_ns = _period_ns(since_ns)
+        if EVEN_STAMPS.most_of_period * period_ns < EVEN_STAMPS.right_ns:  # nothing is left between
+            return 0
         late_ns = _off_the_line(since_ns, _numbers(since_ns, period_ns))
         scatter_ns, uneven_ns = _scatter(late_ns), _scatter_of_points(self._points_ns)
         own_ns = float(late_ns[np.argmin(np.abs(since_ns))])
@@ -68,8 +76,10 @@ def _without_gap(since_ns: Iterable[int]) -> Array:
     """Those times around 0, in order, that no gap separates from it: beyond, counting is unsure."""
     t_ns = np.sort(np.array(since_ns, np.float64))
     steps = np.diff(t_ns)
+    if not len(steps):
+        return t_ns
     part = np.concatenate([[0], np.cumsum(steps > EVEN_STAMPS.gap * np.median(steps))])
-    return t_ns[part == part[np.argmin(np.abs(t_ns))]] if len(steps) else t_ns
+    return t_ns[part == part[np.argmin(np.abs(t_ns))]]
 
 
 def _period_ns(t_ns: Array) -> float:

@@ -77,6 +77,20 @@ def test_stamps_stay_where_they_scatter_as_packets_do_or_a_single_one_is_late():
     np.testing.assert_array_equal(found, stamps_ns)
 
 
+def test_stamps_around_one_that_was_set_say_nothing_of_it():
+    even, stamps_ns = EvenStamps(), scattered().tolist()
+    for stamp_ns in stamps_ns[:30]:
+        even.add(stamp_ns)
+    others = [even.late_ns(one, one + TURN_NS) for one in stamps_ns[:29]]
+    moved = stamps_ns[29] + 7
+    late_ns = even.late_ns(moved, moved + TURN_NS)
+    even.forget()
+
+    assert any(others)
+    assert late_ns == 0
+    assert even.late_ns(stamps_ns[29], stamps_ns[29] + TURN_NS) == 0
+
+
 def test_stamps_stay_where_they_are_equal_or_follow_no_rate():
     steps_ns = np.random.default_rng(2).uniform(2e7, 1.8e8, 80)
     for stamps_ns in (np.repeat(EVEN_NS[::2], 2), T0_NS + np.cumsum(steps_ns).astype(int)):
