@@ -1,4 +1,4 @@
-"""Tables of line scans and of a 2-D laser, as `recon4.recording.line_tables` reads them."""
+"""Tables of line scans and of a 2-D laser, as `recon4.recording.lasers.line_tables` reads them."""
 
 import numpy as np
 

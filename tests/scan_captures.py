@@ -9,8 +9,8 @@ from recon4.live.replay import replay
 from recon4.model.ports import PORTS
 from recon4.model.rig import format_rig, parse_rig
 from recon4.progress import Silent
-from recon4.recording.scan_datagrams import encode_scans_row
-from recon4.recording.scan_replay import datagrams_of_scans
+from recon4.recording.lasers.scan_datagrams import encode_scans_row
+from recon4.recording.lasers.scan_replay import datagrams_of_scans
 from tests.loopback import an_address
 from tests.service.running import server_thread
 

@@ -73,8 +73,8 @@ def process(
 
 def _warn_of(sources: Sources) -> None:
     """Warn the caller of `process` of files that are not read, or read in place of others."""
+    from recon4.recording.info.nearby_samples import unread_samples
     from recon4.recording.kinds import located_elsewhere
-    from recon4.recording.nearby_samples import unread_samples
 
     for text in (*unread_samples(sources), *located_elsewhere(sources)):
         warnings.warn(text, stacklevel=3)

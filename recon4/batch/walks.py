@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError, RecordingError
+from recon4.recording.info.nearby_samples import nearby_samples
 from recon4.recording.kinds import RecordingKind, contents_of, recognize
-from recon4.recording.nearby_samples import nearby_samples
 
 _NO_WALKS = (
     RecordingKind.IMU_CSV,

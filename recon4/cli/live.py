@@ -114,7 +114,7 @@ def record(
 def _described_rig(rig: str) -> Rig:
     """A rig preset or file, with the files beside it that describe its LiDARs."""
     from recon4.model.rig import load_rig
-    from recon4.recording.files_near import files_near
+    from recon4.recording.info.files_near import files_near
     from recon4.recording.packets.companions import with_descriptions
 
     beside = files_near(Path(rig)) if Path(rig).suffix else []

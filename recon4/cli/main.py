@@ -125,12 +125,12 @@ def info(
     """Say what a recording holds, what will be derived and what is missing."""
     language = of_terminal()  # confinement leaves no environment
     confine_command(write=[rig_out.parent] if rig_out else [])
-    from recon4.recording.info import describe
+    from recon4.recording.info.describe import describe
     from recon4.recording.recipes.given_rig import recipe_given
 
     found = describe(recording, fields=recipe_given(fields))
     if rig_out:
-        from recon4.recording.first_rig import write_first_rig
+        from recon4.recording.rigs.first import write_first_rig
 
         write_first_rig(found.first_rig, rig_out)
     if as_json:
@@ -177,8 +177,8 @@ def process(  # noqa: PLR0913 - an argument for each option
     from recon4.cli.terminal import describe_summary, describe_tried, watcher
     from recon4.model.events import Warned
     from recon4.pipeline import process as run
+    from recon4.recording.info.nearby_samples import unread_samples
     from recon4.recording.kinds import located_elsewhere
-    from recon4.recording.nearby_samples import unread_samples
     from recon4.recording.recipes.given_rig import rig_given
 
     with watcher() as progress:

@@ -26,8 +26,8 @@ from recon4.live.tuning import REPLAY
 from recon4.model.ports import PORTS
 from recon4.model.rig import Rig
 from recon4.progress import Progress
-from recon4.recording.packet_replay import CapturedDatagram, captured_datagrams
-from recon4.recording.scan_replay import datagrams_of_scans, has_scans
+from recon4.recording.lasers.scan_replay import datagrams_of_scans, has_scans
+from recon4.recording.packets.replay import CapturedDatagram, captured_datagrams
 
 _STAMP = re.compile(rb'("t_ns"\s*:\s*)(\d{1,19})(?=[\s,}])')
 """The time of a JSON object."""

@@ -25,8 +25,13 @@ from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
-from recon4.recording.clock_jumps import samples_without_jumps, say_jumps
+from recon4.recording.clocks.compare import (
+    GNSS_CLOCK,
+    IMU_CLOCK,
+    is_same_clock,
+    warn_of_free_clocks,
+)
+from recon4.recording.clocks.jumps import samples_without_jumps, say_jumps
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.gnss.files import read_gnss

@@ -10,7 +10,6 @@ from pathlib import Path
 
 from recon4.errors import EmptyRecording, RecordingError, UnknownFormat
 from recon4.locales.coded import CodedText
-from recon4.recording.folders import natural
 from recon4.recording.formats.bag_folder import STORAGE_SUFFIXES
 from recon4.recording.formats.carmen import is_carmen
 from recon4.recording.formats.cloud_files import (
@@ -23,6 +22,7 @@ from recon4.recording.formats.cloud_files import (
 from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
+from recon4.recording.frame_files.folders import natural
 from recon4.recording.gnss.files import is_gnss_file
 from recon4.recording.kind_problems import (
     known_kinds,
@@ -31,9 +31,9 @@ from recon4.recording.kind_problems import (
     several_recordings,
     unrecognized,
 )
-from recon4.recording.laser_tables import LASER_COLUMNS
+from recon4.recording.lasers.line_tables import LINE_COLUMNS, is_line_table, table_in
+from recon4.recording.lasers.tables import LASER_COLUMNS
 from recon4.recording.limits import LIMITS
-from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
 from recon4.recording.mandeye.folder import is_points_file
 from recon4.recording.packets.companions import companion_paths, is_companion
 from recon4.recording.packets.datagram_files import is_datagram_file

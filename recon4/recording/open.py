@@ -9,11 +9,11 @@ from pathlib import Path
 from recon4.errors import ConfigError, UnknownFormat
 from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
-from recon4.recording.clock_jumps import with_jumps_removed
-from recon4.recording.clock_rates import with_clock_rates
+from recon4.recording.clocks.jumps import with_jumps_removed
+from recon4.recording.clocks.rates import with_clock_rates
 from recon4.recording.kind_problems import held_kinds
 from recon4.recording.kinds import PLANAR, FolderContents, RecordingKind, contents_of, recognize
-from recon4.recording.line_tables import LineTableRecording, LineTables
+from recon4.recording.lasers.line_tables import LineTableRecording, LineTables
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
 from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
 from recon4.recording.openers.frames import open_frames

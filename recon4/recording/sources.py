@@ -31,7 +31,7 @@ class Sources:
     gnss: Path | None = None
     """File of positions, in place of the recording's GNSS samples."""
     near: tuple[Path, ...] = ()
-    """Files beside the recordings (`recon4.recording.files_near`), for a process
+    """Files beside the recordings (`recon4.recording.info.files_near`), for a process
     that may not list their folders."""
     jumps: tuple[ClockJump, ...] = ()
     """Where all clocks were set ahead, as a first reading showed."""

@@ -19,8 +19,8 @@ from recon4.model.rig import Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.progress import Progress
-from recon4.recording.laser2d import read_laser_recording
-from recon4.recording.laser_mount import mount_of_rig, mounted_scans
+from recon4.recording.lasers.laser2d import read_laser_recording
+from recon4.recording.lasers.mount import mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.settings.reads import Graph2dReads, Map2dReads, Odometry2dReads

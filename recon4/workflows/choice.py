@@ -8,8 +8,8 @@ from pathlib import Path
 from recon4.errors import ConfigError
 from recon4.model.rig import format_rig, load_rig
 from recon4.progress import Progress
-from recon4.recording.laser2d import is_laser2d
-from recon4.recording.line_tables import is_line_table
+from recon4.recording.lasers.laser2d import is_laser2d
+from recon4.recording.lasers.line_tables import is_line_table
 from recon4.recording.sources import Sources
 from recon4.store.hashing import hash_json
 from recon4.store.inputs import input_file, input_files

@@ -10,7 +10,7 @@ from recon4.evaluation.relations import read_relations, relation_errors
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.model.usability import Usability
 from recon4.pipeline import process
-from recon4.recording.laser2d import read_laser2d
+from recon4.recording.lasers.laser2d import read_laser2d
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import Settings, override

@@ -25,7 +25,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 COMMANDS = {
-    "info": ("recon4.recording.info.describe", ["info", "in/a.pcap"]),
+    "info": ("recon4.recording.info.describe.describe", ["info", "in/a.pcap"]),
     "process": ("recon4.pipeline.process", ["process", "in/a.pcap", "--out", "out"]),
     "export": ("recon4.export.map_files.export_map", ["export", "in", "out/a.laz"]),
     "slice": ("recon4.store.project.read_artifacts", ["slice", "in", "out/a.laz", "--z", "1"]),

@@ -25,7 +25,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig, parse_rig
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.recording.formats.reference_clouds import read_points
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.samples.csv_files import IMU_HEADER, read_gnss_csv, read_imu_csv
 from recon4.slices.control_points import read_control
 from recon4.slices.reference import read_facts

@@ -52,7 +52,7 @@ MAY_IMPORT = {
     | {"recon4.classes.stage", "recon4.pose_graph.pair_maker"},
     "recon4/batch": MODEL
     | {"recon4.batch", "recon4.executors", "recon4.export.cells", "recon4.store"}
-    | {"recon4.recording.kinds", "recon4.recording.nearby_samples"}
+    | {"recon4.recording.kinds", "recon4.recording.info.nearby_samples"}
     | {"recon4.system.processes", "recon4.system.stopping"},
     "recon4/batch/child.py": {"recon4"},
     "recon4/geometry": {"recon4.geometry"},
@@ -61,16 +61,16 @@ MAY_IMPORT = {
     "recon4/sandbox": {"recon4.sandbox", "recon4.kernels.processor"},
     "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
-    "recon4/recording/info_records.py": WORDED,
+    "recon4/recording/info/records.py": WORDED,
     "recon4/recording/report.py": WORDED,
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}
     | {"recon4.system.processes", "recon4.system.stopping"}
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
-    | {f"recon4.recording.{name}" for name in ("packet_replay", "scan_capture", "scan_replay")}
+    | {f"recon4.recording.lasers.{name}" for name in ("scan_capture", "scan_replay")}
     | {"recon4.recording.formats.datagrams", "recon4.recording.formats.pcap"}
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured_channels")}
-    | {"recon4.recording.packets.sensor_clock", "recon4.recording.packets.velodyne.models"}
+    | {f"recon4.recording.packets.{name}" for name in ("replay", "sensor_clock", "velodyne.models")}
     | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
     | {f"recon4.findings.{name}" for name in ("verdict", "wording")},
     "recon4/live/project_files.py": STAGE
@@ -82,7 +82,7 @@ MAY_IMPORT = {
     "recon4/slam2d": STAGE | {"recon4.slam2d", *(f"recon4.pose_graph.{name}" for name in SOLVED)},
     "recon4/slam2d/stage.py": STAGE
     | {"recon4.slam2d", "recon4.pose_graph.files"}
-    | {"recon4.recording.laser2d", "recon4.recording.laser_mount", "recon4.recording.report"},
+    | {f"recon4.recording.{name}" for name in ("lasers.laser2d", "lasers.mount", "report")},
     "recon4/calibration": STAGE
     | {"recon4.calibration", "recon4.registration", "recon4.semi_rigid.knots"}
     | {"recon4.mapping.undistort", "recon4.georeference.antenna_calibration"},

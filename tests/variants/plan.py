@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
-from recon4.recording.rig_choice import Stream, single_rig
+from recon4.recording.rigs.choice import Stream, single_rig
 from tests.robot_bags import TF1, TF2, RobotBag, mount
 from tests.variants.layouts import Layout
 from tests.variants.variant import Draw, Variant

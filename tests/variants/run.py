@@ -24,7 +24,7 @@ from recon4.model.unused_data import unused_parts
 from recon4.pipeline import calibrate_recording, process, track_lines
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.sources import Sources
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_trajectory

@@ -31,7 +31,7 @@ import msgspec
 
 from recon4.delivery.kinds import ExportedFile
 from recon4.orders.work_log import WorkerRecord
-from recon4.recording.files_near import files_near
+from recon4.recording.info.files_near import files_near
 from recon4.store.atomic import make_folders, write_json, write_text
 from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock

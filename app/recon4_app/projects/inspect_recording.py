@@ -13,7 +13,7 @@ from recon4_app.projects.tuning import INSPECTION
 
 if TYPE_CHECKING:
     from recon4.locales.coded import CodedText
-    from recon4.recording.info_records import SensorInfo
+    from recon4.recording.info.records import SensorInfo
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +91,7 @@ def inspect_recording(
     from recon4.findings.derived import derived_text
     from recon4.findings.wording import whole_text
     from recon4.model.derived_kinds import DerivedKind
-    from recon4.recording.info import describe
+    from recon4.recording.info.describe import describe
 
     info = describe(path, near=beside)
     suited = _suited(beside)
@@ -143,8 +143,8 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
     """Rig, IMU and GNSS files, recognized by their content."""
     from recon4.errors import Recon4Error
     from recon4.model.rig import load_rig
+    from recon4.recording.info.nearby_samples import SUFFIXES
     from recon4.recording.kinds import RecordingKind, recognize
-    from recon4.recording.nearby_samples import SUFFIXES
 
     found: dict[str, str] = {}
     for file in files:

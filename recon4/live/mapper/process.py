@@ -42,7 +42,7 @@ from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import LiveSource, ingest
-from recon4.recording.scan_capture import ScanCapture
+from recon4.recording.lasers.scan_capture import ScanCapture
 from recon4.recording.sources import Sources
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_json

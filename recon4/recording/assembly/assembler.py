@@ -19,11 +19,10 @@ from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation_rate import nominal, rotation_of_head
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.assembly.tuning import ASSEMBLY
-from recon4.recording.clock_compare import warn_of_lidar_clocks
-from recon4.recording.clock_names import clocks_text
+from recon4.recording.clocks.compare import warn_of_lidar_clocks
+from recon4.recording.clocks.names import clocks_text
 from recon4.recording.report import ImportReport
-from recon4.recording.tuning import IngestTuning
-from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning import PROBE, IngestTuning
 from recon4.settings import IngestSettings
 from recon4.settings.tuning import tuned
 

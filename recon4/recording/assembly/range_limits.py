@@ -14,8 +14,8 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.bags.tuning import CLOUDS
 from recon4.recording.report import ImportReport
-from recon4.recording.tuning_topics import CLOUDS
 from recon4.settings import IngestSettings
 
 

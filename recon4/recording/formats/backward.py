@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.model.derived_kinds import DerivedKind
+from recon4.recording.clocks.tuning import STAMPS
 from recon4.recording.formats.chunks import BagIndex, RawMessage
 from recon4.recording.report import ImportReport
-from recon4.recording.tuning_times import STAMPS
 
 
 class HeadedFile(Protocol):

@@ -18,7 +18,8 @@ from recon4.errors import CorruptFile
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
-from recon4.recording.clock_names import looks_like
+from recon4.recording.clocks.names import looks_like
+from recon4.recording.clocks.tuning import RECORDER_STEPS
 from recon4.recording.formats.chunks import (
     MAX_TIME_NS,
     BagIndex,
@@ -27,7 +28,6 @@ from recon4.recording.formats.chunks import (
     RecorderStep,
 )
 from recon4.recording.report import ImportReport
-from recon4.recording.tuning_times import RECORDER_STEPS
 from recon4.units import SECOND_NS
 
 Topics = NDArray[np.int64]

@@ -11,7 +11,7 @@ from recon4.errors import CorruptFile
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
-from recon4.recording.folders import natural
+from recon4.recording.frame_files.folders import natural
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import LISTED
 

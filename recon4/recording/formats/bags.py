@@ -18,7 +18,7 @@ from recon4.errors import CorruptFile, EmptyRecording
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
-from recon4.recording.copied_files import is_new
+from recon4.recording.clocks.stamps import StampJumps
 from recon4.recording.formats import db3
 from recon4.recording.formats.backward import turn_round
 from recon4.recording.formats.bag1 import Bag1, is_bag1
@@ -49,11 +49,11 @@ from recon4.recording.formats.scratch import scratch_folder
 from recon4.recording.formats.shared_topics import SharedTopics, TopicSource
 from recon4.recording.formats.typestore import MessageTypes
 from recon4.recording.formats.zstd_file import decompress_file
+from recon4.recording.frame_files.copies import is_new
 from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES, SCANS_WITH_HEADER
 from recon4.recording.packets.senders import parts_of
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
-from recon4.recording.stamps import StampJumps
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
 IMU = "sensor_msgs/msg/Imu"

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.recording.bags.tuning import BIN_FILES
 from recon4.recording.formats.cloud_headers import CloudLayout, Field
-from recon4.recording.tuning_topics import BIN_FILES
 
 _COLUMNS = ("x", "y", "z", "intensity", "ring", "time")
 _USUAL = 4

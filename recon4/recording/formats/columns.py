@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
+from recon4.recording.clocks.stamps import strays
 from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import csv_header, csv_number, csv_separator, csv_time
-from recon4.recording.stamps import strays
 from recon4.store.arrays import ARRAY_HEADERS, DAMAGED
 from recon4.untrusted.bounded import check_file_size, lines_limited, open_regular
 from recon4.untrusted.limits import LIMITS

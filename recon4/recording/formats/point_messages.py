@@ -1,6 +1,7 @@
 """Messages of points other than ``PointCloud2``: a table of types, and types that a bag defines.
 
-All become a `PointMessage`; its table takes the path of a cloud (`recon4.recording.cloud_points`).
+All become a `PointMessage`; its table takes the path of a cloud
+(`recon4.recording.clouds.cloud_points`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.recording.clouds.point_fields import (
+    EXACT_TIME,
+    INTENSITY_FIELDS,
+    RING_FIELDS,
+    TIME_FIELDS,
+)
 from recon4.recording.formats.message_schema import (
     Columns,
     MessageSchema,
@@ -21,7 +28,6 @@ from recon4.recording.formats.message_schema import (
     read_message,
 )
 from recon4.recording.packets.livox.tags import echo_of_tag, is_noise
-from recon4.recording.point_fields import EXACT_TIME, INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS
 
 _CUSTOM = """std_msgs/Header header
 uint64 timebase

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
+from recon4.recording.clocks.stamps import strays
 from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.report import ImportReport
-from recon4.recording.stamps import strays
 from recon4.untrusted.bounded import lines_limited
 
 _SECONDS = re.compile(r"([-+]?)([0-9]{1,19})(?:\.([0-9]*))?")

@@ -20,9 +20,9 @@ from recon4.geometry.distinct import distinct
 from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
-from recon4.recording.folders import natural
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.las_records import las_header, las_points
+from recon4.recording.frame_files.folders import natural
 from recon4.recording.mandeye.status import DeviceStatus, read_status
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.report import ImportReport

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from recon4.locales.coded import CodedText
-from recon4.recording.info_records import RecordingInfo, SensorInfo
+from recon4.recording.info.records import RecordingInfo, SensorInfo
 from recon4.recording.mandeye.folder import list_walk
 from recon4.recording.mandeye.read import walk_streams
 from recon4.recording.openers.mandeye import walk_seconds

@@ -17,7 +17,7 @@ from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.cloud_points import model_of_points, rings_by_elevation, say_rings
+from recon4.recording.clouds.cloud_points import model_of_points, rings_by_elevation, say_rings
 from recon4.recording.formats.las_records import las_points
 from recon4.recording.mandeye.folder import MandeyeWalk, WalkPart, times_ns
 from recon4.recording.mandeye.gnss import read_positions
@@ -25,7 +25,7 @@ from recon4.recording.mandeye.imu import read_imu
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.packets.livox.recognition import livox_of_points
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream
+from recon4.recording.rigs.choice import Stream
 
 _LINES = {"around": 4, "ahead": 6}
 """Lasers of a Mid-360, which sees all around, and of Avia and Horizon, which look ahead."""

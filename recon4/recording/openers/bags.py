@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.model.rig import Rig
-from recon4.recording.bag_recording import BagRecording, Given
-from recon4.recording.files_near import COMPANION_SUFFIXES
+from recon4.recording.bags.recording import BagRecording, Given
 from recon4.recording.formats.bags import Bag
+from recon4.recording.info.files_near import COMPANION_SUFFIXES
 from recon4.recording.kinds import bag_paths
-from recon4.recording.line_recording import LineRecording
+from recon4.recording.lasers.line_recording import LineRecording
 from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.packets.companions import companions_of
-from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_mismatch import mismatch_text
+from recon4.recording.rigs.mismatch import mismatch_text
+from recon4.recording.rigs.profiler import profiler_rig
 
 
 def open_line_bag(request: OpenRequest) -> Recording | None:

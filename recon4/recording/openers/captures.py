@@ -9,20 +9,20 @@ from pathlib import Path
 
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.rig import Rig, load_rig
-from recon4.recording.copied_files import without_copies
-from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.datagrams import address_text
+from recon4.recording.frame_files.copies import without_copies
+from recon4.recording.info.files_near import COMPANION_SUFFIXES
 from recon4.recording.kinds import capture_files
+from recon4.recording.lasers.scan_capture import ScanCapture, scan_streams
 from recon4.recording.openers.request import Item, OpenRequest, Recording
 from recon4.recording.packets.capture import ChooseRig, PacketCapture
 from recon4.recording.packets.family import PacketSamples
 from recon4.recording.packets.livox.lvx import read_lvx_head
 from recon4.recording.packets.streams import PacketStream, require_one_capture
 from recon4.recording.packets.tuning import CAPTURE_STREAMS
-from recon4.recording.profiler_rigs import WUERZBURG
-from recon4.recording.rig_choice import Stream, choose_rig, rig_to_complete, with_lidars
-from recon4.recording.rig_mismatch import mismatch_text
-from recon4.recording.scan_capture import ScanCapture, scan_streams
+from recon4.recording.rigs.choice import Stream, choose_rig, rig_to_complete, with_lidars
+from recon4.recording.rigs.mismatch import mismatch_text
+from recon4.recording.rigs.profiler import WUERZBURG
 
 
 def open_scan_capture(request: OpenRequest) -> Recording | None:

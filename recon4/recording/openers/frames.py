@@ -11,12 +11,12 @@ from recon4.errors import ConfigError, RecordingError, UnknownFormat
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
-from recon4.recording.clock_jumps import without_jumps
-from recon4.recording.cloud_points import model_of_points
-from recon4.recording.folders import folder_gaps, list_frames, read_frames, read_points
+from recon4.recording.clocks.jumps import without_jumps
+from recon4.recording.clouds.cloud_points import model_of_points
+from recon4.recording.frame_files.folders import folder_gaps, list_frames, read_frames, read_points
 from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.recipes.file_points import require_fields
-from recon4.recording.rig_choice import Stream, choose_rig
+from recon4.recording.rigs.choice import Stream, choose_rig
 from recon4.recording.tuning import LISTED, IngestTuning
 from recon4.settings.tuning import tuned
 

@@ -8,7 +8,7 @@ from recon4.errors import UnknownFormat
 from recon4.recording.mandeye.folder import MandeyeWalk, list_walk
 from recon4.recording.mandeye.read import MandeyeRecording, walk_streams
 from recon4.recording.openers.request import OpenRequest, Recording
-from recon4.recording.rig_choice import choose_rig
+from recon4.recording.rigs.choice import choose_rig
 
 
 def open_mandeye(request: OpenRequest) -> Recording:

@@ -15,10 +15,10 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.clock_compare import LIDAR
-from recon4.recording.files_near import COMPANION_SUFFIXES
+from recon4.recording.clocks.compare import LIDAR
 from recon4.recording.formats.datagrams import Datagrams, address_number, join_datagrams
 from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.info.files_near import COMPANION_SUFFIXES
 from recon4.recording.packets.companions import companions_of, described_in
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
@@ -36,7 +36,7 @@ from recon4.recording.packets.streams import (
 )
 from recon4.recording.packets.tuning import CAPTURE_STREAMS
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream
+from recon4.recording.rigs.choice import Stream
 from recon4.recording.samples.datagrams import SampleDecoder
 from recon4.recording.tuning import LISTED
 from recon4.settings import IngestSettings

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
-from recon4.recording.files_near import COMPANION_SUFFIXES, files_near
+from recon4.recording.info.files_near import COMPANION_SUFFIXES, files_near
 from recon4.recording.limits import LIMITS
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, same_start

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.recording.clocks.stamps import strays
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketFormat, PacketSensor, Payloads
 from recon4.recording.packets.tuning import MIXED_SENDERS
-from recon4.recording.stamps import strays
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.point_recipes import PointRecipe, Term
+from recon4.recording.clouds.point_fields import NS_TIME
 from recon4.recording.formats.point_messages import WHOLE
-from recon4.recording.point_fields import NS_TIME
 from recon4.recording.tuning import RECIPES
 
 Column = NDArray[Any]

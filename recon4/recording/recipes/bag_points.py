@@ -11,9 +11,10 @@ from recon4.errors import ConfigError, CorruptFile
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
+from recon4.recording.bags.lidar_choice import CloudTopic
+from recon4.recording.bags.topic_contents import read_contents
 from recon4.recording.formats.bags import CLOUD, Bag, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_lists
-from recon4.recording.lidar_choice import CloudTopic
 from recon4.recording.recipes.apply import Columns, chosen_list
 from recon4.recording.recipes.check import RecipeSample, require_fitting
 from recon4.recording.recipes.propose import (
@@ -25,8 +26,7 @@ from recon4.recording.recipes.propose import (
 )
 from recon4.recording.recipes.refuse import with_doubts
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream
-from recon4.recording.topic_contents import read_contents
+from recon4.recording.rigs.choice import Stream
 
 
 @dataclass(frozen=True, slots=True)

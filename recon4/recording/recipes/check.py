@@ -17,7 +17,7 @@ from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import ANGLES, LENGTHS, TIMES, PointRecipe, Units
-from recon4.recording.point_fields import NS_TIME
+from recon4.recording.clouds.point_fields import NS_TIME
 from recon4.recording.recipes.apply import Column, Columns, as_points, chosen_list
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import RECIPES

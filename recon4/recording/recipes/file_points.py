@@ -13,8 +13,8 @@ from recon4.recording.recipes.check import RecipeSample, require_fitting
 from recon4.recording.recipes.propose import propose, say_overlooked
 from recon4.recording.recipes.refuse import require_known, with_doubts
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream
-from recon4.recording.tuning_heads import PROBE
+from recon4.recording.rigs.choice import Stream
+from recon4.recording.tuning import PROBE
 
 
 def require_fields(

@@ -8,7 +8,7 @@ from pathlib import Path
 from recon4.errors import ConfigError
 from recon4.model.point_recipes import PointRecipe, parse_fields_text
 from recon4.model.rig import Rig, load_rig, parse_rig
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 
 
 def recipe_given(fields: str) -> PointRecipe | None:

@@ -22,14 +22,14 @@ from recon4.model.point_recipes import (
     Units,
     recipe_of,
 )
-from recon4.recording.formats.point_messages import WHOLE
-from recon4.recording.point_fields import (
+from recon4.recording.clouds.point_fields import (
     EXACT_TIME,
     INTENSITY_FIELDS,
     RING_FIELDS,
     TIME_FIELDS,
     find_field,
 )
+from recon4.recording.formats.point_messages import WHOLE
 from recon4.recording.recipes.apply import Columns
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import LISTED, RECIPES

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recon4.errors import ConfigError, EmptyRecording
-from recon4.recording.driver_topics import needed_text
+from recon4.recording.bags.driver_topics import needed_text
 from recon4.recording.recipes.check import RecipeSample, require_fitting
 from recon4.recording.recipes.propose import Proposal, say_doubts
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
+from recon4.recording.rigs.choice import RigToComplete, Stream, rig_to_complete
 
 
 class UnknownFields(RigToComplete):

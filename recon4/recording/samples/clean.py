@@ -14,11 +14,11 @@ from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.recording.clocks.stamps import strays
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
 from recon4.recording.samples.tuning import CARRIED_ON, REPEATED
 from recon4.recording.samples.units import GyroUnit, in_degrees, in_m_s2, in_rad_s
-from recon4.recording.stamps import strays
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 

@@ -8,7 +8,7 @@ from recon4.errors import ConfigError
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssSamples, ImuSamples
-from recon4.recording.clock_names import described, known_offset_s, looks_like, offset_values
+from recon4.recording.clocks.names import described, known_offset_s, looks_like, offset_values
 from recon4.recording.report import ImportReport
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)

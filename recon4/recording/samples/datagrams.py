@@ -20,12 +20,12 @@ import numpy as np
 
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.packets.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
 from recon4.recording.samples.tuning import CARRIED_ON, NMEA
-from recon4.recording.stamps import StampClock
 
 _GNSS_KEYS = (*GNSS_HEADER, *STATED_COLUMNS)
 

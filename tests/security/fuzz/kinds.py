@@ -20,9 +20,9 @@ from recon4.evaluation.trajectories import find_trajectory
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig
 from recon4.pose_graph.files import load_graph
-from recon4.recording.folders import list_frames, read_frames
 from recon4.recording.formats.reference_clouds import read_points
-from recon4.recording.info import describe
+from recon4.recording.frame_files.folders import list_frames, read_frames
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings

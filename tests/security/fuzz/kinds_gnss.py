@@ -7,7 +7,7 @@ from pathlib import Path
 
 from recon4.errors import Recon4Error
 from recon4.recording.gnss.files import read_gnss
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from tests import gnss_logs as logs
 from tests.security.fuzz.kind import Kind, Reading

@@ -36,6 +36,15 @@ from recon4.model.rig import load_rig
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.lasers.range_units import LaserUnit
+from recon4.recording.lasers.scan_datagrams import (
+    HeadMessage,
+    ScanMessage,
+    decode_scan_datagram,
+    encode_head,
+    encode_scans_row,
+)
+from recon4.recording.lasers.scan_messages import ScanCollector, line_of_scan
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.decoder import open_decoder
@@ -44,17 +53,8 @@ from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.velodyne.encode import encode_position, rmc_sentence
 from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder
-from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
-from recon4.recording.scan_datagrams import (
-    HeadMessage,
-    ScanMessage,
-    decode_scan_datagram,
-    encode_head,
-    encode_scans_row,
-)
-from recon4.recording.scan_messages import ScanCollector, line_of_scan
 from recon4.settings import IngestSettings, Settings
 from recon4_app.live.current_capture import marks_of
 from tests.builders import T0_NS, room_packets

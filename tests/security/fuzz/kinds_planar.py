@@ -19,14 +19,14 @@ from recon4.errors import Recon4Error
 from recon4.evaluation.relations import read_relations
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
-from recon4.recording.driven_joints import driven_joint
 from recon4.recording.formats.three_dtk import read_pose, read_scan
 from recon4.recording.formats.urdf import urdf_joints
-from recon4.recording.info import describe
-from recon4.recording.laser2d import is_laser2d, read_laser2d
-from recon4.recording.laser_tables import read_laser_table
-from recon4.recording.line_recording import LineRecording
-from recon4.recording.line_tables import LineTableRecording, LineTables
+from recon4.recording.info.describe import describe
+from recon4.recording.lasers.laser2d import is_laser2d, read_laser2d
+from recon4.recording.lasers.line_recording import LineRecording
+from recon4.recording.lasers.line_tables import LineTableRecording, LineTables
+from recon4.recording.lasers.tables import read_laser_table
+from recon4.recording.mounts.driven_joints import driven_joint
 from recon4.recording.report import ImportReport
 from recon4.simulation.line_bag import open_line_bag
 from recon4.untrusted.bounded import read_text_limited

@@ -19,7 +19,7 @@ import numpy as np
 
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport

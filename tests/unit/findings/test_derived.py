@@ -16,7 +16,7 @@ from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import derived_in
-from recon4.recording.info_records import RecordingInfo
+from recon4.recording.info.records import RecordingInfo
 from recon4.recording.kinds import RecordingKind
 from recon4.recording.report import ImportReport
 from tests.source_trees import sources, trees_with

@@ -6,7 +6,7 @@ from msgspec import structs
 
 from recon4.recording.formats import bag_clock
 from recon4.recording.formats.bag_clock import rows_going_on
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from tests.builders import T0_NS, Bag, bag_path, room_cloud
 from tests.unit.recording.point_bags import read
 from tests.warned import K, kinds, warned

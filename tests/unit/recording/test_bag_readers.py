@@ -17,7 +17,7 @@ from recon4.recording.formats import scratch
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.chunks import BagIndex, ChunkMessages, ChunkRef, ChunkStream, Topic
 from recon4.recording.formats.limits import decompress
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from tests.builders import bag_path, storage_file, write_room_bag

@@ -13,9 +13,9 @@ from recon4.model.rig import load_rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_recording import BagRecording
+from recon4.recording.bags.recording import BagRecording
 from recon4.recording.formats.bags import CLOUD, Bag
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud, room_packets, storage_file, write_room_bag

@@ -10,9 +10,9 @@ import pytest
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.recording.formats.carmen import is_carmen, read_carmen
 from recon4.recording.formats.text_logs import log_lines
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import RecordingKind, recognize
-from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.lasers.laser2d import is_laser2d, read_laser2d
 from recon4.recording.report import ImportReport
 from tests.laser_rows import angles_of, rows_of
 from tests.planar_walks import carmen_lines, furnished_room, scanned, write_carmen

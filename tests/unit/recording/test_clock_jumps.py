@@ -7,11 +7,11 @@ from recon4.model.clock_jump import ClockJump
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
-from recon4.recording.clock_jumps import exact_length_ns, samples_without_jumps, without_jumps
+from recon4.recording.clocks.jumps import exact_length_ns, samples_without_jumps, without_jumps
+from recon4.recording.clocks.stamps import StampClock, StampJumps
 from recon4.recording.ingest import ingest
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
-from recon4.recording.stamps import StampClock, StampJumps
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameStore
 from recon4.units import SECOND_NS

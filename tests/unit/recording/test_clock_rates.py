@@ -8,7 +8,7 @@ import pytest
 from recon4.errors import ConfigError, StoreError
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import format_rig, parse_rig
-from recon4.recording.clock_rates import with_clock_rates
+from recon4.recording.clocks.rates import with_clock_rates
 from recon4.recording.openers.request import Recording
 from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud, write_pcd

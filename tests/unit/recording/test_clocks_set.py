@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.packets.packet_order import PacketOrder
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.velodyne.encode import PcapWriter

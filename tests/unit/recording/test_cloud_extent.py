@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import EmptyRecording
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from tests.builders import T0_NS, bag_path, room_cloud, write_pcd
 from tests.robot_bags import RobotBag
 from tests.unit.recording.ingested import run

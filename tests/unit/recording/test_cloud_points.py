@@ -5,7 +5,7 @@ import pytest
 
 from recon4.errors import UnknownFormat
 from recon4.model.import_notes import CLOUDS_UNTIMED
-from recon4.recording.cloud_points import CloudDecoder, model_of_points
+from recon4.recording.clouds.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, spin

@@ -5,8 +5,8 @@ import pytest
 from rosbags.typesys import get_types_from_msg
 
 from recon4.errors import ConfigError, EmptyRecording
-from recon4.recording.bag_recording import BagRecording
-from recon4.recording.info import describe
+from recon4.recording.bags.recording import BagRecording
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, noisy, room_cloud

@@ -9,8 +9,8 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
 from recon4.recording.formats.columns import read_columns
 from recon4.recording.formats.poses import read_tum
-from recon4.recording.frame_times import frame_times, read_times
-from recon4.recording.info import describe
+from recon4.recording.frame_files.times import frame_times, read_times
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_imu
 from recon4.recording.samples.csv_files import IMU_HEADER, read_gnss_csv, read_imu_csv

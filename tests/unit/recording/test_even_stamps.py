@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from recon4.recording.bag_recording import BagRecording
-from recon4.recording.even_stamps import EvenStamps
+from recon4.recording.bags.recording import BagRecording
+from recon4.recording.clocks.even_stamps import EvenStamps
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud

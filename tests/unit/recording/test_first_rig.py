@@ -9,7 +9,7 @@ from recon4.cli.main import main
 from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import load_rig, parse_rig, rig_presets
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 
 TWO_LIDARS = "packets/ouster/same_ports_legacy.pcap"
 

@@ -7,8 +7,9 @@ from recon4.cli.main import main
 from recon4.errors import UnknownFormat
 from recon4.locales.languages import ENVIRONMENT
 from recon4.recording import kinds
-from recon4.recording.folders import list_frames
-from recon4.recording.info import describe
+from recon4.recording.frame_files.folders import list_frames
+from recon4.recording.info.describe import describe
+from recon4.recording.info.nearby_samples import unread_samples
 from recon4.recording.kind_problems import known_kinds
 from recon4.recording.kinds import (
     RecordingKind,
@@ -17,7 +18,6 @@ from recon4.recording.kinds import (
     located_sources,
     recognize,
 )
-from recon4.recording.nearby_samples import unread_samples
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from recon4.recording.folders import list_frames
-from recon4.recording.frame_clock import clock_by_order, clock_by_time
-from recon4.recording.info import describe
+from recon4.recording.frame_files.clock import clock_by_order, clock_by_time
+from recon4.recording.frame_files.folders import list_frames
+from recon4.recording.info.describe import describe
 from tests.builders import T0_NS, room_cloud, write_pcd
 from tests.unit.recording.ingested import run
 from tests.warned import K, kinds, warned

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
-from recon4.recording.folders import list_frames, natural
-from recon4.recording.frame_times import name_time_ns, read_times
-from recon4.recording.info import describe
+from recon4.recording.frame_files.folders import list_frames, natural
+from recon4.recording.frame_files.times import name_time_ns, read_times
+from recon4.recording.info.describe import describe
 from tests.builders import T0_NS, room_cloud, write_bin, write_pcd, write_ply
 from tests.unit.recording.ingested import frame_folder, run
 from tests.warned import K, derivations, kinds, warned

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.locales.numbers import mount_text, number_functions
-from recon4.recording.frame_graph import FrameGraph, StatedTransform, mount_value
+from recon4.recording.mounts.frame_graph import FrameGraph, StatedTransform, mount_value
 from tests.robot_bags import mount
 
 

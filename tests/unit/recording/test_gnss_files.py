@@ -12,7 +12,7 @@ from recon4.recording.gnss.files import is_gnss_file, read_gnss
 from recon4.recording.gnss.receiver_logs import read_receiver_log
 from recon4.recording.gnss.records import Dating
 from recon4.recording.gnss.rtklib import read_rtklib
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.report import ImportReport
 from tests import gnss_logs as logs

@@ -13,7 +13,7 @@ from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.models import MODELS
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import rig_to_complete
+from recon4.recording.rigs.choice import rig_to_complete
 from recon4.recording.sources import Sources
 from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.unit.recording.hesai_mirrors import mirror_table

@@ -6,7 +6,7 @@ from rosbags.typesys import get_types_from_msg
 
 from recon4.errors import ConfigError
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import located_sources
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest

@@ -8,13 +8,13 @@ import pytest
 
 from recon4.errors import StoreError
 from recon4.model.laser_scans import joined_scans
+from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.formats.bags import BagMessage
-from recon4.recording.info import describe
-from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.info.describe import describe
+from recon4.recording.lasers.laser2d import is_laser2d, read_laser2d
+from recon4.recording.lasers.scan_messages import ScanCollector
+from recon4.recording.lasers.scan_replay import datagrams_of_scans
 from recon4.recording.report import ImportReport
-from recon4.recording.scan_messages import ScanCollector
-from recon4.recording.scan_replay import datagrams_of_scans
-from recon4.recording.stamps import StampClock
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.line_store import LineStoreWriter, load_laser_scans
 from tests.laser_rows import angles_of, rows_of, with_times

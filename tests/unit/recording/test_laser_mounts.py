@@ -13,9 +13,9 @@ from recon4.model.usability import Usability
 from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
-from recon4.recording.info import describe
-from recon4.recording.laser2d import read_laser_recording
-from recon4.recording.laser_mount import mount_of_rig, mounted_scans
+from recon4.recording.info.describe import describe
+from recon4.recording.lasers.laser2d import read_laser_recording
+from recon4.recording.lasers.mount import mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings

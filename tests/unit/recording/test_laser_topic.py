@@ -9,9 +9,9 @@ from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Sensor
 from recon4.progress import Silent
-from recon4.recording.laser2d import read_laser_recording
+from recon4.recording.lasers.laser2d import read_laser_recording
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream, single_rig
+from recon4.recording.rigs.choice import Stream, single_rig
 from recon4.settings import IngestSettings
 from recon4.slam2d.stage import import_scans
 from recon4.workflows.planar import laser_input

@@ -10,7 +10,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.ingest import ingest
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest

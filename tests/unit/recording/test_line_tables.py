@@ -11,12 +11,12 @@ from recon4.errors import ConfigError, CorruptFile, RecordingError, UnknownForma
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.columns import read_columns
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.ingest import ingest
-from recon4.recording.laser2d import read_laser2d
+from recon4.recording.lasers.laser2d import read_laser2d
+from recon4.recording.lasers.sweeps import sweeps
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
-from recon4.recording.sweeps import sweeps
 from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore

@@ -6,7 +6,7 @@ import pytest
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording, UnknownFormat
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import RecordingKind
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest

@@ -15,7 +15,7 @@ from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.mandeye.convert import convert
 from recon4.recording.mandeye.folder import list_walk
@@ -24,7 +24,7 @@ from recon4.recording.mandeye.write import MandeyeWriter
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete, single_rig
+from recon4.recording.rigs.choice import RigToComplete, Stream, rig_to_complete, single_rig
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, write_pcd, write_room_pcap

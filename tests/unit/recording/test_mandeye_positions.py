@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from recon4.model.samples import GnssSamples
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream, rig_to_complete
+from recon4.recording.rigs.choice import Stream, rig_to_complete
 from recon4.recording.samples.clean import join
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS

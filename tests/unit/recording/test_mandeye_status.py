@@ -7,7 +7,7 @@ import pytest
 from recon4.recording.mandeye.folder import list_walk
 from recon4.recording.mandeye.read import walk_streams
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream, rig_to_complete
+from recon4.recording.rigs.choice import Stream, rig_to_complete
 from tests.unit.recording.test_mandeye import write_walk
 from tests.warned import derivations
 

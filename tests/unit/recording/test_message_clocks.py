@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from recon4.model.finding_kinds import CLOCK_DOUBTS
-from recon4.recording.clock_compare import clock_offset_s, warn_of_free_clocks
-from recon4.recording.info import describe
+from recon4.recording.clocks.compare import clock_offset_s, warn_of_free_clocks
+from recon4.recording.clocks.stamps import StampClock
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
-from recon4.recording.stamps import StampClock
 from tests.builders import T0_NS, Bag, noisy, room_cloud
 from tests.unit.recording.ingested import run
 from tests.unit.recording.packet_builders import rig, sensor

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recon4.recording.bag_recording import BagRecording
+from recon4.recording.bags.recording import BagRecording
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, noisy, room_cloud

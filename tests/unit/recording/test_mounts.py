@@ -8,7 +8,7 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, RigCalibration, Sensor
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport

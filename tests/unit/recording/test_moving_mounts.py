@@ -6,9 +6,9 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.model.finding_kinds import MOUNT_DOUBTS
 from recon4.model.rig import parse_rig
-from recon4.recording.clock_compare import clock_offset_s
-from recon4.recording.info import describe
-from recon4.recording.laser2d import is_laser2d
+from recon4.recording.clocks.compare import clock_offset_s
+from recon4.recording.info.describe import describe
+from recon4.recording.lasers.laser2d import is_laser2d
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport

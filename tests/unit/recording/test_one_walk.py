@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from recon4.errors import UnknownFormat
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport

@@ -10,7 +10,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Sensor
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import located_sources
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
+from recon4.recording.clouds.point_fields import EXACT_TIME
 from recon4.recording.formats.point_messages import POINT_MESSAGES, point_reader
 from recon4.recording.formats.typestore import MessageTypes, own_schemas
 from recon4.recording.packets.messages import PACKET_MESSAGES
-from recon4.recording.point_fields import EXACT_TIME
 
 LIVOX = "livox_ros_driver/msg/CustomMsg"
 SCAN = "velodyne_msgs/msg/VelodyneScan"

@@ -6,12 +6,12 @@ import pytest
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.model.rig import parse_rig
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.streams import scan_pcap
 from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position, rmc_sentence
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import rig_to_complete
+from recon4.recording.rigs.choice import rig_to_complete
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, rig, sensor, spin
 from tests.warned import K, derivations, kinds, warned
 

@@ -7,10 +7,10 @@ import pytest
 from rosbags.typesys import Stores, get_typestore
 
 from recon4.errors import CorruptFile, EmptyRecording
-from recon4.recording.exact_times import ExactClock
+from recon4.recording.clouds.exact_times import ExactClock
 from recon4.recording.formats.message_schema import parse_schema, read_message
 from recon4.recording.formats.point_messages import POINT_MESSAGES, point_reader
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, Bag, bag_path
 from tests.unit.recording.point_bags import header, read, register

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.model.tuning import LOSSES
-from recon4.recording.clock_names import described, known_offset_s
-from recon4.recording.cloud_points import CloudDecoder
+from recon4.recording.clocks.names import described, known_offset_s
+from recon4.recording.clouds.cloud_points import CloudDecoder
 from recon4.recording.report import ImportReport
 from tests.builders import T0_NS, room_cloud
 from tests.unit.recording.packet_builders import sensor

@@ -8,11 +8,11 @@ from recon4.errors import ConfigError, CorruptFile
 from recon4.findings.derived import derived_text
 from recon4.model.point_recipes import parse_fields_text
 from recon4.model.rig import format_rig, load_rig, parse_rig
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.recipes.propose import propose, say_doubts
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import RigToComplete, Stream, single_rig
+from recon4.recording.rigs.choice import RigToComplete, Stream, single_rig
 from tests.builders import T0_NS, Bag, bag_path, write_pcd
 from tests.unit.recording.point_bags import (
     ROOM,

@@ -6,7 +6,7 @@ import pytest
 from recon4.cli import main as commands
 from recon4.errors import UnknownFormat
 from recon4.locales.languages import ENVIRONMENT
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.kinds import RecordingKind, recognize
 from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud, write_room_bag
 from tests.unit.recording.ingested import frame_folder, imu_csv, run

@@ -6,7 +6,6 @@ import pytest
 from recon4.model.samples import ImuSamples
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.formats.pcap import read_pcap
-from recon4.recording.packet_replay import Restamping
 from recon4.recording.packets.hesai.encode import encode_jt16_inertial
 from recon4.recording.packets.hesai.family import FAMILY as HESAI
 from recon4.recording.packets.hesai.inertial import Jt16Inertial
@@ -19,6 +18,7 @@ from recon4.recording.packets.ouster.encode import encode_imu, metadata_json
 from recon4.recording.packets.ouster.family import FAMILY as OUSTER
 from recon4.recording.packets.ouster.imu_packets import sound_imu
 from recon4.recording.packets.ouster.layouts import LEGACY_IMU, PROFILES
+from recon4.recording.packets.replay import Restamping
 from recon4.recording.packets.robosense.encode import encode_imu as encode_airy_imu
 from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
 from recon4.recording.packets.robosense.imu_packets import is_imu

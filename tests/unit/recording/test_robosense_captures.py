@@ -10,7 +10,7 @@ from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.robosense.models import MODELS
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import rig_to_complete
+from recon4.recording.rigs.choice import rig_to_complete
 from recon4.recording.sources import Sources
 from tests.unit.recording.packet_builders import WIDE
 from tests.unit.recording.test_robosense_packets import angles_of, device_of, spin

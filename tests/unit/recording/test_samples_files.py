@@ -16,7 +16,7 @@ from recon4.recording.formats.poses import (
     write_kitti,
     write_tum,
 )
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, read_gnss_csv, read_imu_csv

@@ -12,20 +12,20 @@ from recon4.model.ports import PORTS
 from recon4.model.rig import format_rig, load_rig, parse_rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.ingest import ingest
-from recon4.recording.laser2d import is_laser2d, read_laser2d
-from recon4.recording.report import ImportReport
-from recon4.recording.scan_capture import ScanCapture
-from recon4.recording.scan_datagrams import (
+from recon4.recording.lasers.laser2d import is_laser2d, read_laser2d
+from recon4.recording.lasers.scan_capture import ScanCapture
+from recon4.recording.lasers.scan_datagrams import (
     HeadMessage,
     ScanMessage,
     decode_scan_datagram,
     encode_head,
     encode_scan,
 )
+from recon4.recording.lasers.tuning import SCAN_DATAGRAMS
+from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
-from recon4.recording.tuning_lasers import SCAN_DATAGRAMS
 from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore

@@ -8,14 +8,14 @@ from rosbags.typesys import get_types_from_msg
 
 from recon4.errors import ConfigError
 from recon4.model.rig import parse_rig
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.packets.hesai.models import MODELS as HESAIS
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.one_sender import require_one_sender
 from recon4.recording.packets.ouster.encode import metadata_json
 from recon4.recording.packets.robosense.models import MODELS as ROBOSENSES
 from recon4.recording.packets.senders import parts_of
-from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
+from recon4.recording.rigs.choice import RigToComplete, Stream, rig_to_complete
 from tests.builders import bag_path
 from tests.ouster_models import nominal_metadata
 from tests.robot_bags import RobotBag

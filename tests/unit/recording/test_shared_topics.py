@@ -7,8 +7,8 @@ import pytest
 
 from recon4.model.rig import parse_rig
 from recon4.recording.formats.shared_topics import source_of, sources_of
-from recon4.recording.info import describe
-from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
+from recon4.recording.info.describe import describe
+from recon4.recording.rigs.choice import RigToComplete, Stream, rig_to_complete
 from tests.builders import T0_NS, bag_path, room_cloud
 from tests.robot_bags import RobotBag
 from tests.unit.recording.point_bags import STEP_NS, read

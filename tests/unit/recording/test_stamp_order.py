@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from recon4.recording.info import describe
-from recon4.recording.stamp_order import StampOrder
+from recon4.recording.clocks.stamp_order import StampOrder
+from recon4.recording.info.describe import describe
 from tests.builders import T0_NS, bag_path, room_cloud
 from tests.robot_bags import RobotBag
 from tests.unit.recording.ingested import run

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from recon4.recording.info import describe
-from recon4.recording.stamps import StampClock
+from recon4.recording.clocks.stamps import StampClock
+from recon4.recording.info.describe import describe
 from recon4.units import SECOND_NS
 from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud
 from tests.robot_bags import RobotBag

@@ -8,7 +8,7 @@ from recon4.geometry.se3 import SE3
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.formats.three_dtk import read_pose, read_scan, write_pose, write_scan
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings

@@ -5,9 +5,9 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.model.rig import format_rig, load_rig, parse_rig
-from recon4.recording.bag_recording import BagRecording
-from recon4.recording.info import describe
-from recon4.recording.laser2d import read_laser2d, read_laser_recording
+from recon4.recording.bags.recording import BagRecording
+from recon4.recording.info.describe import describe
+from recon4.recording.lasers.laser2d import read_laser2d, read_laser_recording
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.unit.recording.ingested import run

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
-from recon4.recording import transform_messages
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.urdf import urdf_joints
 from recon4.recording.limits import LIMITS
+from recon4.recording.mounts import transform_messages
+from recon4.recording.mounts.transform_messages import read_frames
 from recon4.recording.report import ImportReport
-from recon4.recording.transform_messages import read_frames
 from tests.builders import T0_NS, bag_path
 from tests.robot_bags import TF1, TF2, RobotBag, mount
 from tests.warned import derivations

@@ -34,7 +34,7 @@ from recon4.recording.packets.velodyne.data_packets import (
 from recon4.recording.packets.velodyne.models import DATA_SIZE, DUAL, MODELS, velodyne_model
 from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import rig_to_complete
+from recon4.recording.rigs.choice import rig_to_complete
 from recon4.recording.samples.clean import join
 from tests.unit.recording.packet_builders import WIDE, rig, sensor
 from tests.warned import K, warned

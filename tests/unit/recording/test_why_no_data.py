@@ -8,10 +8,10 @@ import pytest
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.findings.wording import whole_text
 from recon4.model.rig import parse_rig
-from recon4.recording.info import describe
+from recon4.recording.info.describe import describe
 from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import rig_to_complete
+from recon4.recording.rigs.choice import rig_to_complete
 from tests.builders import write_room_bag
 from tests.unit.recording.ingested import run
 from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
