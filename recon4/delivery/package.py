@@ -177,9 +177,11 @@ def _folder_beside(out: Path) -> Iterator[Path]:
     try:
         with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as name:
             yield Path(name)
-    except OSError as error:
-        raise_if_full(error, out)
-        raise StoreError(f"{out} cannot be made: {error}") from error
+    except Exception as error:
+        raise_if_full(error, out)  # also if a file in it says so: its path means nothing to people
+        if isinstance(error, OSError):
+            raise StoreError(f"{out} cannot be made: {error}") from error
+        raise
 
 
 def _refuse_changed(map_: _Map) -> None:

@@ -15,13 +15,14 @@ from recon4.delivery import package
 from recon4.delivery.check import check_file
 from recon4.delivery.package import DeliveryWish, chosen_files, deliver
 from recon4.delivery.report_files import server_key
-from recon4.errors import ConfigError, CorruptFile, Recon4Error, StoreError
+from recon4.errors import ConfigError, CorruptFile, NoSpace, Recon4Error, StoreError
 from recon4.export import xyz
 from recon4.export.reread import account_of_text
 from recon4.progress import Silent
 from recon4.report.client_words import words
 from recon4.review.trusted_keys import ensure_own_key, read_keys
 from recon4.store.hashing import hash_file
+from tests.full_disk import files_end_at
 from tests.made_once import made_once
 from tests.project_builder import approve_project, build_project
 
@@ -353,6 +354,12 @@ def test_a_map_that_was_made_again_meanwhile_is_refused(sent):
 def test_a_folder_that_is_not_there_is_said(sent, tmp_path):
     with pytest.raises(StoreError, match="cannot be made"):
         deliver(sent / "room", tmp_path / "no" / "d.zip", DeliveryWish(), progress=Silent())
+
+
+def test_a_full_disk_names_the_delivery_and_leaves_nothing(sent, tmp_path):
+    with files_end_at(40_000), pytest.raises(NoSpace, match=f"writing {tmp_path / 'd.zip'};"):
+        deliver(sent / "room", tmp_path / "d.zip", DeliveryWish(), progress=Silent())
+    assert not list(tmp_path.iterdir())
 
 
 def _unsigned(**files):

@@ -1,7 +1,5 @@
 """E57: the map as scans with poses, read by another program."""
 
-import resource
-
 import numpy as np
 import pye57
 import pytest
@@ -11,6 +9,7 @@ from recon4.export import e57
 from recon4.export.e57 import export_e57
 from recon4.export.points import CRS_OF_MAP, PointSource
 from recon4.progress import Silent
+from tests.full_disk import files_end_at
 from tests.room_walks import Walk, room_walk
 from tests.unit.export.test_point_clouds import UTM, column, make
 
@@ -80,13 +79,11 @@ def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch):
 def test_a_disk_that_fills_while_it_is_written_is_said_in_one_line(made, tmp_path):
     tiles, scans = made
     source = PointSource.of(tiles, CRS_OF_MAP)
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (350_000, hard))  # more than a scan, less than all
-    try:
-        with pytest.raises(StoreError, match="is the disk full") as raised:
-            export_e57(source, tmp_path / "x.e57", scans, progress=Silent())
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    with (
+        files_end_at(350_000),  # more than a scan, less than all
+        pytest.raises(StoreError, match="is the disk full") as raised,
+    ):
+        export_e57(source, tmp_path / "x.e57", scans, progress=Silent())
     assert "\n" not in str(raised.value) and len(str(raised.value)) < 200
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import subprocess
 import sys
 from pathlib import Path
@@ -20,6 +19,7 @@ from recon4.orders.on_worker import PartTask, make_part
 from recon4.progress import Silent
 from recon4.sandbox import ONE_THREAD, available_barriers
 from recon4.store.package_versions import versions
+from tests.full_disk import files_end_at
 from tests.ordered_maps import DirectWorkers, bytes_of, full_inputs, make_map
 
 ROOT = Path(__file__).parents[3]
@@ -89,12 +89,8 @@ class FullDisk:
 
     def run(self, function, tasks, say):
         for one in tasks:
-            before = resource.getrlimit(resource.RLIMIT_FSIZE)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (4096, before[1]))  # makers inherit it
-            try:
+            with files_end_at(4096):  # makers inherit it
                 failure = function(one, say)
-            finally:
-                resource.setrlimit(resource.RLIMIT_FSIZE, before)
             yield Finished(one, failure)
 
 
