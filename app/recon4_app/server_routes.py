@@ -40,7 +40,7 @@ def read_server(server: Server, language: Language) -> ServerView:
     notices += unlisted_notices(settings.root)
     little = max(ROOM.little_room * disk.total, settings.free_disk_reserve_bytes)
     if not settings.read_only and disk.free < little:
-        notices.append(CodedText("notice-disk", free_gb=disk.free / 1e9, disk_gb=disk.total / 1e9))
+        notices.append(CodedText("notice-disk", free_bytes=disk.free, disk_bytes=disk.total))
     return ServerView(
         version=__version__,
         free_bytes=disk.free,

@@ -13,6 +13,9 @@ from fluent.runtime.types import FluentType, fluent_number
 _THIN_SPACE = "\u202f"
 """Between the thousands; it does not break."""
 
+_SIZES = (("GB", 1e9, 1), ("MB", 1e6, 0), ("kB", 1e3, 0))
+"""Units of what is stored, their bytes, and digits that are shown."""
+
 
 class ShownText(FluentType, str):
     """A text as it is, however long."""
@@ -58,6 +61,11 @@ def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
     def mount(value: str) -> str:
         return written(mount_text(value))
 
+    def size(number: float) -> str:
+        value = as_float(number)
+        unit, bytes_, digits = next((one for one in _SIZES if value >= one[1]), _SIZES[-1])
+        return f"{written(fixed(value / bytes_, digits=digits))} {unit}"
+
     def count(number: int) -> str:
         return f"{as_float(number):,.0f}".replace(",", _THIN_SPACE)
 
@@ -73,6 +81,7 @@ def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
         ),
         "SIGNIFICANT": lambda value, digits: written(format(as_float(value), f".{int(digits)}g")),
         "COUNT": count,
+        "SIZE": size,
         "MOUNT": mount,
         "BYTE": lambda value: format(int(value), "#04x"),
     }

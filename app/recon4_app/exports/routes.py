@@ -168,7 +168,7 @@ def _add(
     free = shutil.disk_usage(server.settings.state).free
     if free < needed:
         raise NoRoom(
-            CodedText("export-no-room", needed_gb=needed / 1e9, free_gb=free / 1e9),
+            CodedText("export-no-room", needed_bytes=needed, free_bytes=free),
             remedy=STORAGE,
         )
     asked = Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options))

@@ -39,7 +39,7 @@ def export(folder: JobFolder, progress: Progress) -> ExportedFile:
         raise ConfigError(CodedText("export-no-order"))
     free, reserve = shutil.disk_usage(folder.path).free, folder.limits().reserve_bytes
     if free < reserve:
-        raise NoSpace(CodedText("export-disk-full", reserve=reserve, free=free))
+        raise NoSpace(CodedText("export-disk-full", reserve_bytes=reserve, free_bytes=free))
     make_folders(folder.made)
     try:
         return export_file(

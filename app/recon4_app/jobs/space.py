@@ -26,10 +26,10 @@ def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int)
         raise NoSpace(
             CodedText(
                 "job-no-space",
-                needed_gb=needed / 1e9,
+                needed_bytes=needed,
                 times=SPACE.times_the_input,
-                given_gb=given / 1e9,
-                free_gb=free / 1e9,
+                given_bytes=given,
+                free_bytes=free,
             )
         )
 

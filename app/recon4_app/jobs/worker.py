@@ -61,11 +61,11 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         project, _ = folder.request()
         return failure(text_of(error), startable=is_project(project))
     except Recon4Error as error:
-        return failure(text_of(error), no_space=isinstance(error, NoSpace))
+        return failure(_to_people(error, folder), no_space=isinstance(error, NoSpace))
     except MemoryError:
         return failure(CodedText("job-out-of-memory"))
     except Exception as error:
-        if (full := _full(error, folder.path)) is not None:
+        if (full := _full(error, folder)) is not None:
             return failure(full, no_space=True)
         log.exception("unexpected")
         return failure(CodedText("job-program-error", error=type(error).__name__))
@@ -120,13 +120,34 @@ def titled(project: Path, title: str) -> Iterator[None]:
         raise
 
 
-def _full(error: Exception, path: Path) -> str | None:
+def _full(error: Exception, folder: JobFolder) -> str | None:
     """The message about a full disk, if that caused an error."""
     try:
-        raise_if_full(error, path)
+        raise_if_full(error, folder.request()[0])
     except NoSpace as full:
-        return text_of(full)
+        return _to_people(full, folder)
     return None
+
+
+def _to_people(error: Recon4Error, folder: JobFolder) -> str:
+    """The message of an error, with names of files in place of paths of this computer.
+
+    Who may only look at a project reads it, too.
+    """
+    text, (project, _) = text_of(error), folder.request()
+    for hidden in (folder.made, project.parent):
+        text = _without(f"{hidden}{os.sep}", text)
+    return text
+
+
+def _without(path: str, text: str) -> str:
+    if not isinstance(text, CodedText):
+        return text.replace(path, "")
+    values = {
+        name: _without(path, value) if isinstance(value, str) else value
+        for name, value in text.values.items()
+    }
+    return CodedText(text.code, **values)
 
 
 if __name__ == "__main__":

@@ -161,4 +161,6 @@ class Exports:
         self._folder.mkdir(parents=True, exist_ok=True)
         free = shutil.disk_usage(self._folder).free
         if free < self._reserve_bytes:
-            raise NoRoom(CodedText("slice-export-no-room", needed=self._reserve_bytes, free=free))
+            raise NoRoom(
+                CodedText("slice-export-no-room", needed_bytes=self._reserve_bytes, free_bytes=free)
+            )

@@ -224,8 +224,8 @@ class UploadStore:
             raise TooLarge(
                 CodedText(
                     "upload-too-large",
-                    size_gb=total / 1e9,
-                    limit_gb=settings.max_upload_bytes / 1e9,
+                    size_bytes=total,
+                    limit_bytes=settings.max_upload_bytes,
                 )
             )
         still_open = [upload for upload in self._uploads.values() if not upload.finished]
@@ -238,9 +238,7 @@ class UploadStore:
         free = shutil.disk_usage(self._settings.root).free - promised
         room = free - settings.free_disk_reserve_bytes
         if room < total:
-            raise NoRoom(
-                CodedText("upload-no-room", room_gb=max(0, room) / 1e9, size_gb=total / 1e9)
-            )
+            raise NoRoom(CodedText("upload-no-room", room_bytes=max(0, room), size_bytes=total))
 
     def _refuse_surplus(self, upload: Upload, name: str, length: int) -> None:
         announced_bytes = sum(file.bytes for file in upload.announced.values())

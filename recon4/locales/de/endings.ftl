@@ -13,7 +13,7 @@ worker-died = der Rechenprozess endete { $attempts }-mal: zuletzt { EXIT($how, $
 ## Exporte und Vergleiche
 
 export-no-order = dieser Auftrag nennt keine Datei
-export-disk-full = kein Platz: ein Export lässt { $reserve } Byte frei, es sind { $free }
+export-disk-full = kein Platz: ein Export lässt { SIZE($reserve_bytes) } frei, es sind { SIZE($free_bytes) }
 export-out-of-memory = der Speicher reicht nicht: weniger Punkte wählen: einige Klassen, einen Quader, ein Geschoss, oder ausdünnen
 targets-no-order = dieser Auftrag nennt keine Suche nach Zielmarken
 comparison-no-order = dieser Auftrag nennt keine Karte zum Vergleich

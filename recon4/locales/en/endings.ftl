@@ -13,7 +13,7 @@ worker-died = the worker died { $attempts } times: last it { EXIT($how, $number)
 ## Exports and comparisons
 
 export-no-order = this job orders no file
-export-disk-full = no space: an export leaves { $reserve } bytes free, there are { $free }
+export-disk-full = no space: an export leaves { SIZE($reserve_bytes) } free, there are { SIZE($free_bytes) }
 export-out-of-memory = out of memory: choose fewer points: some classes, a box, a storey, or thin them out
 targets-no-order = this job names no search for survey targets
 comparison-no-order = this job names no map to compare with

@@ -10,13 +10,14 @@ from recon4.errors import Cancelled, ConfigError, NoSpace
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH, ROOT
 from recon4.locales.texts import messages_of
-from recon4.store.atomic import raise_if_full
+from recon4.store.atomic import raise_if_full, write_text
 from recon4_app.jobs.folder import JobFolder, Limits
 from recon4_app.jobs.model import Inputs, Job, JobState
 from recon4_app.jobs.status import JobStatus, StageStatus
 from recon4_app.jobs.store import JobStore
 from recon4_app.jobs.supervisor import exit_reason
 from recon4_app.jobs.worker import run
+from tests.full_disk import files_end_at
 
 DIED = {"how": "SIGKILL", "number": 9, "stage": "odometry", "what": "Odometry"}
 
@@ -78,7 +79,7 @@ def test_the_queue_of_an_earlier_version_is_read(tmp_path):
         (Cancelled(CodedText("job-stopped")), "job-stopped"),
         (MemoryError(), "job-out-of-memory"),
         (ZeroDivisionError(), "job-program-error"),
-        (NoSpace(CodedText("export-disk-full", reserve=2, free=1)), "export-disk-full"),
+        (NoSpace(CodedText("export-disk-full", reserve_bytes=2, free_bytes=1)), "export-disk-full"),
         (OSError(28, "no space"), "job-disk-full"),
         (ConfigError("voxel_m"), "kind-configuration"),
     ],
@@ -97,6 +98,26 @@ def test_a_worker_hands_over_code_and_values(tmp_path, error, code):
 
     assert outcome.reason and outcome.reason.code == code
     assert outcome.note and type(outcome.note) is str
+
+
+@pytest.mark.parametrize(
+    ("file", "named"),
+    [("job/made/walk-map.laz", "walk-map.laz"), ("walk/artifacts/tiles", "walk/artifacts/tiles")],
+)
+def test_a_full_disk_of_a_job_names_the_file_and_no_path_of_this_computer(tmp_path, file, named):
+    folder = JobFolder(tmp_path / "job")
+    limits = Limits(memory_bytes=1 << 30, reserve_bytes=0)
+    folder.prepare(Inputs(recordings=()), tmp_path / "walk", limits)
+    (tmp_path / file).parent.mkdir(parents=True)
+
+    def work(_folder, _progress):
+        with files_end_at(100):
+            write_text(tmp_path / file, "x" * 1_000)
+
+    outcome = run(folder, work)
+
+    assert outcome.no_space and f"while writing {named}; make room" in outcome.note
+    assert outcome.reason.values == {"file": named}
 
 
 def test_a_full_disk_names_the_file(tmp_path):

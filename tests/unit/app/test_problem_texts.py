@@ -77,10 +77,10 @@ def test_no_code_is_in_two_files_or_a_text_of_all_pages():
 
 
 def test_a_text_is_english_and_is_said_again_in_another_language():
-    text = CodedText("export-no-room", needed_gb=12.34, free_gb=0.5)
+    text = CodedText("export-no-room", needed_bytes=12.34e9, free_bytes=20_405_504)
 
-    assert text == "this export needs about 12.3 GB while it is made, 0.5 GB are free"
-    assert said(text, "de").endswith("etwa 12,3 GB, frei sind 0,5 GB")
+    assert text == "this export needs about 12.3 GB while it is made, 20 MB are free"
+    assert said(text, "de").endswith("etwa 12,3 GB, frei sind 20 MB")
     assert said("as it is", "de") == "as it is"
     assert pickle.loads(pickle.dumps(text)).values == text.values
 
