@@ -51,7 +51,7 @@ _TEXTS = re.compile(r'<html [^>]*data-texts="([a-z -]+)"')
 _TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
 _SCRIPT = re.compile(r'<script type="module" src="/web/([^"]+)"')
 _PRELOAD = '<link rel="modulepreload" href="{}" />\n    '
-_IMPORT = re.compile(r'''^(?:import|export)\b[^;"]*"(\.[^"]+)"''', re.MULTILINE)
+_IMPORT = re.compile(r'''(?:^|;)(?:import|export)\b[^;"]*"(\.[^"]+)"''', re.MULTILINE)
 """What a module loads before it runs."""
 LANGUAGE_COOKIE = "recon4_language"
 """The choice on a page; `web/shared/texts.js` sets it."""

@@ -35,7 +35,8 @@ def test_every_file_of_a_head_exists(file):
 def test_a_page_names_what_its_script_imports_at_any_depth():
     html = html_of("projects/index.html", "/maps")
 
-    for module in ("projects/organize", "shared/http", "shared/vendor/fluent/scope"):
+    vendor = ("shared/vendor/fluent/scope", "shared/vendor/lit-html/directive-helpers")
+    for module in ("projects/organize", "shared/http", *vendor):
         assert html.count(f'<link rel="modulepreload" href="/maps/web/{module}.js" />') == 1
     assert html.index("modulepreload") < html.index('<script type="module"')
 
