@@ -53,9 +53,77 @@ def test_a_chosen_tool_leaves_the_image_where_it_is_and_keys_follow_a_number(ser
     expect(page.get_by_role("button", name="End tool")).to_be_visible()
 
 
+BOX = "camera=8,5,1.5,30,-40,14,0&z=..&box=8,5,1.5,4,4,2,0"
+
+
+def clip_box(page):
+    return page.evaluate("recon4Map.page.state.clip.box")
+
+
+@both_looks
+def test_a_face_of_the_clip_box_is_dragged_and_moved_by_keys(server, page, context, look):
+    opened(page, server, f"?{BOX}")
+    face = page.get_by_role("slider", name="Clip box, side +x")
+    before, drawn = clip_box(page), page.evaluate("recon4Map.run.canvas.drawn.frames")
+    middle = face.bounding_box()
+    x, y = (middle[at] + middle[size] / 2 for at, size in (("x", "width"), ("y", "height")))
+
+    if look[0] == "phone":
+        touch = context.new_cdp_session(page)
+        for kind, to in (("touchStart", x), ("touchMove", x + 20), ("touchMove", x + 40)):
+            where = {"type": kind, "touchPoints": [{"x": to, "y": y}]}
+            touch.send("Input.dispatchTouchEvent", where)
+        touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    else:
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 40, y)
+        page.mouse.up()
+
+    dragged = clip_box(page)
+    assert dragged["size"][0] > before["size"][0] + 0.2
+    assert dragged["size"][1:] == before["size"][1:]
+    opposite = [box["center"][0] - box["size"][0] / 2 for box in (before, dragged)]
+    assert opposite[0] == pytest.approx(opposite[1])
+    rested(page)
+    assert page.evaluate("recon4Map.run.canvas.drawn.frames") > drawn
+
+    face.focus()
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("Shift+ArrowDown")
+    expect(face).to_have_attribute("aria-valuetext", f"{dragged['size'][0] - 0.45:.2f} m")
+    expect(face).to_be_focused()
+    assert page.evaluate("recon4Map.camera().distance") == 14  # the map has not moved
+
+
+def test_what_changes_nothing_of_the_image_draws_it_not_again(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    page.mouse.click(*at(page, 6.0, 4.0))
+    expect(page.locator("#status .reading")).to_contain_text("intensity")
+    before = page.evaluate("recon4Map.run.canvas.drawn.frames")
+
+    page.keyboard.press("i")
+    page.mouse.click(*at(page, 6.0, 4.0))
+    expect(page.locator("#overlay text")).to_have_text(re.compile("Point 1"))
+
+    assert page.evaluate("recon4Map.run.canvas.drawn.frames") == before
+    assert page.evaluate("recon4Map.run.canvas.drawn.rested")
+
+
+def test_a_note_is_begun_before_the_others_have_been_read(server, page):
+    waiting = []
+    page.route("**/notes", lambda route: waiting.append(route), times=1)
+    opened(page, server, f"?{TOP}&z=..")
+
+    page.keyboard.press("n")
+    page.mouse.click(*at(page, 6.0, 4.0))
+
+    expect(page.get_by_label("Note at")).to_be_focused()
+    waiting.pop().continue_()
+
+
 def test_an_impatient_person_makes_one_note_and_sees_its_place_before(server, page):
     opened(page, server, f"?{TOP}&z=..")
-    expect(page.get_by_role("button", name="Note", exact=True)).to_be_visible()  # may write some
     page.keyboard.press("n")
     page.mouse.click(*at(page, 6.0, 4.0))
     page.get_by_label("Note at").fill("Crack")

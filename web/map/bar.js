@@ -99,7 +99,7 @@ const ofPage = (/** @type {Act} */ act) => ({
 
 /** @returns {Bar} */
 function tools(/** @type {Act} */ act) {
-  const { tool: current, measuring, flight, notes } = page;
+  const { tool: current, measuring, flight, mayProcess } = page;
   const kinds = /** @type {Array<[MeasureKind, string]>} */ ([
     ["distance", "M"],
     ["height", "H"],
@@ -125,7 +125,7 @@ function tools(/** @type {Act} */ act) {
         ...{ rank: RANKS[kind], pressed: current === "measure" && measuring === kind },
       })),
       ...others
-        .filter(([tool]) => tool !== "note" || notes.may)
+        .filter(([tool]) => tool !== "note" || mayProcess)
         .map(([tool, text, key, rank]) => ({
           ...{ text, key, act: () => act.tool(tool), rank, pressed: current === tool },
         })),

@@ -346,7 +346,8 @@ function listen() {
 async function begin() {
   drawHelp(byId("help"));
   const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
-  Object.assign(page, { project, guest: isGuest(me), mayShare: me.may.includes("share") });
+  const [mayShare, mayProcess] = [me.may.includes("share"), me.may.includes("process")];
+  Object.assign(page, { project, guest: isGuest(me), mayShare, mayProcess });
   only("page-head").name = project.name;
   only("map-verdict").facts = factsIn(project.summary);
   document.title = t("title-of", { project: project.name });

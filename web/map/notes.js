@@ -42,8 +42,7 @@ export function notesOf(draw, seen) {
   const { notes } = page;
 
   async function read() {
-    const { may_change, notes: all } = await readNotes(id);
-    Object.assign(notes, { all, may: may_change });
+    notes.all = (await readNotes(id)).notes;
     draw();
   }
 
@@ -124,7 +123,8 @@ function viewOf(/** @type {{camera: Camera, screen: Screen}} */ { camera, screen
 
 /** The section of the panel. */
 export function notesSection(/** @type {Act} */ act) {
-  const { all, may, draft, filter } = page.notes;
+  const { mayProcess: may } = page;
+  const { all, draft, filter } = page.notes;
   const open = all.filter(({ status }) => status === "open").length;
   const listed = notesListed();
   return html`<section aria-labelledby="notes-title" class="notes">
@@ -207,7 +207,7 @@ function form({ id: note, p, text }, act) {
 function row(note, act) {
   const { id: name, text, status, who, changed_by, changed, key } = note;
   const pin = notePins().find((one) => one.name === name);
-  const { may } = page.notes;
+  const { mayProcess: may } = page;
   const last = changed_by === who ? "" : `; ${changed_by}`;
   const history = `${who}${last}, ${when(changed)}`;
   const earlier = key === page.index?.key ? "" : ` · ${t("earlier-map")}`;

@@ -29,6 +29,7 @@ export const page = {
   project: null,
   guest: false, // somebody with a guest link
   mayShare: false,
+  mayProcess: false, // notes and saved views
   /** @type {MapWalk | null} */
   walk: null,
   /** @type {Tool} */
@@ -58,10 +59,9 @@ export const page = {
   /** @type {Pin | null} */
   chosen: null,
   panel: innerWidth > 800,
-  saved: { all: /** @type {SavedMapView[]} */ ([]), may: false },
+  saved: { all: /** @type {SavedMapView[]} */ ([]) },
   notes: {
     all: /** @type {MapNote[]} */ ([]),
-    may: false,
     filter: "",
     draft: /** @type {NoteDraft | null} */ (null),
     problem: /** @type {unknown} */ (null),

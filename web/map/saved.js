@@ -18,8 +18,7 @@ const id = idHere();
  */
 export function savedOf(draw) {
   async function read() {
-    const { may_change, views } = await readMapViews(id);
-    Object.assign(page.saved, { all: views, may: may_change });
+    page.saved.all = (await readMapViews(id)).views;
     draw();
   }
   return {
@@ -42,7 +41,7 @@ export async function share() {
 
 /** The section of the panel. */
 export function savedSection(/** @type {Act} */ act) {
-  const { all, may } = page.saved;
+  const { saved, mayProcess: may } = page;
   const submit = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const field = within(targetOf(event), "input", HTMLInputElement);
@@ -53,7 +52,7 @@ export function savedSection(/** @type {Act} */ act) {
   return html`<section aria-labelledby="views-title">
     <h2 id="views-title">${t("saved-views")}</h2>
     <ul class="rows">
-      ${all.map(
+      ${saved.all.map(
         ({ id: view, name, query, who, time }) =>
           html`<li>
             <button type="button" class="place" @click=${() => act.open(query)}>

@@ -293,7 +293,7 @@ async function stand(at, stage) {
  * @param {MeasureKind} [kind]
  */
 export function choose(tool, stage, kind = page.measuring) {
-  if (tool === "note" && !page.notes.may) return read(t("look-only"), stage);
+  if (tool === "note" && !page.mayProcess) return read(t("look-only"), stage);
   const same = tool === page.tool && (tool !== "measure" || kind === page.measuring);
   Object.assign(page, { tool: same ? "" : tool, measuring: kind, draft: [], drag: null });
   const hints = {
