@@ -113,15 +113,13 @@ export class MapCanvas {
     };
   }
 
-  /** Draws something else; a camera that moved is drawn at once, with fewer points. */
+  /** Draws something else, with fewer points at once: it may be one of the changes of a drag. */
   set drawing(/** @type {Drawing} */ drawing) {
     const before = this.#drawing;
+    if (before && JSON.stringify(before) === JSON.stringify(drawing)) return;
     this.#drawing = drawing;
-    const same = JSON.stringify(before?.camera) === JSON.stringify(drawing.camera);
-    if (before && !same) this.#moved = performance.now();
-    this.#finished = false;
-    this.#refining = null;
-    this.#ask();
+    if (before) this.#moved = performance.now();
+    this.#news();
   }
 
   /** The walk and the nodes of the graph, as lines and dots over the map. */
@@ -136,6 +134,7 @@ export class MapCanvas {
 
   /** Shows differences in place of the map; null = the map again. */
   differ(/** @type {CorePoints | null} */ points) {
+    if (!points && !this.#differences) return;
     if (this.#differences) this.#scene.remove(this.#differences.object);
     if (points) this.#scene.add(points.object);
     points?.follow(this.#material.uniforms);
@@ -145,8 +144,10 @@ export class MapCanvas {
 
   /** Shows another map to the right of its divider; null = this map only. */
   beside(/** @type {MapBeside | null} */ other) {
+    if (!other && !this.#beside) return;
     if (other) other.tiles.onNews = () => this.#arrived();
     this.#beside = other;
+    this.#moved = performance.now();
     this.#news();
   }
 
