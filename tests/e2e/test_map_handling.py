@@ -5,8 +5,8 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import looks
-from tests.e2e.test_map_page import TOP, at, opened
+from tests.e2e.conftest import both_looks, looks
+from tests.e2e.test_map_page import TOP, at, opened, rested
 from tests.served import office, served
 
 pytestmark = [pytest.mark.e2e, looks("desktop light")]

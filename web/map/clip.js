@@ -1,6 +1,7 @@
 // What of the map is shown: heights, a box, a section. Planes (n, d) keep n · p + d >= 0.
 
 /**
+ * @import {Xyz} from "./camera.js"
  * @typedef {[number | null, number | null]} Heights lowest and highest [m]; null = no limit
  * @typedef {object} ClipBox
  * @property {[number, number, number]} center [m]
@@ -25,14 +26,18 @@ export function planesOf(/** @type {Clip} */ { heights: [low, high], box, sectio
   return planes;
 }
 
-function planesOfBox(/** @type {ClipBox} */ { center, size, yaw }) {
+/** Unit vectors along the edges of a box. @returns {Xyz[]} */
+export function axesOfBox(/** @type {number} */ yaw) {
   const [c, s] = [Math.cos(yaw), Math.sin(yaw)];
-  const axes = [
+  return [
     [c, s, 0],
     [-s, c, 0],
     [0, 0, 1],
   ];
-  return axes.flatMap((axis, k) => {
+}
+
+function planesOfBox(/** @type {ClipBox} */ { center, size, yaw }) {
+  return axesOfBox(yaw).flatMap((axis, k) => {
     const at = axis[0] * center[0] + axis[1] * center[1] + axis[2] * center[2];
     const half = size[k] / 2;
     return [
@@ -42,8 +47,8 @@ function planesOfBox(/** @type {ClipBox} */ { center, size, yaw }) {
   });
 }
 
-/** Unit vector across a section, to the side from which it is seen. */
-function acrossOf(/** @type {Section} */ { a, b }) {
+/** Unit vector across a section, to the side from which it is seen. @returns {Xyz} */
+export function acrossOf(/** @type {Section} */ { a, b }) {
   const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
   const length = Math.hypot(dx, dy) || 1;
   return [dy / length, -dx / length, 0];

@@ -21,6 +21,7 @@ import { compareOf, drawDivider } from "./compare.js";
 import { between, panned, pixelM, rayAt, zoomed } from "./camera.js";
 import { moveByGestures } from "./controls.js";
 import { flightOf } from "./flying.js";
+import { handlesIn } from "./handles.js";
 import { listenToKeys } from "./keys.js";
 import { markingOf } from "./marking.js";
 import { drawHelp, drawStatus } from "./caption.js";
@@ -163,6 +164,7 @@ function drawOver() {
   );
   const over = /** @type {unknown} */ (document.getElementById("overlay"));
   render(svg`${content}`, /** @type {HTMLElement} */ (over));
+  drawHandles();
 }
 
 function drawCaption() {
@@ -191,6 +193,7 @@ const stage = {
   stop: () => cancelAnimationFrame(run.turn),
 };
 const { fly, seek } = flightOf(stage);
+const drawHandles = handlesIn(byId("handles"), stage);
 const toggles = togglesOf(change);
 const marking = markingOf(stage);
 const notes = notesOf(draw, () => ({ camera: camera(), screen: screen() }));

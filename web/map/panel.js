@@ -161,6 +161,8 @@ function clip(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
 const sliceHeight = (/** @type {MapIndex} */ { high_m }) =>
   (page.state.clip.heights[1] ?? high_m[2]) - 0.7;
 
+const turn = (/** @type {number} */ deg) => (deg * Math.PI) / 180;
+
 function boxFields(/** @type {Act} */ act) {
   const { clip: shown } = page.state;
   const { box } = shown;
@@ -184,6 +186,9 @@ function boxFields(/** @type {Act} */ act) {
       ${[0, 1, 2].map((axis) => part("center", axis))}
       ${[0, 1, 2].map((axis) => part("size", axis))}
     </div>
+    ${field(t("turned-by"), (box.yaw * 180) / Math.PI, (deg) => set({ yaw: turn(deg ?? 0) }), {
+      step: 5,
+    })}
     <div class="buttons">
       <button type="button" @click=${() => act.change({ clip: { ...shown, box: null } })}>
         ${t("remove-box")}
