@@ -89,4 +89,6 @@ def _scene(mesh: WorldMesh) -> Any:
         o3d.core.Tensor.from_numpy(np.ascontiguousarray(mesh.vertices_m)),
         o3d.core.Tensor.from_numpy(np.ascontiguousarray(mesh.triangles)),
     )
+    # The first ray prepares the scene, which threads that cast at once would disturb.
+    scene.cast_rays(o3d.core.Tensor.from_numpy(np.ones((1, 6), np.float32)))
     return scene

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -99,17 +100,23 @@ def record(
 
 
 def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
-    """What the sensors measure in each second of the walk."""
+    """What the sensors measure in each second of the walk; the next one is measured meanwhile."""
     fired = [0] * len(setup.lidars)
-    for second in range(int(np.ceil(setup.walk.seconds))):
-        end_ns = min((second + 1) * SECOND_NS, int(setup.walk.seconds * 1e9))
-        parts = []
-        for row, lidar in enumerate(setup.lidars):
-            packets = range(fired[row], lidar.packets_before(end_ns))
-            fired[row] = packets.stop
-            rng = setup.rng(3, row, second)
-            parts.append(lidar.fire(packets, setup.walk, setup.surroundings, rng=rng))
-        yield parts
+    measured: list[Future[Firings]] = []
+    with ThreadPoolExecutor(len(setup.lidars)) as pool:
+        for second in range(int(np.ceil(setup.walk.seconds))):
+            end_ns = min((second + 1) * SECOND_NS, int(setup.walk.seconds * 1e9))
+            parts, measured = measured, []
+            for row, lidar in enumerate(setup.lidars):
+                packets = range(fired[row], lidar.packets_before(end_ns))
+                fired[row] = packets.stop
+                rng = setup.rng(3, row, second)
+                measured.append(
+                    pool.submit(lidar.fire, packets, setup.walk, setup.surroundings, rng=rng)
+                )
+            if parts:
+                yield [part.result() for part in parts]
+        yield [part.result() for part in measured]
 
 
 def _check_possible(values: Mapping[str, float], setup: SimulationSetup) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import IO
 
@@ -160,14 +161,14 @@ class PcapWriter:
         )
         length = _HEADER.itemsize + size
         seconds, nanoseconds = np.divmod(np.asarray(t_ns, dtype=np.int64), 1_000_000_000)
-        records["stamp"] = np.column_stack(
-            [seconds, nanoseconds, np.full_like(seconds, length), np.full_like(seconds, length)]
-        )
+        records["stamp"] = length
+        records["stamp"][:, 0], records["stamp"][:, 1] = seconds, nanoseconds
         records["header"] = _header(size, source, port)
         records["payload"] = payloads
         self._file.write(records.tobytes())
 
 
+@cache
 def _header(size: int, source: str, port: int) -> NDArray[np.void]:
     header = np.zeros(1, dtype=_HEADER)
     header["ethernet"] = [255] * 6 + [0x60, 0x76, 0x88, 0, 0, 1]
