@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
 import pytest
+from hypothesis import settings
 
 from tests.chromium import CHROMIUM, FLAGS
 from tests.file_order import mixed
@@ -27,6 +28,9 @@ os.environ["PYTHONPATH"] = str(ROOT)  # children do not look into the working fo
 DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
 
 CAPTURE = "recording.pcap"
+
+settings.register_profile("untimed", deadline=None)  # else a busy machine fails an example
+settings.load_profile("untimed")
 
 
 class HasFileno(Protocol):

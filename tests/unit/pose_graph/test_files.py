@@ -229,7 +229,7 @@ def test_gtsam_reads_our_file_and_agrees_about_the_error(tmp_path: Path) -> None
     assert 2.0 * factors.error(values) == pytest.approx(ours, rel=1e-6)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(share=st.floats(0.0, 0.9999))
 def test_a_truncated_g2o_file_is_rejected(
     tmp_path_factory: pytest.TempPathFactory, share: float

@@ -99,7 +99,7 @@ def test_fields_of_ply_files_by_cloudcompare_are_those_of_their_names(table, tmp
 
 
 @pytest.mark.parametrize("kind", BINARY)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(share=st.floats(0.0, 0.999))
 def test_a_file_cut_anywhere_is_refused(kind, table, tmp_path_factory, share):
     path = WRITERS[kind](tmp_path_factory.mktemp("cut") / "cloud", table)
@@ -110,7 +110,7 @@ def test_a_file_cut_anywhere_is_refused(kind, table, tmp_path_factory, share):
         read_cloud(path)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(where=st.floats(0.0, 0.999), value=st.integers(0, 255))
 @pytest.mark.parametrize("kind", BINARY)
 def test_a_changed_byte_gives_all_points_or_an_error(kind, table, tmp_path_factory, where, value):

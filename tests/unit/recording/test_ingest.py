@@ -191,9 +191,7 @@ def test_a_rig_of_two_does_not_fit_a_folder_of_frames(tmp_path):
         run(folder, out=tmp_path / "o", rig=load_rig("4recon"))
 
 
-@settings(
-    max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(share=st.floats(0.0, 0.999))
 def test_a_pcap_cut_anywhere_gives_what_is_left(pcap, tmp_path_factory, share):
     folder = tmp_path_factory.mktemp("cut")

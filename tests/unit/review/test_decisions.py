@@ -291,7 +291,7 @@ def test_a_correction_of_classes_is_read_back_as_it_was_written():
         Decision.of("classify", "Eva", "", pair=None, body=body)
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=10)
 @given(st.integers(0, 2**32 - 1))
 def test_a_thousand_operations_and_undoing_all_of_them_is_the_beginning(seed):
     rng = np.random.default_rng(seed)
