@@ -10,7 +10,7 @@ from contextlib import asynccontextmanager, suppress
 from functools import cache
 
 from fastapi import APIRouter, Depends, FastAPI, Request
-from fastapi.responses import HTMLResponse, JSONResponse
+from fastapi.responses import JSONResponse
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.routing import BaseRoute
 
@@ -39,7 +39,7 @@ from recon4_app.assistant import routes as assistant_routes
 from recon4_app.assistant.endpoint import AssistantEndpoint
 from recon4_app.comparisons import routes as comparison_routes
 from recon4_app.compute_pool.pool import ComputePool
-from recon4_app.deps import Server, ServerParts
+from recon4_app.deps import ServerParts
 from recon4_app.exports import map_routes
 from recon4_app.exports import routes as export_routes
 from recon4_app.exports.kept import KeptExports
@@ -73,8 +73,8 @@ from recon4_app.network.listen import (
 )
 from recon4_app.network.streams import StreamLimits, Streams
 from recon4_app.openapi import description
-from recon4_app.page_routes import add_page
-from recon4_app.pages import WEB, page_addresses, page_response
+from recon4_app.page_routes import add_page, no_head
+from recon4_app.pages import WEB, page_addresses
 from recon4_app.projects import report_file
 from recon4_app.projects import routes as project_routes
 from recon4_app.projects.import_folders import ImportFolders
@@ -149,7 +149,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
         app.add_middleware(ProxyMiddleware, address=settings.behind)
     error_responses.install(app)
     app.mount("/web", WebFiles(directory=WEB), name="web")
-    _add_pages(app)
+    _add_health_and_openapi(app)
     check_declared(app)
     return app
 
@@ -188,13 +188,14 @@ def _routes() -> list[BaseRoute]:
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
     for part in (review_routes, slice_routes, map_view_routes, rig_routes):
         router.include_router(part.router)
-        router.include_router(part.page)
+    router.include_router(rig_routes.page)
     for part in (live_routes, storage_routes):
         router.include_router(part.router)
     for one in (upload_routes.files, upload_routes.router):
         router.include_router(one)
+    heads = {"map/map.html": map_view_routes.page_preloads}
     for address in page_addresses():
-        add_page(router, address)
+        add_page(router, address, heads.get(address.file, no_head))
     return router.routes
 
 
@@ -368,7 +369,7 @@ def _import_folders(settings: ServerSettings) -> ImportFolders:
     return ImportFolders(settings.import_roots, private=private)
 
 
-def _add_pages(app: FastAPI) -> None:
+def _add_health_and_openapi(app: FastAPI) -> None:
 
     @app.get("/healthz", tags=["server"], dependencies=[Depends(allow_anonymous)])
     async def healthz() -> dict[str, str]:
@@ -378,9 +379,3 @@ def _add_pages(app: FastAPI) -> None:
     @app.get("/openapi.json", include_in_schema=False, dependencies=REQUIRES_LOOK)
     def openapi(request: Request) -> JSONResponse:
         return JSONResponse(description(app, prefix_of(request.scope)))
-
-    @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=REQUIRES_LOOK)
-    def project(project_id: str, request: Request, server: Server) -> HTMLResponse:
-        if not server.jobs.of_project(project_id):
-            server.projects.folder(project_id)  # a waiting job's project has no folder yet
-        return page_response("projects/project.html", request)

@@ -5,6 +5,8 @@
 That is its address, the permission it needs (``anyone``: none) and, if the bar at the top of all
 pages has a link to it, the text and the place of that link. ``for`` after the place names another
 permission for the link. From this line follow the route, the link and the tests of all pages.
+The address of a page of one project begins with ``/projects/{project_id}/``; its link is among
+those of the project.
 """
 
 from __future__ import annotations
@@ -36,6 +38,8 @@ def _folder() -> Path:
 
 
 WEB = _folder()
+OF_PROJECT = "/projects/{project_id}/"
+"""Begins the addresses of the pages of one project; the first of them has this address."""
 HEAD_HERE = "<!-- shared/head.html -->"
 """Stands in each page where the common elements of the heads belong."""
 _PAGE = re.compile(
@@ -81,7 +85,7 @@ _DOCS = PageAddress("/docs/", "shared/lost.html", "look", "head-help", 5, "look"
 
 @cache
 def page_addresses() -> tuple[PageAddress, ...]:
-    """The pages that are the same for all projects, in the order of their files."""
+    """All pages, in the order of their files."""
     found = []
     for path in sorted(WEB.rglob("*.html")):
         line = _PAGE.search(path.read_text("utf-8"))

@@ -13,13 +13,11 @@ pytestmark = pytest.mark.e2e
 
 ELSEWHERE = {f"account/{name}.html" for name in ("account", "guest", "login", "pair")}
 """Pages of a server with login: `test_login.py` judges them."""
-PAGES = {one.path: one.file for one in page_addresses() if one.file not in ELSEWHERE} | {
-    "/projects/office/": "projects/project.html",
-    "/projects/office/review/": "review/review.html",
-    "/projects/office/slices/": "slices/slices.html",
-    "/projects/office/map/": "map/map.html",
-    "/nowhere": "shared/lost.html",
-}
+PAGES = {
+    one.path.format(project_id="office"): one.file
+    for one in page_addresses()
+    if one.file not in ELSEWHERE
+} | {"/nowhere": "shared/lost.html"}
 """Path -> its file in `web/`."""
 
 OPENED = 24

@@ -11,7 +11,6 @@ import {
   readCurrentUser,
   reportUrl,
   signOut,
-  slicesUrl,
 } from "./api.js";
 import { asError, html, nothing, render, targetOf, within } from "./dom.js";
 import "./language_choice.js";
@@ -27,19 +26,13 @@ import { t } from "./texts.js";
  * @property {boolean} open whether the menu is, where there is no room for its links
  */
 
-/** @type {Array<[string, string]>} */
-const PAGES = [
-  ["", t("head-project")],
-  ["map/", t("head-map")],
-  ["review/", t("head-review")],
-  ["slices/", t("head-slices")],
-];
-
 /**
- * Links to pages outside of projects, as these pages say: permission, path, text.
+ * Links to pages, as these pages say: permission, path, text.
  * @type {Array<[Permission, string, string]>}
  */
 const LINKS = JSON.parse(document.getElementById("links")?.textContent ?? "[]");
+/** Begins the paths of the pages of one project. */
+const OF_PROJECT = "/projects/{project_id}/";
 /** Begins the name of a guest, as the server has it in every language. */
 const GUEST_NAME = "guest: ";
 
@@ -104,7 +97,7 @@ export class PageHead extends HTMLElement {
     const guest = me !== null && isGuest(me);
     render(
       html`<a class="brand" href=${guest ? mapUrl(id) : at("/")}>recon4</a>
-        ${id ? [way(name, guest), tabs(id, page, guest ? guestPages(id) : pagesOf(id))] : nothing}
+        ${id ? [way(name, guest), tabs(id, page, pagesOf(id, me))] : nothing}
         <span class="link-state" role="status">${problem}</span>
         <button
           type="button"
@@ -157,16 +150,26 @@ const way = (name, guest) =>
         <a href=${at("/")}>${t("head-projects")}</a><span aria-hidden="true">/</span><b>${name}</b>
       </nav>`;
 
-/** @returns {Array<[string, string]>} */
-const pagesOf = (/** @type {string} */ id) =>
-  PAGES.map(([path, text]) => [projectUrl(id) + path, text]);
+/**
+ * The pages of a project that a person may open; guests, who have no page of its files, get the
+ * report, too.
+ * @param {string} id
+ * @param {Me | null} me
+ * @returns {Array<[string, string]>}
+ */
+function pagesOf(id, me) {
+  /** @type {Array<[string, string]>} */
+  const pages = LINKS.filter(
+    ([needs, path]) => path.startsWith(OF_PROJECT) && mayOpen(needs, me),
+  ).map(([, path, text]) => [projectUrl(id) + path.slice(OF_PROJECT.length), text]);
+  return me && isGuest(me) ? [...pages, [reportUrl(id), t("head-report")]] : pages;
+}
 
-/** What a guest link shows. @returns {Array<[string, string]>} */
-const guestPages = (/** @type {string} */ id) => [
-  [mapUrl(id), t("head-map")],
-  [slicesUrl(id), t("head-slices")],
-  [reportUrl(id), t("head-report")],
-];
+/**
+ * @param {Permission} needs
+ * @param {Me | null} me null = not known yet
+ */
+const mayOpen = (needs, me) => me === null || me.may.includes(needs);
 
 /**
  * @param {string} id
@@ -189,7 +192,7 @@ function tabs(id, page, pages) {
  * @param {boolean} live
  */
 function links({ may }, live) {
-  return LINKS.filter(([needs]) => may.includes(needs))
+  return LINKS.filter(([needs, path]) => !path.startsWith(OF_PROJECT) && may.includes(needs))
     .map(([, path, text]) => ({ href: at(path), text }))
     .filter(({ href }) => live || href !== liveUrl)
     .map(({ href, text }) => html`<a href=${href}>${text}</a>`);

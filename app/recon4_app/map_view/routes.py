@@ -36,7 +36,6 @@ from recon4_app.map_view.model import (
 from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.network.behind import prefix_of
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.projects.project_pages import map_page_response
 
 SHARED = [Depends(needs(Permission.SHARED))]
 _UNQUOTED = "!~*'()"
@@ -51,18 +50,10 @@ router = APIRouter(
     dependencies=SHARED,
     responses=problems(404, 422),
 )
-page = APIRouter()
 
 
-@page.get("/projects/{project_id}/map/", include_in_schema=False, dependencies=SHARED)
-def map_page(project_id: str, request: Request, server: Server) -> Response:
-    head = _preloads(project_id, request)
-    file = "map/map.html"
-    return map_page_response(file, request, server=server, project_id=project_id, head=head)
-
-
-def _preloads(project_id: str, request: Request) -> str:
-    """Links to what the page reads first: a browser requests it beside the scripts.
+def page_preloads(project_id: str, request: Request) -> str:
+    """Links to what the page *Map* reads first: a browser requests it beside the scripts.
 
     Their addresses are those of `web/shared/api/map.js`, to the letter.
     """

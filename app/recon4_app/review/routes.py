@@ -44,7 +44,6 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict, project_page
 from recon4_app.network.request_caller import CalledBy, Caller
-from recon4_app.projects.project_pages import map_page_response
 from recon4_app.review.model import (
     AlignmentView,
     Approve,
@@ -77,13 +76,6 @@ router = APIRouter(
     tags=["review"],
     responses=problems(403, 404, 409),
 )
-page = APIRouter()
-
-
-@page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
-def review_page(project_id: str, request: Request, server: Server) -> Response:
-    file = "review/review.html"
-    return map_page_response(file, request, server=server, project_id=project_id)
 
 
 @router.get("", dependencies=LOOK, summary="State of the review")

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
@@ -26,7 +26,6 @@ from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Refused
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import Language
-from recon4_app.projects.project_pages import map_page_response
 from recon4_app.projects.routes import REPORT_POLICY
 from recon4_app.slices import control_work, readers, slice_work
 from recon4_app.slices.exports import ExportRequest
@@ -74,13 +73,6 @@ router = APIRouter(
     tags=["slices"],
     responses=problems(404, 422),
 )
-page = APIRouter()
-
-
-@page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=SHARED)
-def slices_page(project_id: str, request: Request, server: Server) -> Response:
-    file = "slices/slices.html"
-    return map_page_response(file, request, server=server, project_id=project_id)
 
 
 @router.get("", dependencies=SHARED_MAP, summary="Facts about the map")
