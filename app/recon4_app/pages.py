@@ -106,10 +106,17 @@ def page_addresses() -> tuple[PageAddress, ...]:
 
 @cache
 def page_links(language: str) -> tuple[tuple[str, str, str], ...]:
-    """The links of the bar at the top of all pages, in order: permission, path, text."""
+    """The links of the bar at the top of all pages, in order: permission, path, text.
+
+    Pages of one project have the path from the project on, without a slash at its beginning.
+    """
     linked = [one for one in (*page_addresses(), _DOCS) if one.link]
     return tuple(
-        (one.link_needs, one.path, texts(language, *text_files(_html(one.file)))(one.link))
+        (
+            one.link_needs,
+            one.path.removeprefix(OF_PROJECT),
+            texts(language, *text_files(_html(one.file)))(one.link),
+        )
         for one in sorted(linked, key=lambda one: (one.place, one.path))
     )
 

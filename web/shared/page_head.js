@@ -27,12 +27,11 @@ import { t } from "./texts.js";
  */
 
 /**
- * Links to pages, as these pages say: permission, path, text.
+ * Links to pages, as these pages say: permission, path, text. The paths of pages of one project
+ * begin at the project, without a slash.
  * @type {Array<[Permission, string, string]>}
  */
 const LINKS = JSON.parse(document.getElementById("links")?.textContent ?? "[]");
-/** Begins the paths of the pages of one project. */
-const OF_PROJECT = "/projects/{project_id}/";
 /** Begins the name of a guest, as the server has it in every language. */
 const GUEST_NAME = "guest: ";
 
@@ -159,9 +158,9 @@ const way = (name, guest) =>
  */
 function pagesOf(id, me) {
   /** @type {Array<[string, string]>} */
-  const pages = LINKS.filter(
-    ([needs, path]) => path.startsWith(OF_PROJECT) && mayOpen(needs, me),
-  ).map(([, path, text]) => [projectUrl(id) + path.slice(OF_PROJECT.length), text]);
+  const pages = LINKS.filter(([needs, path]) => !path.startsWith("/") && mayOpen(needs, me)).map(
+    ([, path, text]) => [projectUrl(id) + path, text],
+  );
   return me && isGuest(me) ? [...pages, [reportUrl(id), t("head-report")]] : pages;
 }
 
@@ -192,7 +191,7 @@ function tabs(id, page, pages) {
  * @param {boolean} live
  */
 function links({ may }, live) {
-  return LINKS.filter(([needs, path]) => !path.startsWith(OF_PROJECT) && may.includes(needs))
+  return LINKS.filter(([needs, path]) => path.startsWith("/") && may.includes(needs))
     .map(([, path, text]) => ({ href: at(path), text }))
     .filter(({ href }) => live || href !== liveUrl)
     .map(({ href, text }) => html`<a href=${href}>${text}</a>`);
