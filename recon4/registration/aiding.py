@@ -12,7 +12,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, skew, so3_log
 from recon4.model.trajectory import Times, Trajectory
-from recon4.registration.tuning_motion import AIDING
+from recon4.registration.tuning_motion import AIDING, MOVING_START
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,6 +41,33 @@ class GnssAiding:
         near = row + (s > 0.5)
         R = self.R_enu_body[near]
         return SE3(R, self._antenna(row, s) - R @ self.p_body_antenna)
+
+    def first(self, t_ns: int) -> tuple[int, SE3] | None:
+        """When the fixes place an odometry that begins at a time [ns], and ``T_enu_body`` then.
+
+        None = too late: it begins in a frame of its own, of which they say nothing.
+        """
+        at_ns = max(t_ns, int(self.t_ns[0]))
+        T_enu_body = self.pose(at_ns)
+        return (
+            None
+            if T_enu_body is None or at_ns > t_ns + AIDING.latest_start_ns
+            else (at_ns, T_enu_body)
+        )
+
+    def velocity(self, t_ns: int) -> tuple[Array, float] | None:
+        """Mean velocity right after a time [m/s], (3,), and its standard deviation.
+
+        None without fixes, or if the body stands: it is known better then.
+        """
+        span_ns = AIDING.max_gap_ns
+        ends = self.pose(t_ns), self.pose(t_ns + span_ns)
+        if ends[0] is None or ends[1] is None:
+            return None
+        velocity = (ends[1].t - ends[0].t) / (1e-9 * span_ns)
+        sd_m = float(self.sd_m[np.searchsorted(self.t_ns, t_ns)].max())
+        moves = float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s
+        return (velocity, np.sqrt(2.0) * sd_m / (1e-9 * span_ns)) if moves else None
 
     def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
         """Information (6, 6) and gradient (6,) of a left correction about the body's origin.
@@ -83,7 +110,7 @@ class GnssAiding:
         One that begins before the fixes has a frame of its own and contradicts none.
         """
         inside = (self.t_ns >= trajectory.t_ns[0]) & (self.t_ns <= trajectory.t_ns[-1])
-        if self._around(int(trajectory.t_ns[0])) is None or not inside.any():
+        if self.first(int(trajectory.t_ns[0])) is None or not inside.any():
             return 0.0
         T = trajectory.at(self.t_ns[inside])
         z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
@@ -103,9 +130,9 @@ class GnssAiding:
         return (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
 
     def _around(self, t_ns: int) -> tuple[int, float] | None:
-        right = int(np.searchsorted(self.t_ns, t_ns))
-        if right == 0 or right == len(self.t_ns):
+        if not self.t_ns[0] <= t_ns <= self.t_ns[-1]:
             return None
+        right = max(int(np.searchsorted(self.t_ns, t_ns)), 1)
         gap_ns = int(self.t_ns[right] - self.t_ns[right - 1])
         if gap_ns > AIDING.max_gap_ns:
             return None

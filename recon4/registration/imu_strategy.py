@@ -58,7 +58,6 @@ class ImuStrategy:
             coarse=0,
             rounds=tuned(OdometryTuning, settings.odometry).rounds,
             with_imu=True,
-            aiding=aiding,
         )
 
     def remember(self, known: MotionState) -> None:
@@ -72,7 +71,7 @@ class ImuStrategy:
     def moving_start(self, frame: Multiframe) -> tuple[Multiframe, MotionState] | None:
         """See `MotionStrategy.moving_start`."""
         begun, self._begun = self._begun, None
-        if begun is None or self._aiding:
+        if begun is None or self._fixes:
             return None
         first, state = begun
         velocity = starting_velocity(
@@ -100,8 +99,10 @@ class ImuStrategy:
         """See `MotionStrategy.predict`."""
         if state is None:
             state = self._imu.initial(view.start_ns)
-            if self._aiding is not None:
-                state, self._fixes = start_at_fixes(state, self._aiding, self._settings.odometry)
+            state, self._fixes = start_at_fixes(
+                state, self._aiding, self._settings.odometry, predict=self._move
+            )
+            self.fitter = replace(self.fitter, aiding=self._fixes)
             self._begun = view.frame, state
         if state.t_ns < view.start_ns:  # frames are missing in between
             state = self._move(state, view.start_ns).end
@@ -143,7 +144,7 @@ class ImuStrategy:
 
     def unknown_cov(self, frame: Multiframe, fit: FrameFit) -> Array:
         """See `MotionStrategy.unknown_cov`: fixes and accelerometer exclude the rest."""
-        if self._aiding and self._aiding.pose(frame.t_ns + frame.duration_ns):
+        if self._fixes and self._fixes.pose(frame.t_ns + frame.duration_ns):
             return np.zeros((6, 6))
         return unknown_motion_cov(fit, seconds=1e-9 * frame.duration_ns)
 
@@ -201,9 +202,6 @@ def set_moving(state: MotionState, velocity_body: Array, *, duration_ns: int) ->
         duration_ns: Of the frame.
     """
     velocity = state.R @ velocity_body
-    vector, P = state.vector.copy(), state.P.copy()
+    vector = state.vector.copy()
     vector[VECTOR.position] -= 0.5e-9 * duration_ns * velocity
-    vector[VECTOR.velocity] = velocity
-    P[STATE.velocity, :] = P[:, STATE.velocity] = 0.0
-    P[STATE.velocity, STATE.velocity] = MOVING_START.sd_m_s**2 * np.eye(3)
-    return replace(state, vector=vector, P=P)
+    return replace(state, vector=vector).moving(velocity, MOVING_START.sd_m_s)

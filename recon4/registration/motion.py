@@ -51,6 +51,14 @@ class MotionState:
         vector[VECTOR.position] = T_odom_body.t
         return replace(self, R=T_odom_body.R, vector=vector, P=P)
 
+    def moving(self, velocity: Array, sd_m_s: float) -> MotionState:
+        """The same state with another velocity (3,), known with a standard deviation [m/s]."""
+        vector, P = self.vector.copy(), self.P.copy()
+        vector[VECTOR.velocity] = velocity
+        P[STATE.velocity, :] = P[:, STATE.velocity] = 0.0
+        P[STATE.velocity, STATE.velocity] = sd_m_s**2 * np.eye(3)
+        return replace(self, vector=vector, P=P)
+
     def with_biases(self, vector: Array, cov: Array) -> MotionState:
         """The same motion with another `StateIndex.calibration` (19,) and its covariance."""
         P = self.P.copy()

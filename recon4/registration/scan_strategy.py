@@ -49,7 +49,6 @@ class ScanStrategy:
             coarse=PLANES.levels - 1,
             rounds=tuned(OdometryTuning, settings.odometry).rounds_without_imu,
             with_imu=False,
-            aiding=aiding,
         )
 
     def remember(self, known: MotionState) -> None:
@@ -87,8 +86,10 @@ class ScanStrategy:
         found = self._chain.locate(view.scan(), view.frame.t_mid_ns)
         if state is None:
             state = self._free.initial(view.start_ns)
-            if self._aiding is not None:
-                state, self._fixes = start_at_fixes(state, self._aiding, self._settings.odometry)
+            state, self._fixes = start_at_fixes(
+                state, self._aiding, self._settings.odometry, predict=self._free.predict
+            )
+            self.fitter = replace(self.fitter, aiding=self._fixes)
             return self._move(state, view)
         by_scans = self._chain.last[0] @ found if found else None
         expected = self._placed(by_scans, view.frame.t_mid_ns)
@@ -146,7 +147,7 @@ class ScanStrategy:
 
     def unknown_cov(self, frame: Multiframe, fit: FrameFit) -> Array:
         """See `MotionStrategy.unknown_cov`: fixes bound what no velocity excludes."""
-        aided = self._aiding and self._aiding.pose(frame.t_ns + frame.duration_ns)
+        aided = self._fixes and self._fixes.pose(frame.t_ns + frame.duration_ns)
         most_m = tuned(OdometryTuning, self._settings.odometry).gnss_sd_m if aided else float("inf")
         return unknown_motion_cov(fit, seconds=1e-9 * frame.duration_ns, most_m=most_m)
 

@@ -6,7 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings
-from tests.room_walks import FRAME_NS, T0_NS
+from tests.room_walks import T0_NS
 from tests.scanned_room import LOW_M, strolling, strolling_fixes, walk
 
 FRAMES, BARE, RETURNS = 28, range(4, 28), 60
@@ -45,7 +45,7 @@ def test_fixes_hold_a_body_that_its_scans_do_not(bare):
 
 @pytest.mark.study
 def test_fixes_that_begin_later_are_in_another_frame_and_place_nothing(bare):
-    lost, worst_m = followed(bare, strolling_fixes(FRAMES, first_s=3 * FRAME_NS * 1e-9 - 0.05))
+    lost, worst_m = followed(bare, strolling_fixes(FRAMES, first_s=1.15))
 
     assert lost == len(BARE)
     assert worst_m > 1.0

@@ -96,6 +96,27 @@ def test_a_time_beside_a_gap_is_covered_and_one_inside_is_not() -> None:
     assert not aiding.covers(2_950_000_000, 3_050_000_000)
 
 
+def test_an_odometry_begins_in_the_frame_of_fixes_that_begin_soon() -> None:
+    aiding = walking()
+
+    for t_ns, at_ns in ((0, 0), (150_000_000, 150_000_000), (-950_000_000, 0)):
+        first = aiding.first(t_ns)
+        assert first is not None
+        assert first[0] == at_ns
+    assert aiding.first(-1_050_000_000) is None
+    assert aiding.first(5_000_000_000) is None
+
+
+def test_the_velocity_of_a_body_that_moves_is_that_between_its_fixes() -> None:
+    found = walking().velocity(100_000_000)
+
+    assert found is not None
+    assert found[0] == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
+    assert found[1] == pytest.approx(np.sqrt(2.0) * SD_M / 0.3)
+    assert standing().velocity(100_000_000) is None
+    assert walking().velocity(2_900_000_000) is None  # no fixes are so far after it
+
+
 def test_fixes_that_a_trajectory_contradicts_are_counted() -> None:
     aiding = walking()
     right = aiding.trajectory[slice(1, None)]
@@ -105,7 +126,7 @@ def test_fixes_that_a_trajectory_contradicts_are_counted() -> None:
     # 0.05 m a fix; three standard deviations are 0.3 m.
     found = aiding.rejected_ratio(Trajectory(right.t_ns, drifting))
     assert found == pytest.approx(24 / 30, abs=1 / 30)
-    earlier = Trajectory(right.t_ns - 1_000_000_000, drifting)
+    earlier = Trajectory(right.t_ns - 1_200_000_000, drifting)
     assert aiding.rejected_ratio(earlier) == 0.0  # its frame is not that of the fixes
     short = Trajectory(right.t_ns[:2] // 1000 + 110_000_000, drifting[:2])
     assert aiding.rejected_ratio(short) == 0.0  # between two fixes

@@ -39,6 +39,23 @@ def test_a_body_that_sees_nothing_is_where_its_fixes_are_and_says_what_it_sees(o
     assert max(steps[k].degeneracy for k in EMPTY) == 0.0
 
 
+def test_fixes_that_begin_half_a_second_later_place_it_too(open_sky):
+    steps, worst_m = tracked(open_sky, strolling_fixes(FRAMES, first_s=0.55))
+
+    assert not any(step.lost for step in steps)
+    assert worst_m < 0.06
+
+
+def test_fixes_of_another_frame_pull_nothing(open_sky):
+    late, none = (
+        tracked(open_sky, aiding)[0] for aiding in (strolling_fixes(FRAMES, first_s=1.15), None)
+    )
+
+    for a, b in zip(late, none, strict=True):
+        np.testing.assert_array_equal(a.T_odom_body.t, b.T_odom_body.t)
+        np.testing.assert_array_equal(a.T_odom_body.R, b.T_odom_body.R)
+
+
 def test_without_fixes_it_is_lost(open_sky):
     steps, worst_m = tracked(open_sky, None)
 
@@ -51,7 +68,7 @@ def test_fixes_of_another_frame_or_far_from_the_prediction_place_nothing(open_sk
     aside = strolling_fixes(FRAMES)
     moved = np.where(aside.t_ns[:, None] > T0_NS + 300_000_000, 30.0, 0.0)
     for useless in (
-        strolling_fixes(FRAMES, first_s=0.25),
+        strolling_fixes(FRAMES, first_s=1.15),
         replace(aside, p_enu=aside.p_enu + moved),
     ):
         steps, _ = tracked(begun, useless)
