@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from recon4.findings.audit import check_walk
 from recon4.findings.verdict import verdict_of
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.lines import line_findings
 from recon4.findings.witnesses.rig import agreement, rig_findings
 from recon4.findings.wording import whole_text

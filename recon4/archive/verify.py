@@ -9,10 +9,9 @@ from pathlib import Path
 
 from recon4.errors import Recon4Error, StoreError
 from recon4.progress import Progress
-from recon4.review.audit import audit_review
 from recon4.review.newest_approval import APPROVALS, accept_as_it_is
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
-from recon4.store.audit import LATER_FOLDERS, audit, audit_seals
+from recon4.review.verify import verify_review
 from recon4.store.hashing import files_below
 from recon4.store.project import is_project, loose_files
 from recon4.store.seal import (
@@ -26,6 +25,7 @@ from recon4.store.seal import (
     end_change,
     read_seals,
 )
+from recon4.store.verify import LATER_FOLDERS, verify_files, verify_seals
 from recon4.untrusted.limits import LIMITS
 
 STATE_FILES = (
@@ -95,13 +95,13 @@ def verify_project(root: Path, progress: Progress) -> Verified:
     Raises:
         StoreError: If the folder is not a project.
     """
-    found = audit(root, progress)
+    found = verify_files(root, progress)
     damaged = list(found.damaged)
     rows = 0
     approvals: tuple[str, ...] = ()
     untrusted: tuple[str, ...] = ()
     try:
-        review = audit_review(root, progress)
+        review = verify_review(root, progress)
         rows, approvals, untrusted = review.rows, review.approvals, review.untrusted
         damaged += review.damaged
     except _UNREADABLE as error:
@@ -120,7 +120,7 @@ def verify_project(root: Path, progress: Progress) -> Verified:
 
 def verify_state(state: Path) -> Verified:
     """Compare the server's own files: queue, people, keys, uploads."""
-    checked, damaged, notes = audit_seals(state, state_files(state))
+    checked, damaged, notes = verify_seals(state, state_files(state))
     return Verified(checked, tuple(damaged), (), tuple(notes), 0, ())
 
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import msgspec
 
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.rig_file_note import with_antenna_note
 from recon4.calibration.tuning_joint import ANTENNA_STAGE
-from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.antenna_calibration import (
     AntennaCalibration,
     GnssRefusal,

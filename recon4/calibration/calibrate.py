@@ -29,9 +29,9 @@ from recon4.calibration.joint import (
 from recon4.calibration.judgment import judge
 from recon4.calibration.mount_search import search_mounts, without_others
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.tuning import CalibrationTuning
 from recon4.calibration.tuning_joint import AUDIT, JOINT
-from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon4.calibration.mount_search import without_others
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.tuning_methods import MAP_ALIGNMENT
-from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import SE3, Array, mean_rotation
 from recon4.model.rig import Rig

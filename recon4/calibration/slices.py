@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.tuning_methods import SLICES
-from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import Array
 from recon4.mapping.undistort import place
 from recon4.model.rig import Rig

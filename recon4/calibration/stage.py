@@ -22,13 +22,13 @@ from recon4.calibration.joint import JointEstimate
 from recon4.calibration.judgment import judge, scatter_of, split_beams
 from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.rig_file_note import calibration_note
 from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.tuning_joint import BEAMS
 from recon4.calibration.tuning_methods import CALIBRATION_STAGE
-from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.distinct import distinct
 from recon4.model.beams import BEAMS_OF_MODEL
 from recon4.model.calibration_figures import (

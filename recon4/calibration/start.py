@@ -8,8 +8,8 @@ import numpy as np
 
 from recon4.calibration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.calibration.mount_search import without_others
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.tuning_methods import START
-from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig

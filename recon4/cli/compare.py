@@ -12,7 +12,7 @@ from recon4.cli.terminal import write
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
-    from recon4.comparison.frames import MapSide
+    from recon4.comparison.common_frame import MapSide
 
 comparison = typer.Typer()
 
@@ -44,7 +44,7 @@ def compare(
     """
     confine_command(write=[out.parent] if out else [])
     from recon4.cli.terminal import watcher
-    from recon4.comparison.frames import open_side
+    from recon4.comparison.common_frame import open_side
     from recon4.comparison.run import MapPair, compare_maps
     from recon4.comparison.text import differences_text
     from recon4.comparison.write import exhaust, sink_of, write_summary
@@ -61,7 +61,7 @@ def compare(
 
 
 def _before(project: Path) -> MapSide:
-    from recon4.comparison.frames import earlier_maps, open_side
+    from recon4.comparison.common_frame import earlier_maps, open_side
 
     earlier = earlier_maps(project)
     if not earlier:

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from recon4.comparison.frames import MapSide, Relation, relate
+from recon4.comparison.common_frame import MapSide, Relation, relate
 from recon4.comparison.m3c2 import differences
 from recon4.comparison.records import (
     ComparedMap,

@@ -14,7 +14,7 @@ import msgspec
 from recon4.errors import StoreError
 from recon4.findings import witnesses as folder
 from recon4.findings.tuning import AUDIT_LIST
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
 from recon4.model.figures import AuditFigures
 from recon4.model.finding import Finding, Level, worst_first

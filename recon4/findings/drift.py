@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.findings.walk import path_length_m
+from recon4.findings.walk_record import path_length_m
 from recon4.findings.witnesses.planar import PlanarRecord
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import import_notes

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 
 class ErrorRows(NamedTuple):
-    """First row of each quantity in the error state; `recon4.registration.state` has slices."""
+    """First row of each quantity in the error state; slices: `recon4.registration.state_vector`."""
 
     rotation: int = 0
     position: int = 3

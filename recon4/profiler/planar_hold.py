@@ -17,7 +17,7 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.model.tuning import OBSERVATION
 from recon4.profiler.imu_chain import ImuChain, Information
 from recon4.profiler.tuning_solve import PLANAR_HOLD
-from recon4.registration.state import END_POSE, START, VECTOR
+from recon4.registration.state_vector import END_POSE, START, VECTOR
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -7,7 +7,7 @@ import numpy as np
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.kernels.frame_fit import observable, reductions
 from recon4.registration.plane_map import Match
-from recon4.registration.state import END_POSE, START
+from recon4.registration.state_vector import END_POSE, START
 from recon4.registration.tuning_matching import DEGENERACY
 
 

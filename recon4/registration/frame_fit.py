@@ -16,7 +16,15 @@ from recon4.registration.motion import Prediction, Rest, middle_of
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import NO_SEGMENTS, Segments
-from recon4.registration.state import END, END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
+from recon4.registration.state_vector import (
+    END,
+    END_POSE,
+    END_VELOCITY,
+    POSES,
+    START,
+    STATE,
+    VECTOR,
+)
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.tuning_matching import FRAME_FIT
 from recon4.settings import OdometrySettings

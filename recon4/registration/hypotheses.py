@@ -25,8 +25,8 @@ from recon4.registration.hypothesis_table import row_of
 from recon4.registration.imu_choice import choose_imu, start_and_fastest_turn
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.moving import find_moving, hide_moving
+from recon4.registration.tracked_walk import TrackedWalk, WalkInputs, track_walk
 from recon4.registration.tuning_motion import HYPOTHESES
-from recon4.registration.walk import TrackedWalk, WalkInputs, track_walk
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,7 +14,7 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.model.odometry_figures import ImuFault
 from recon4.registration.motion import MotionState
-from recon4.registration.state import STATE, VECTOR
+from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.tuning_imu import IMU_ERRORS
 
 _TURN = 0.5 * np.array(

@@ -23,7 +23,7 @@ from recon4.registration.lost import LostLimits
 from recon4.registration.motion import FreeMotion, ImuMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
 from recon4.registration.scan_chain import ScanChain, body_points
-from recon4.registration.state import STATE, VECTOR
+from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import SCANS, OdometryTuning, ScanTuning, registration_tuning

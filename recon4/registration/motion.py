@@ -14,7 +14,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.imu_saturation import saturated_samples
-from recon4.registration.state import STATE, VECTOR
+from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.tuning_imu import PREDICTION
 from recon4.settings import OdometrySettings

@@ -17,7 +17,7 @@ from recon4.registration.motion import MotionState, Prediction
 from recon4.registration.motion_strategy import MotionStrategy
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.scan_strategy import ScanStrategy
-from recon4.registration.state import END
+from recon4.registration.state_vector import END
 from recon4.registration.step import OdometryStep, make_step
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import OdometryTuning

@@ -8,7 +8,7 @@ from recon4.geometry.se3 import SE3, Array, so3_log, tangent_size_m
 from recon4.registration.degeneracy import observable_pose
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
-from recon4.registration.state import START
+from recon4.registration.state_vector import START
 from recon4.registration.tuning import registration_tuning
 from recon4.registration.tuning_matching import PLANE_MATCHES
 from recon4.settings import RegistrationSettings

@@ -28,7 +28,7 @@ from recon4.model.rig import Rig
 from recon4.registration.in_body import in_body
 from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
-from recon4.registration.state import END_POSE, START
+from recon4.registration.state_vector import END_POSE, START
 from recon4.registration.tuning import PLANES, PlaneTuning
 from recon4.registration.tuning_matching import FRAME_FIT, POINT_MAP, WEAK_PLACES
 

@@ -17,7 +17,7 @@ from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import FreeMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
 from recon4.registration.scan_chain import ScanChain
-from recon4.registration.state import END_MOTION, END_POSE, POSES, START, VECTOR
+from recon4.registration.state_vector import END_MOTION, END_POSE, POSES, START, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import PLANES, OdometryTuning, registration_tuning

@@ -16,9 +16,9 @@ from recon4.registration.felt_motion import are_carried, carried, felt_motion, m
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.pulled_motion import less_sure
 from recon4.registration.reversed_forces import reversed_forces, with_opposite_forces
+from recon4.registration.tracked_walk import EarlierWalks, WalkInputs
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
-from recon4.registration.walk import EarlierWalks, WalkInputs
 from recon4.registration.walk_steps import WalkSteps
 from recon4.registration.weak_turns import weak_turns
 from recon4.settings.tuning import tuned

@@ -9,7 +9,7 @@ from recon4.findings.accuracy import accuracy_findings
 from recon4.findings.audit import FINDINGS, check_walk, load_findings
 from recon4.findings.drift import DriftClosed, closed_drift
 from recon4.findings.verdict import verdict_of
-from recon4.findings.walk import WalkRecord, read_walk
+from recon4.findings.walk_record import WalkRecord, read_walk
 from recon4.model.finding import Finding, worst_first
 from recon4.model.usability import MapVerdict
 from recon4.report.facts import ReportFacts

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from markupsafe import Markup
 
 from recon4.findings.drift import DriftClosed
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.model.finding import Finding
 from recon4.report import charts
 from recon4.report.beams import beam_charts

@@ -5,7 +5,7 @@ from __future__ import annotations
 from datetime import UTC, datetime
 
 from recon4.evaluation.site_control import accuracy_of, control_in
-from recon4.findings.walk import path_length_m
+from recon4.findings.walk_record import path_length_m
 from recon4.findings.wording import headline, title_of
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaneThickness

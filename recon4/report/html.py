@@ -14,7 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from recon4.evaluation.table import number, percentage
 from recon4.findings.derived import derived_text
 from recon4.findings.drift import DriftClosed
-from recon4.findings.walk import WalkRecord, path_length_m
+from recon4.findings.walk_record import WalkRecord, path_length_m
 from recon4.findings.wording import headline
 from recon4.mapping.tiles import Surface, TileSet, surface_text
 from recon4.model.figures import MapFigures

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from recon4.evaluation.table import number
 from recon4.findings.verdict import verdict_of
-from recon4.findings.walk import path_length_m
+from recon4.findings.walk_record import path_length_m
 from recon4.findings.wording import headline
 from recon4.geometry.se3 import Array
 from recon4.model.finding import Finding

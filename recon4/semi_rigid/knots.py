@@ -9,7 +9,7 @@ from scipy.linalg import solveh_banded
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_exp
 from recon4.model.trajectory import Times, Trajectory
-from recon4.registration.state import END_POSE, START
+from recon4.registration.state_vector import END_POSE, START
 
 
 @dataclass(frozen=True, slots=True, eq=False)

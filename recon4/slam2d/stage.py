@@ -25,9 +25,9 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.settings.reads import Graph2dReads, Map2dReads, Odometry2dReads
 from recon4.settings.tuning import tuned
+from recon4.slam2d.grid_files import read_overview, write_map
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
 from recon4.slam2d.loops import close_loops
-from recon4.slam2d.map_files import read_overview, write_map
 from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
 from recon4.slam2d.odometry import Odometry2d
 from recon4.slam2d.scan_points import scan_points

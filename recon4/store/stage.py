@@ -25,9 +25,9 @@ from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage
 from recon4.store.package_versions import versions
 from recon4.store.project import Project
+from recon4.store.resource_usage import Meter
 from recon4.store.seal import changing, check_sealed
 from recon4.store.unfinished import keeping
-from recon4.store.usage import Meter
 
 SAVING = "save"
 """Name of the task in which an artifact is hashed and written to disk."""

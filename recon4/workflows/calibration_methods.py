@@ -25,10 +25,10 @@ from recon4.calibration.pose_pairs import (
     hand_eye,
     read_pose_pairs,
 )
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.slices import slice_points
 from recon4.calibration.trajectory_pair import align_trajectories
 from recon4.calibration.tuning import CalibrationTuning, EntropyTuning
-from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
 from recon4.findings.witnesses.rig import agreement, rig_findings
 from recon4.findings.wording import text_of, whole_text

@@ -53,7 +53,7 @@ def _odometry(
 ) -> OdometryFigures:
     from recon4.georeference.gnss_aiding import make_gnss_aiding
     from recon4.registration.stage import earlier_walks, run_odometry
-    from recon4.registration.walk import WalkInputs
+    from recon4.registration.tracked_walk import WalkInputs
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4.findings.walk import path_length_m
+from recon4.findings.walk_record import path_length_m
 from recon4.model.figures import CorrectedClass, UncertaintyFigures
 from recon4.model.finding import Finding, Level, Value, worst_first
 from recon4.model.finding_kinds import FindingKind

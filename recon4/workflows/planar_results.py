@@ -17,7 +17,7 @@ from recon4.model.finding import Finding
 from recon4.model.pose_graph import EdgeKind
 from recon4.report.page_2d import GridImage, Page2d, write_page_2d
 from recon4.report.rows import imported_rows
-from recon4.slam2d.map_files import overview_name, read_overview
+from recon4.slam2d.grid_files import overview_name, read_overview
 from recon4.slam2d.stage import read_covariance
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import copy_file

@@ -169,7 +169,7 @@ def _level(
 
 def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures:
     from recon4.findings.audit import check_walk, save_findings
-    from recon4.findings.walk import read_walk
+    from recon4.findings.walk_record import read_walk
 
     return save_findings(context.out, check_walk(read_walk(artifacts, context.settings)))
 

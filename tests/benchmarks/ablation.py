@@ -30,7 +30,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.semi_rigid.refine import refine
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory

@@ -22,7 +22,7 @@ from recon4.progress import Silent
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.settings import CalibrationSettings, preset
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate

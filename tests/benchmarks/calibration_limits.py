@@ -27,7 +27,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.rig import Rig
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.store.arrays import load_arrays
 from recon4.store.frames import FrameStore
 from tests import scanned_room

@@ -22,9 +22,9 @@ from recon4.calibration.gravity_alignment import align_gravity
 from recon4.calibration.map_alignment import align_maps
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.pose_pairs import MarkerPosePairs, average_pairs
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.stage import run_calibration
 from recon4.calibration.tuning import EntropyTuning
-from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import load_rig
 from recon4.progress import Silent

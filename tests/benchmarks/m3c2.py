@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.comparison.frames import open_side
+from recon4.comparison.common_frame import open_side
 from recon4.comparison.m3c2 import differences
 from recon4.comparison.records import CoreState, M3C2Scales
 from recon4.geometry.se3 import SE3

@@ -30,9 +30,9 @@ import numpy as np
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
 from recon4.review.approval import approve
-from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
+from recon4.review.verify import verify_review
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.atomic import make_folders
@@ -198,7 +198,7 @@ def check_project(project: Path, marks: list[str]) -> list[str]:
     decided = [int(text.split()[1]) for text in marks if text.startswith("decided")]
     if decided and len(read_rows(project)) < max(decided):
         problems.append("an acknowledged decision is lost")
-    reviewed = audit_review(project, Silent())
+    reviewed = verify_review(project, Silent())
     unfinished = "in no row of the journal"  # an approval without response; the next moves it
     problems += [f"review: {what}" for what in reviewed.damaged if unfinished not in what]
     if "approved" in marks and not reviewed.approvals:

@@ -188,11 +188,11 @@ def test_the_doctor_reports_how_to_install_missing_parts(tmp_path, monkeypatch):
 
 
 STUCK = """
-import sys, recon4.cli.main, recon4.store.audit
+import sys, recon4.cli.main, recon4.store.verify
 def wait(*a, **k):
     print("running", flush=True)
     sys.stdin.readline()
-recon4.store.audit.audit = wait
+recon4.store.verify.verify_files = wait
 sys.exit(recon4.cli.main.main(["verify", "."]))
 """
 

@@ -132,7 +132,7 @@ MAY_IMPORT = {
     | {"recon4.findings", "recon4.pose_graph", "recon4.registration", "recon4.slam2d"}
     | {"recon4.georeference.antenna_audit"},
     "recon4/findings/audit.py": STAGE | {"recon4.findings"},
-    "recon4/findings/walk.py": STAGE | {"recon4.findings", "recon4.pose_graph"},
+    "recon4/findings/walk_record.py": STAGE | {"recon4.findings", "recon4.pose_graph"},
     "recon4/findings/planar_walk.py": STAGE
     | {"recon4.findings", "recon4.pose_graph", "recon4.slam2d"},
     "recon4/findings/accuracy.py": MODEL | {"recon4.findings", "recon4.evaluation"},

@@ -23,7 +23,7 @@ import { likingOf } from "./liking.js";
 import { followJobs } from "./made_again.js";
 import { nextColor, nextSurface } from "./next_choice.js";
 import { pageMarks } from "./page_marks.js";
-import { isPlan, showPlan } from "./plan.js";
+import { isPlan, showPlan } from "./planar_map.js";
 import { endsOf, timesOf } from "./stretch_mark.js";
 import { COLORS, SURFACES, format, moved, planeOf, startOf, parse, unframed } from "./state.js";
 import { t } from "../shared/texts.js";

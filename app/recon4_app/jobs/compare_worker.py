@@ -31,7 +31,7 @@ def compare(folder: JobFolder, progress: Progress) -> ExportedFile:
         ConfigError: If they have no common frame, or there is nothing to compare.
         NoSpace: If the disk is full.
     """
-    from recon4.comparison.frames import open_side
+    from recon4.comparison.common_frame import open_side
     from recon4.comparison.run import MapPair
     from recon4.comparison.write import write_comparison
 

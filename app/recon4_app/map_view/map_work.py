@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.findings.walk import final_trajectory
+from recon4.findings.walk_record import final_trajectory
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION

@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
-from recon4.comparison.frames import earlier_map_rows
+from recon4.comparison.common_frame import earlier_map_rows
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.model.finding import Finding, Level, Point, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import CLASS_CORRECTIONS
 from recon4.model.figures import CorrectedClass

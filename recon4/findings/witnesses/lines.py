@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import LASER_MISSING
 from recon4.model.finding import Finding, Level, Value

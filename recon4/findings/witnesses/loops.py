@@ -8,7 +8,7 @@ import numpy as np
 
 from recon4.findings.drift import closed_drift
 from recon4.findings.review_problems import problem_findings
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import LOOP_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known, known_to

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from msgspec.structs import replace
 
 from recon4.findings.placement import GnssFacts
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import PLACING_WITNESS
 from recon4.georeference.antenna_audit import antenna_doubts

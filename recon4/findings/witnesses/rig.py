@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from msgspec.structs import replace
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.imu import fault_finding, has_untimed_clouds
 from recon4.findings.witnesses.tuning import RIG_WITNESS

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import TRACKING_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known

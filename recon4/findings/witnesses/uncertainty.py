@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from recon4.findings.walk import WalkRecord, path_length_m
+from recon4.findings.walk_record import WalkRecord, path_length_m
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind

@@ -14,7 +14,7 @@ from recon4.pose_graph.search import SearchMeans, build_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.settings import Settings, VerificationSettings, override
 from recon4_app.jobs.events import EventWriter, event_of
 from recon4_app.viewer.scene.live import JobWatch, LiveGraph

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from recon4.slam2d.map_files import TrinaryMap
+from recon4.slam2d.grid_files import TrinaryMap
 from recon4_app.viewer.client.pointer_tools import PointerTools
 from recon4_app.viewer.client.view import ViewState
 from recon4_app.viewer.cloud.parts import Cloud

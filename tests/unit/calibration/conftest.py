@@ -12,7 +12,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.frames import FrameStore, FrameWriter
 from tests import scanned_room

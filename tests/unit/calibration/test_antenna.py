@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from recon4.calibration.antenna import with_antenna
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.stage import run_calibration
-from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
 from recon4.georeference.stage import RefinedWalk, level_and_georeference
 from recon4.georeference.tuning import GnssTuning

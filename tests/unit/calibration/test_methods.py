@@ -17,8 +17,8 @@ from recon4.calibration.pose_pairs import (
     hand_eye,
     read_pose_pairs,
 )
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.tuning import EntropyTuning
-from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import cut_window
 from recon4.cli.main import main
 from recon4.errors import CalibrationError, CorruptFile

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.slices import slice_points
-from recon4.calibration.walk import RecordedWalk
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.report.calibration_page import CalibrationPage, CloudSlice, write_calibration_page
 from recon4.store.frames import FrameStore, FrameWriter

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from recon4.calibration.gyro_alignment import align_gyro
+from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.start import find_start
-from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import cut_window
 from recon4.findings.witnesses.imu import fault_finding
 from recon4.geometry.se3 import so3_log

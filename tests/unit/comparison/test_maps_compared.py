@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from recon4.cli.main import main
-from recon4.comparison.frames import MapSide, earlier_maps, open_side, relate
+from recon4.comparison.common_frame import MapSide, earlier_maps, open_side, relate
 from recon4.comparison.run import common_frame
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.geometry.se3 import SE3

@@ -2,7 +2,7 @@
 
 from msgspec.structs import replace
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.class_corrections import ClassCorrections
 from recon4.findings.wording import text_of
 from recon4.model.figures import CorrectedClass, MapFigures

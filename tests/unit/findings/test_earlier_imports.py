@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from recon4.errors import StoreError
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.imports import Import
 from recon4.findings.wording import text_of
 from recon4.model.finding import Finding, Level

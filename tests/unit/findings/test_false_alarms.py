@@ -8,7 +8,7 @@ import pytest
 from msgspec import structs
 
 from recon4.findings.audit import check_walk
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.wording import text_of
 from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind

@@ -1,6 +1,6 @@
 """A map that decisions would hardly move says so."""
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.loops import Decisions
 from recon4.findings.wording import text_of
 from recon4.model.figures import LevelFigures, MovedFigures

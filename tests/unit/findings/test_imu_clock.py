@@ -6,7 +6,7 @@ import pytest
 
 from recon4.findings.audit import check_walk
 from recon4.findings.verdict import verdict_of
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.findings.audit import check_walk
 from recon4.findings.verdict import verdict_of
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.geometry.se3 import SE3
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Trajectory

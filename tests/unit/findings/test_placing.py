@@ -2,7 +2,7 @@
 
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.placing import Gnss
 from recon4.findings.wording import text_of
 from recon4.model.figures import FrameFigures, LevelFigures

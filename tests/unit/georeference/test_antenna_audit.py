@@ -6,7 +6,7 @@ import msgspec
 import numpy as np
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.placing import Antenna
 from recon4.geometry.se3 import SE3
 from recon4.georeference.antenna_audit import (

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.placing import Mirrors
 from recon4.geometry.tuning import SURFACES
 from recon4.mapping.mirrors import Sight, find_mirrors, load_mirrors, save_mirrors

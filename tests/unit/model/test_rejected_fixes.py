@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.findings.placement import placement_in
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.wording import text_of
 from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind

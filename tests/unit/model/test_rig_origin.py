@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.rig import RigAge
 from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin

@@ -17,7 +17,7 @@ from recon4.pose_graph.pair_files import VIEWS, SearchInputs, save_tried, take_t
 from recon4.pose_graph.search import SearchMeans, build_graph
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.settings import Settings
 from recon4.settings.reads import GraphReads, part_of
 from recon4.store.frame_folders import FrameFolders

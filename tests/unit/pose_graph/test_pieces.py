@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.places import ambiguous_places, separate_pieces
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict, known_history

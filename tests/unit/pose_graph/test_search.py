@@ -24,8 +24,8 @@ from recon4.pose_graph.tuning import GraphTuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.registration.tuning import OverlapTuning
-from recon4.registration.walk import WalkInputs
 from recon4.semi_rigid.refine import refine
 from recon4.settings import (
     RegistrationSettings,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.motion import Bridges
 from recon4.geometry.se3 import SE3
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose

@@ -21,8 +21,8 @@ from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
 from recon4.registration.stage import earlier_walks, run_odometry
+from recon4.registration.tracked_walk import EarlierWalks, TrackedWalk, WalkInputs, track_walk
 from recon4.registration.tuning_motion import HYPOTHESES
-from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs, track_walk
 from recon4.settings import preset
 
 SETTINGS = preset("indoor")
@@ -201,8 +201,8 @@ def test_however_much_is_wrong_a_recording_is_tracked_six_times_at_most(
     """A crowd that never settles, and an IMU that is doubted each time."""
     walk = Read(with_scale(frames, SCALE), most=25)
     crowded = MovingFigures(t_s=(0.0,), ratio=(0.5,))
-    monkeypatch.setattr("recon4.registration.walk.find_moving", lambda *_: crowded)
-    monkeypatch.setattr("recon4.registration.walk._moved_m", lambda *_: 1.0)
+    monkeypatch.setattr("recon4.registration.tracked_walk.find_moving", lambda *_: crowded)
+    monkeypatch.setattr("recon4.registration.tracked_walk._moved_m", lambda *_: 1.0)
     monkeypatch.setattr(module, "hide_moving", lambda *_, **__: HiddenPoints.of([None] * len(walk)))
     recording = WalkInputs(walk, SETTINGS, Silent(), earlier=earlier)
 

@@ -23,7 +23,7 @@ from recon4.registration.imu_choice import AS_RECORDED
 from recon4.registration.score import Score
 from recon4.registration.stage import carried_by_accelerometer
 from recon4.registration.step import OdometryStep
-from recon4.registration.walk import TrackedWalk, WalkInputs
+from recon4.registration.tracked_walk import TrackedWalk, WalkInputs
 from recon4.registration.walk_steps import WalkSteps
 from recon4.settings import Settings
 from tests.unit.registration.test_unseen_rides import RIG, walked

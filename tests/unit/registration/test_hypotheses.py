@@ -14,7 +14,7 @@ from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption
 from recon4.registration.imu_choice import AS_RECORDED
 from recon4.registration.pulled_motion import less_sure
-from recon4.registration.walk import TrackedWalk, WalkInputs, track_walk
+from recon4.registration.tracked_walk import TrackedWalk, WalkInputs, track_walk
 from recon4.registration.walk_steps import WalkSteps
 from recon4.settings import Settings
 from tests.unit.registration.test_moving import GROUP, ROWS, Walk

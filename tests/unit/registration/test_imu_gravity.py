@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.imu import Gravity, UpsideDown
 from recon4.model.finding import Level
 from recon4.model.odometry_figures import OdometryFigures

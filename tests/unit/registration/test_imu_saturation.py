@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
 from tests.said import found_in, texts

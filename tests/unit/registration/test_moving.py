@@ -26,7 +26,7 @@ from recon4.registration.moving import (
     with_points_around,
 )
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.arrays import load_record
 from recon4.units import STANDARD_GRAVITY_M_S2

@@ -12,7 +12,7 @@ from recon4.registration.line_odometry import LineOdometry, averaged
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.stage import run_odometry
-from recon4.registration.walk import WalkInputs, make_odometry
+from recon4.registration.tracked_walk import WalkInputs, make_odometry
 from recon4.registration.walk_steps import dense_trajectory
 from recon4.settings import Settings, preset
 from recon4.store.arrays import load_arrays, load_trajectory

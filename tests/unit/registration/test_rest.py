@@ -8,7 +8,7 @@ from recon4.registration.odometry import Odometry
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.scan_strategy import is_stationary, zero_velocity_update
 from recon4.registration.segments import sample_segments
-from recon4.registration.state import END, STATE, VECTOR
+from recon4.registration.state_vector import END, STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning, ScanTuning
 from recon4.settings import Settings
 from tests.room_walks import FRAME_NS

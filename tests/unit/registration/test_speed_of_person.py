@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.registration.frame_fit import _add_speed_of_person
-from recon4.registration.state import END, END_VELOCITY, VECTOR
+from recon4.registration.state_vector import END, END_VELOCITY, VECTOR
 
 SIZE = max(part.stop for part in (VECTOR.velocity, VECTOR.position))
 

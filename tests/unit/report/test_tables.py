@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.report.assessment import assess

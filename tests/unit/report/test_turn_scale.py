@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.turn_scale import turn_scale
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import EdgeKind, PoseGraph

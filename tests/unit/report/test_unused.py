@@ -2,7 +2,7 @@
 
 import pytest
 
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.wording import text_of
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind

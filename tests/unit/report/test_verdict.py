@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.findings.verdict import verdict_of
-from recon4.findings.walk import WalkRecord
+from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.rig import rig_findings
 from recon4.findings.witnesses.speed import too_fast
 from recon4.findings.witnesses.weak_directions import weak_stretches

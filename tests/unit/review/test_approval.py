@@ -15,10 +15,10 @@ from recon4.review import approval
 from recon4.review.approval import NotApprovable, approve, make_read_only
 from recon4.review.approval_state import approval_state
 from recon4.review.approved import approval_of_map
-from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import NAME, JournalChanged, append, read_rows
 from recon4.review.signature import has_valid_signature, sign
+from recon4.review.verify import verify_review
 from recon4.store.atomic import write_json
 from recon4.store.hashing import FileDigest, hash_file
 from recon4.store.project import Project
@@ -99,7 +99,7 @@ def undo():
 
 
 def damage(root):
-    return audit_review(root, Silent()).damaged
+    return verify_review(root, Silent()).damaged
 
 
 def test_what_was_approved_is_whole_read_only_and_says_so(root, key):
@@ -188,7 +188,7 @@ def test_the_reason_stands_wherever_the_signer_stands(unusable, key, capsys):
     for name in ("trajectory.tum", "graph.g2o", "edges.json", "summary.json"):
         text = (unusable / name).read_text()
         assert '"verdict": "do not use"' in text and f'"why": "{why}"' in text
-    (line,) = audit_review(unusable, Silent()).approvals
+    (line,) = verify_review(unusable, Silent()).approvals
     assert line.endswith(f', verdict "do not use", reason "{why}"')
     state = approval_state(unusable, {"map": "ab"})
     assert (state.verdict, state.why) == ("do not use", why)

@@ -12,7 +12,7 @@ from recon4.errors import MapTooLarge, StoreError
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slam2d import occupancy
-from recon4.slam2d.map_files import read_overview, trinary_image, write_map
+from recon4.slam2d.grid_files import read_overview, trinary_image, write_map
 from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio, fitting_cell_m
 from recon4.slam2d.slam import make_grid
 from recon4.slam2d.tuning import Grid2dTuning

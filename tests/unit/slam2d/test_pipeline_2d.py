@@ -20,7 +20,7 @@ from recon4.recording.sources import Sources
 from recon4.settings import Settings, override
 from recon4.simulation.line_bag import open_line_bag
 from recon4.slam2d import occupancy
-from recon4.slam2d.map_files import read_overview
+from recon4.slam2d.grid_files import read_overview
 from recon4.store.hashing import hash_file
 from recon4.workflows.planar_results import RESULTS_2D
 from recon4_app.projects.import_folders import ImportFolders

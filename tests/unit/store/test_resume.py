@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from recon4.progress import Silent
-from recon4.store.audit import audit
+from recon4.store.verify import verify_files
 from tests.unit.store.small_pipeline import results, run_all
 
 PROGRAM = [sys.executable, "-m", "tests.unit.store.small_pipeline"]
@@ -53,7 +53,7 @@ def test_a_kill_before_any_file_operation_leaves_a_project_that_resumes(
         run_all(root)
 
         assert results(root) == expected
-        assert audit(root, Silent()).damaged == ()
+        assert verify_files(root, Silent()).damaged == ()
         assert [p for p in root.rglob(".tmp-*")] == []
         operation, kills = operation + 4, kills + 1
     assert kills >= 10
@@ -82,7 +82,7 @@ def test_kills_at_random_times_lose_nothing(tmp_path, expected):
         run_all(root)
 
         assert results(root) == expected
-        assert audit(root, Silent()).damaged == ()
+        assert verify_files(root, Silent()).damaged == ()
 
 
 def test_a_renamed_artifact_without_a_record_is_adopted(tmp_path):

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.slam2d.map_files import TrinaryMap
+from recon4.slam2d.grid_files import TrinaryMap
 from recon4_app.viewer.client.captions import (
     Facts,
     cell_facts,

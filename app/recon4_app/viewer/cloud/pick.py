@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import Tile
-from recon4.slam2d.map_files import TrinaryMap
+from recon4.slam2d.grid_files import TrinaryMap
 from recon4_app.viewer.client.view import Position, ViewState
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.build import GnssMarks, as_position

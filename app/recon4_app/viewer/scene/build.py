@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array
 from recon4.locales.texts import Texts
 from recon4.model.trajectory import Times, Trajectory
-from recon4.slam2d.map_files import TrinaryMap
+from recon4.slam2d.grid_files import TrinaryMap
 from recon4_app.viewer.client.view import ColorBy, Position, ViewState
 from recon4_app.viewer.cloud.multiframes import Multiframes
 from recon4_app.viewer.cloud.palette import Range, Rgb, paint

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from recon4.findings.walk import positions_along
+from recon4.findings.walk_record import positions_along
 from recon4.geometry.se3 import Array
 from recon4_app.viewer.client.view import Stretch, ViewState
 from recon4_app.viewer.scene.build import Bounds, Content, crosses

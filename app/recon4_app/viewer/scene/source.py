@@ -16,7 +16,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
-from recon4.slam2d.map_files import read_overview
+from recon4.slam2d.grid_files import read_overview
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import open_frames
 from recon4.store.project import read_artifacts

@@ -5,7 +5,7 @@ from threading import Event
 import numpy as np
 
 from recon4.registration.segments import sample_segments
-from recon4.registration.walk import _views
+from recon4.registration.tracked_walk import _views
 
 
 def test_one_multiframe_is_read_and_sampled_while_the_one_before_is_fitted(frames):

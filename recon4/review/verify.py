@@ -1,4 +1,4 @@
-"""Audit of a project: hash chain of the journal, signatures and files of its approvals."""
+"""Verification of a project: hash chain of the journal, signatures and files of its approvals."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ from recon4.untrusted.names import visible
 
 
 @dataclass(frozen=True, slots=True)
-class ReviewAudit:
-    """Result of an audit."""
+class VerifiedReview:
+    """Result of a verification."""
 
     rows: int
     """Rows of the journal."""
@@ -34,7 +34,7 @@ class ReviewAudit:
     """Approvals whose signature is intact and whose signer is not trusted here, one line each."""
 
 
-def audit_review(root: Path, progress: Progress) -> ReviewAudit:
+def verify_review(root: Path, progress: Progress) -> VerifiedReview:
     """Check the hash chain of the journal, and signature and files of every approval.
 
     Raises:
@@ -72,7 +72,7 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
         refuse_older(root, rows)
     except StoreError as error:
         damaged.append(str(error))
-    return ReviewAudit(len(rows), tuple(approvals), tuple(damaged), tuple(untrusted))
+    return VerifiedReview(len(rows), tuple(approvals), tuple(damaged), tuple(untrusted))
 
 
 def _approved(approval: Approval, key: TrustedKey) -> str:

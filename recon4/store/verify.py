@@ -1,4 +1,4 @@
-"""Audit of a project: compare every byte with the stored hashes."""
+"""Verification of a project: compare every byte with the stored hashes."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ LATER_FOLDERS = ("annotations", "slices")
 
 
 @dataclass(frozen=True, slots=True)
-class Audit:
-    """Result of an audit."""
+class VerifiedFiles:
+    """Result of a verification."""
 
     checked: int
     """Number of artifacts, results and sealed files whose bytes were compared."""
@@ -47,7 +47,7 @@ class Audit:
     """Messages about files of which only the content could be checked, and why."""
 
 
-def audit(root: Path, progress: Progress) -> Audit:
+def verify_files(root: Path, progress: Progress) -> VerifiedFiles:
     """Compare every artifact, result and sealed file of a project with its stored hash.
 
     Raises:
@@ -55,7 +55,7 @@ def audit(root: Path, progress: Progress) -> Audit:
     """
     if not is_project(root):
         read_description(root)
-    sealed, damaged, notes = audit_seals(root, [*loose_files(root), *_later_files(root)])
+    sealed, damaged, notes = verify_seals(root, [*loose_files(root), *_later_files(root)])
     stages, known = _ledger(root, damaged)
     for row in track(stages, progress, what="artifacts", unit="artifacts"):
         damaged += [f"{row.stage} {row.key[:12]}: {what}" for what in _stage_damage(root, row)]
@@ -70,10 +70,10 @@ def audit(root: Path, progress: Progress) -> Audit:
     there = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
     unknown = tuple(name for name in there if name not in known)
     checked = len(stages) + len(results) + sealed
-    return Audit(checked, tuple(dict.fromkeys(damaged)), unknown, tuple(notes))
+    return VerifiedFiles(checked, tuple(dict.fromkeys(damaged)), unknown, tuple(notes))
 
 
-def audit_seals(root: Path, expected: list[str]) -> tuple[int, list[str], list[str]]:
+def verify_seals(root: Path, expected: list[str]) -> tuple[int, list[str], list[str]]:
     """Compare sealed files with their seals.
 
     Args:
