@@ -9,7 +9,7 @@ import numpy as np
 
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.motion import MotionState, Prediction
-from recon4.registration.state import STATE, VECTOR
+from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
