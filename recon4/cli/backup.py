@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from recon4.cli.terminal import write
+from recon4.cli.terminal import write, write_json
 
 backups = typer.Typer()
 
@@ -39,7 +38,7 @@ def backup(
     with watcher() as progress:
         made = back_up(root, out, with_keys=with_keys, progress=progress)
     if as_json:
-        write(json.dumps(to_json(made), indent=1, ensure_ascii=False))
+        write_json(to_json(made))
     else:
         for name in made.left_out:
             write(f"left out, it changed meanwhile: {name}")

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import sys
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import is_progress, write
+from recon4.cli.terminal import is_progress, write, write_json
 from recon4.cli.workers import SchedulerOption, TlsOption, certificates_of
 
 if TYPE_CHECKING:
@@ -94,7 +92,7 @@ def _show(rows: list[BatchRow], *, as_json: bool) -> None:
     from recon4.batch.table import FAILED, table_lines
 
     if as_json:
-        write(json.dumps([asdict(row) for row in rows], indent=1, ensure_ascii=False))
+        write_json(rows)
     else:
         write("\n".join(table_lines(rows)))
     if any(row.result == FAILED for row in rows):

@@ -10,7 +10,7 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.exports import DraftOption
-from recon4.cli.terminal import write
+from recon4.cli.terminal import write, write_json
 from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
@@ -130,15 +130,13 @@ def show_checked(path: Path, *, as_json: bool, accept: bool = False) -> None:
     """
     if accept:
         raise typer.BadParameter("--accept is for projects: what was received is only compared")
-    import json
-    from dataclasses import asdict
 
     confine_command()
     from recon4.delivery.check import check_file
 
     found = check_file(path)
     if as_json:
-        write(json.dumps(asdict(found), indent=1, ensure_ascii=False))
+        write_json(found)
     else:
         parts = (("intact", found.intact), ("ALTERED", found.altered))
         for word, names in (*parts, ("MISSING", found.missing), ("ADDED", found.added)):

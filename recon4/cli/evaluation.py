@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,9 +10,8 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.tables import parse_choice
-from recon4.cli.terminal import write
+from recon4.cli.terminal import write, write_json
 from recon4.errors import ConfigError
-from recon4.model.plain import to_plain
 
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density
@@ -103,7 +101,7 @@ def evaluate(  # noqa: PLR0913 - options of a command
     texts: list[str] = []
     if truth is not None and truth.suffix == RELATIONS_SUFFIX:
         compared = _relation_errors(result, truth)
-        record["relations"] = asdict(compared)
+        record["relations"] = compared
         texts.append(relations_text(compared))
     elif truth is not None:
         found = evaluate_result(result, truth, model=model, unit=unit, true_poses=floor)
@@ -114,14 +112,14 @@ def evaluate(  # noqa: PLR0913 - options of a command
         from recon4.slices.residual_table import residual_text
 
         table = _marker_table(*markers, choice=parse_choice(columns, unit), limits=limits)
-        record["markers"] = asdict(table)
+        record["markers"] = table
         texts.append(residual_text(table))
     if patch:
         density = _patch_density(result, patch)
-        record["patch"] = asdict(density)
+        record["patch"] = density
         texts.append(density_text(density))
     if as_json:
-        write(json.dumps(to_plain(record), indent=1, ensure_ascii=False))
+        write_json(record)
     else:
         write("\n\n".join(texts))
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.cli.terminal import write
+from recon4.cli.terminal import write, write_json
 from recon4.locales.languages import of_terminal
 
 findings = typer.Typer()
@@ -28,11 +27,10 @@ def audit(
 
     with watcher() as progress:
         summary = run(project, progress=progress)
-    write(
-        json.dumps(summary.to_json(), indent=1, ensure_ascii=False)
-        if as_json
-        else describe_summary(summary)
-    )
+    if as_json:
+        write_json(summary.to_json())
+    else:
+        write(describe_summary(summary))
 
 
 @findings.command()

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import write
+from recon4.cli.terminal import write, write_json
 from recon4.cli.workers import SchedulerOption, TlsOption, certificates_of
 from recon4.errors import ConfigError, StoreError
 
@@ -35,7 +33,7 @@ def doctor(
         checks += [_examine_cluster(scheduler, tls, folder)]
     checks += _examine_chosen(folder)
     if as_json:
-        write(json.dumps([asdict(check) for check in checks], indent=1, ensure_ascii=False))
+        write_json(checks)
     else:
         for check in checks:
             mark = "ok " if check.ok else "NO "

@@ -6,13 +6,12 @@ signal n (130 Ctrl-C, 143 SIGTERM). A signal is how a server and a recording are
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -36,7 +35,7 @@ from recon4.cli.products import products
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
 from recon4.cli.storage import space
-from recon4.cli.terminal import complaint_of, write
+from recon4.cli.terminal import complaint_of, write, write_json
 from recon4.cli.workers import (
     SchedulerOption,
     TlsOption,
@@ -134,7 +133,7 @@ def info(
 
         write_first_rig(found.first_rig, rig_out)
     if as_json:
-        _write_json(found.to_json(language))
+        write_json(found.to_json(language))
     else:
         write("\n".join(found.lines(language)))
 
@@ -187,7 +186,7 @@ def process(  # noqa: PLR0913 - an argument for each option
             progress.event(Warned(text=text))
         summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
     if as_json:
-        _write_json(summary.to_json())
+        write_json(summary.to_json())
     else:
         write("\n".join([describe_summary(summary), *(describe_tried(out) if verbose else ())]))
 
@@ -210,7 +209,7 @@ def settings(
     if markdown:
         write(settings_page(), end="")
     elif as_json:
-        _write_json(to_json(chosen))
+        write_json(to_json(chosen))
     else:
         _show_settings(chosen)
 
@@ -225,8 +224,6 @@ def verify(
     as_json: JsonOption = False,
 ) -> None:
     """Read every byte again; compare hashes, seals, the journal's chain and signatures."""
-    from dataclasses import asdict
-
     from recon4.archive.verify import accept as seal_again
     from recon4.archive.verify import verify as read_again
     from recon4.cli.terminal import watcher
@@ -239,7 +236,7 @@ def verify(
     with watcher() as progress:
         found = read_again(folder, progress)
     if as_json:
-        _write_json(asdict(found))
+        write_json(found)
     else:
         for name in found.unknown:
             write(f"not of recon4, left alone: artifacts/{name}")
@@ -381,12 +378,6 @@ def _show_settings(chosen: Settings) -> None:
             value = getattr(getattr(chosen, group.name), setting.name)
             mark = "*" if setting.path in changed else " "
             write(f" {mark} {setting.path:<36} {value!s:<14} {setting.text}".rstrip())
-
-
-def _write_json(value: Any) -> None:
-    from recon4.model.plain import to_plain
-
-    write(json.dumps(to_plain(value), indent=1, ensure_ascii=False))
 
 
 def _complain(text: str) -> None:

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import write
+from recon4.cli.terminal import write, write_json
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -49,8 +47,7 @@ def storage(
     freed = free_space(project, chosen) if chosen else ()
     parts = stored_parts(project)
     if as_json:
-        found = {"parts": [asdict(part) for part in parts], "freed": [asdict(p) for p in freed]}
-        write(json.dumps(found, indent=1, ensure_ascii=False))
+        write_json({"parts": parts, "freed": freed})
         return
     _show(parts)
     if chosen:

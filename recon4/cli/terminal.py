@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import time
@@ -29,6 +30,13 @@ _MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
 def write(text: str, end: str = "\n") -> None:
     """Say something on standard output."""
     sys.stdout.write(text + end)
+
+
+def write_json(value: object) -> None:
+    """Write records, lists and mappings as JSON for programs; what is not finite is null."""
+    from recon4.model.plain import to_plain
+
+    write(json.dumps(to_plain(value), indent=1, ensure_ascii=False))
 
 
 def complaint_of(error: Recon4Error) -> str:
