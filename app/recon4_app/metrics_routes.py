@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hmac
-import os
 import re
 import secrets
 from pathlib import Path
@@ -14,6 +13,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 
 from recon4.locales.coded import CodedText
+from recon4.store.atomic import write_private
 from recon4_app.access.people import NOBODY, Permission, Person, allow_anonymous, person
 from recon4_app.errors import Refused, Unknown
 from recon4_app.metrics import Metrics
@@ -35,14 +35,8 @@ def make_metrics_token(state: Path, *, renew: bool = False) -> str:
     """
     path = state / TOKEN_FILE
     if renew or not _read_token(path):
-        fresh = path.with_suffix(".new")
-        fresh.unlink(missing_ok=True)
-        descriptor = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        with os.fdopen(descriptor, "w") as file:
-            file.write(secrets.token_urlsafe(METRICS_TOKEN.token_bytes) + "\n")
-            file.flush()
-            os.fsync(file.fileno())
-        fresh.replace(path)
+        token = secrets.token_urlsafe(METRICS_TOKEN.token_bytes)
+        write_private(path, f"{token}\n".encode())
     return _read_token(path)
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -19,7 +18,7 @@ from cryptography.hazmat.primitives.serialization import (
 )
 
 from recon4.errors import StoreError
-from recon4.store.atomic import atomic_file, make_folders
+from recon4.store.atomic import make_folders, write_private
 
 ALGORITHM = "Ed25519"
 
@@ -106,7 +105,4 @@ def _make(path: Path) -> None:
         Encoding.PEM, PrivateFormat.PKCS8, NoEncryption()
     )
     make_folders(path.parent, 0o700)
-    with atomic_file(path) as temporary:
-        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(pem)
+    write_private(path, pem)

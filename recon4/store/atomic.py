@@ -102,6 +102,14 @@ def write_text(path: Path, text: str) -> None:
         temporary.write_text(text, "utf-8")
 
 
+def write_private(path: Path, data: bytes) -> None:
+    """Write a file that only its owner may read, atomically: keys, tokens."""
+    with atomic_file(path) as temporary:
+        descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(descriptor, "wb") as file:
+            file.write(data)
+
+
 def write_json(path: Path, value: object) -> None:
     """Write a JSON file atomically: indented, keys in the given order, no NaN."""
     write_text(path, json.dumps(value, indent=1, allow_nan=False, ensure_ascii=False) + "\n")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ipaddress
 import logging
-import os
 import ssl
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -16,7 +15,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from recon4.errors import ConfigError
-from recon4.store.atomic import write_text
+from recon4.store.atomic import write_private, write_text
 
 log = logging.getLogger(__name__)
 
@@ -147,11 +146,7 @@ def _make(certificate: Certificate, names: frozenset[str]) -> None:
         serialization.PrivateFormat.PKCS8,
         serialization.NoEncryption(),
     )
-    certificate.key.unlink(missing_ok=True)
-    handle = os.open(certificate.key, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-    with os.fdopen(handle, "wb") as file:
-        file.write(secret)
-        os.fsync(file.fileno())
+    write_private(certificate.key, secret)
     write_text(certificate.chain, made.public_bytes(serialization.Encoding.PEM).decode())
 
 

@@ -3,6 +3,7 @@
 import json
 import resource
 import shutil
+import stat
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +19,7 @@ from recon4.store.atomic import (
     copy_file,
     sweep,
     write_json,
+    write_private,
     write_text,
 )
 
@@ -76,6 +78,17 @@ def test_a_path_that_cannot_be_written_raises_a_store_error(tmp_path):
         write_text(tmp_path / "file" / "a.txt", "x")
     with pytest.raises(StoreError, match="cannot write"), atomic_folder(tmp_path / "no" / "f"):
         pass
+
+
+def test_only_its_owner_may_read_a_private_file_also_one_that_all_could_read(tmp_path):
+    path = tmp_path / "key.pem"
+    path.write_bytes(b"old")
+    path.chmod(0o644)
+
+    write_private(path, b"secret")
+
+    assert path.read_bytes() == b"secret"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
 
 
 def test_json_refuses_nan(tmp_path):
