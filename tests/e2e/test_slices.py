@@ -48,6 +48,26 @@ def rested(page):
     expect(page.locator("body.drawing")).to_have_count(0)
 
 
+def test_the_page_says_what_it_waits_for_and_how_long(server, page):
+    waiting = page.locator(".waiting")
+    asked = []
+    page.route("**/slices/image", lambda route: asked.append(route), times=1)
+    page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5")
+
+    expect(waiting).to_have_text(re.compile(r"Cutting the slice…\s+[2-9] s"))
+    asked.pop().continue_()
+    rested(page)
+    expect(waiting).to_have_count(0)
+
+    page.route("**/slices/image", lambda route: asked.append(route), times=1)
+    page.keyboard.press("]")
+    assert waiting.count() == 0  # an image is shown: at first only the pointer says it
+    expect(waiting).to_contain_text(" s")
+    asked.pop().continue_()
+    rested(page)
+    expect(waiting).to_have_count(0)
+
+
 def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     opened(page, server, "?kind=horizontal&z=1.5&color=intensity")
 

@@ -24,6 +24,9 @@ import { SliceView } from "./view.js";
 
 export const first = new SliceView();
 export const second = new SliceView();
+second.className = "second";
+const LATE_MS = 2000; // after this time the page says how long it has waited
+const wait = { text: "", began: 0, timer: 0 };
 
 /**
  * What the page shows.
@@ -56,6 +59,26 @@ export function drawPage(/** @type {Act} */ act) {
   drawTools(act);
   drawViews();
   drawUnder(act);
+}
+
+/** Says what the page waits for; empty = for nothing more. */
+export function waitFor(/** @type {string} */ text) {
+  clearInterval(wait.timer);
+  const timer = text ? setInterval(drawViews, LATE_MS / 2) : 0;
+  Object.assign(wait, { text, timer, began: performance.now() });
+  document.body.classList.toggle("drawing", text !== "");
+  drawViews();
+}
+
+/** What the page waits for: at once where it shows nothing, over an image when it is late. */
+function waiting() {
+  const { text, began } = wait;
+  const ms = performance.now() - began;
+  if (!text || (page.shown && ms < LATE_MS)) return nothing;
+  return html`<p class="waiting">
+    <span role="status">${text}</span
+    >${ms < LATE_MS ? nothing : html` <span>${Math.floor(ms / 1000)} s</span>`}
+  </p>`;
 }
 
 function drawTools(/** @type {Act} */ act) {
@@ -131,7 +154,7 @@ function drawViews() {
   };
   render(
     html`<div class="one">
-        ${first}
+        ${first} ${waiting()}
         <p class="caption">${caption}</p>
       </div>
       <div class="one other">
@@ -182,3 +205,5 @@ function facing({ position, points, surface }, { strays, frame, approval }) {
     <span class="frame">${frameText(frame)}</span>${approvalFact(approval)}
     <a href=${mapUrl(idHere()) + mapQuery(page.state)}>${t("show-in-3d")}</a>`;
 }
+
+waitFor(t("opening-map"));

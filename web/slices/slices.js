@@ -31,7 +31,7 @@ import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
 import { SliceAbove } from "./above.js";
-import { drawPage, first, page, second } from "./drawing.js";
+import { drawPage, first, page, second, waitFor } from "./drawing.js";
 
 /**
  * @import {SliceFacts, SliceImageRequest} from "../shared/http_types"
@@ -104,7 +104,7 @@ function ask(view, more) {
 
 async function load() {
   const mine = ++page.sequence;
-  document.body.classList.add("drawing");
+  waitFor(t("cutting-slice"));
   try {
     const image = await readSlice(id, ask(first, { page: `${tab}1`, sequence: mine }));
     if (mine !== page.sequence) return;
@@ -118,7 +118,7 @@ async function load() {
     showError(byId("message"), error);
     if (error instanceof ApiError && error.status === 422) first.clear();
   } finally {
-    if (mine === page.sequence) document.body.classList.remove("drawing");
+    if (mine === page.sequence) waitFor("");
   }
 }
 
@@ -358,7 +358,6 @@ async function stretchOf({ mark: ends, span } = page.state) {
 }
 
 async function begin() {
-  second.className = "second";
   byId("above").append(above);
   draw();
   help(byId("help"));
@@ -393,6 +392,7 @@ async function begin() {
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
     return true;
   });
+  if (!page.facts) waitFor("");
   document.body.classList.toggle("no-slices", !begun && !page.facts);
 }
 
