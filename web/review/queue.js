@@ -31,6 +31,7 @@ export class ReviewQueue extends HTMLElement {
   #state = {
     /** @type {Row[]} */
     rows: [],
+    known: false, // whether rows have been set
     /** @type {Row[]} */
     shown: [], // those of the filters
     show: "loops",
@@ -51,7 +52,7 @@ export class ReviewQueue extends HTMLElement {
   }
 
   set rows(/** @type {Row[]} */ rows) {
-    Object.assign(this.#state, { rows, chosen: "" });
+    Object.assign(this.#state, { rows, known: true, chosen: "" });
     this.#byKey = new Map(rows.map((row) => [row.key, row]));
     this.#filter({});
   }
@@ -154,7 +155,8 @@ export class ReviewQueue extends HTMLElement {
   }
 
   get #count() {
-    const { shown } = this.#state;
+    const { shown, known } = this.#state;
+    if (!known) return "";
     const decided = shown.filter((row) => row.who).length;
     return shown.length
       ? t("queue-count", {

@@ -87,6 +87,7 @@ async function select(/** @type {[number, number]} */ pair) {
 
 /** What leads on while no pair is selected, as the name of a text. */
 function firstStep() {
+  if (!state.server) return message.textContent ? "nothing-to-review" : "sorting";
   if (queue.length) return "press-j";
   if (state.rows.length) return "no-pairs-listed";
   return state.graph ? "no-pairs" : "nothing-yet";
@@ -371,7 +372,10 @@ async function beginTeam() {
 drawSelected();
 listenToActions(actions, view, reasonField(), () => Boolean(state.selected?.drawn));
 await attempt(message, begin);
-if (message.textContent) view.clear(t("nothing-to-review"));
+if (!state.server) {
+  view.clear(t(firstStep()));
+  drawSelected();
+}
 await beginTeam().catch((error) => message.textContent || showError(message, error));
 watchProject(id, () => {
   poll();
