@@ -260,6 +260,8 @@ test("the address keeps the whole state", () => {
           [0, 0.5, 2.25],
         ],
         name: "Door, left",
+        sd: [0.00125, NaN],
+        snaps: ["corner", ""],
       },
       {
         kind: "profile",
@@ -268,6 +270,8 @@ test("the address keeps the whole state", () => {
           [5, 0.5, 1],
         ],
         name: "Profile 1",
+        sd: [NaN, NaN],
+        snaps: ["", "plane"],
         figure: 0.35,
       },
     ],
@@ -282,6 +286,35 @@ test("the address keeps the whole state", () => {
   near(again.camera.target, [1.5, -2, 0.25]);
   assert.deepEqual({ ...again, camera: null }, { ...state, camera: null });
   assert.equal(format(parse(format(again))), format(again));
+});
+
+test("a link says the standard deviation of a distance, and to what its ends snapped", () => {
+  const made = {
+    kind: "distance",
+    points: [
+      [0, 0, 0],
+      [3, 0, 0],
+    ],
+    name: "Wall",
+    sd: [0.003, 0.004],
+    snaps: ["edge", "plane"],
+  };
+  const [opened] = parse(format({ ...parse(""), measurements: [made] })).measurements;
+  assert.deepEqual(opened, made);
+  assert.equal(resultOf(opened).parts, resultOf(made).parts);
+  assert.match(toCsv([opened], ""), /,edge,3.0000,3.0000,0.0000,0.0050,/);
+});
+
+test("a link of before, with points only, is read; a wrong σ is none", () => {
+  const [one] = parse("m=distance;0,0,0;3,0,0,-1,x;Wall").measurements;
+  assert.deepEqual(
+    [one.sd, one.snaps],
+    [
+      [NaN, NaN],
+      ["", ""],
+    ],
+  );
+  assert.equal(format({ ...parse(""), measurements: [one] }), "m=distance;0,0,0;3,0,0;Wall");
 });
 
 test("an address that is not ours shows the usual", () => {

@@ -153,21 +153,50 @@ function cameraOf(/** @type {string | null} */ text) {
   };
 }
 
-/** A measurement "kind:figure;x,y,z;…;name" as a list of one, or none if it is not valid. */
+/** @type {Array<[string, string]>} what a point snapped to, and its letter in an address */
+const SNAPS = [
+  ["corner", "c"],
+  ["edge", "e"],
+  ["plane", "p"],
+];
+
+/** A point "x,y,z,sd,snap" of a measurement; standard deviation and letter may be left out. */
+function pointOf(/** @type {string} */ text) {
+  const [sd, letter] = text.split(",").slice(3);
+  const p = numbers(text.split(",").slice(0, 3).join(), 3);
+  const snap = SNAPS.find(([, one]) => one === letter)?.[0] ?? "";
+  const known = sd ? Number(sd) : NaN;
+  return p && { p, sd: known >= 0 && known <= MOST_M ? known : NaN, snap };
+}
+
+/**
+ * Points of a measurement as `pointOf` reads them.
+ * @param {Measurement} measurement
+ */
+const pointTexts = ({ points, sd, snaps }) =>
+  points.map((p, k) => {
+    const known = Number.isFinite(sd?.[k]) ? short(/** @type {number[]} */ (sd)[k], 5) : "";
+    const letter = SNAPS.find(([name]) => name === snaps?.[k])?.[1] ?? "";
+    return [list(p), known, letter].join(",").replace(/,+$/, "");
+  });
+
+/** A measurement "kind:figure;point;…;name" as a list of one, or none if it is not valid. */
 function measurementOf(/** @type {string} */ text) {
   const [head, ...rest] = text.split(";");
   const [kind, given] = head.split(":");
   const name = rest.pop() ?? "";
-  const points = rest.map((part) => numbers(part, 3));
+  const points = rest.flatMap((part) => pointOf(part) ?? []);
   if (!Object.hasOwn(KINDS, kind)) return [];
   const { least, most } = KINDS[/** @type {MeasureKind} */ (kind)];
   if (points.length < least || points.length > most) return [];
-  if (points.some((p) => p === null)) return [];
+  if (points.length < rest.length) return [];
   return [
     {
       kind: /** @type {MeasureKind} */ (kind),
-      points: /** @type {number[][]} */ (points),
+      points: points.map(({ p }) => p),
       name: name.slice(0, 80),
+      sd: points.map(({ sd }) => sd),
+      snaps: points.map(({ snap }) => snap),
       ...(given === undefined ? {} : { figure: figureOf(kind, given) }),
     },
   ];
@@ -219,10 +248,9 @@ export function format(/** @type {MapState} */ state) {
   comparedQuery(state.compare, query);
   if (state.mark?.span) query.set("span", list(state.mark.span));
   if (state.mark?.place.length) query.set("place", list(state.mark.place.flat()));
-  for (const { kind, points, name, figure } of state.measurements)
-    query.append(
-      "m",
-      [headOf(kind, figure), ...points.map((p) => list(p)), name.replaceAll(";", " ")].join(";"),
-    );
+  for (const one of state.measurements) {
+    const head = headOf(one.kind, one.figure);
+    query.append("m", [head, ...pointTexts(one), one.name.replaceAll(";", " ")].join(";"));
+  }
   return query.toString().replaceAll("%2C", ",").replaceAll("%3B", ";").replaceAll("%3A", ":");
 }
