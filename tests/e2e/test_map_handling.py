@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 from playwright.sync_api import expect
 
@@ -108,6 +109,33 @@ def test_what_changes_nothing_of_the_image_draws_it_not_again(server, page):
 
     assert page.evaluate("recon4Map.run.canvas.drawn.frames") == before
     assert page.evaluate("recon4Map.run.canvas.drawn.rested")
+
+
+def test_one_flies_as_fast_as_one_chooses(server, page):
+    opened(page, server)
+    page.get_by_label("Speed of the flight").select_option("16 × that of the walk")
+    page.evaluate("""() => {
+      const { page } = recon4Map;
+      const times = (window.flown = []);
+      let time = page.flight.time;
+      Object.defineProperty(page.flight, "time", {
+        get: () => time,
+        set(next) {
+          times.push([performance.now(), next]);
+          time = next;
+        },
+      });
+    }""")
+
+    page.keyboard.press("p")
+    expect(page.locator("#status .caption")).to_contain_text("s of the walk")
+    while page.evaluate("flown.length") < 4:
+        page.wait_for_timeout(50)
+    page.keyboard.press("Escape")
+
+    flown = np.array(page.evaluate("flown.slice(1)"))  # the first one is that of the beginning
+    took_s, of_walk_s = (flown[-1] - flown[0]) * (1e-3, 1)
+    assert of_walk_s / took_s == pytest.approx(16, rel=0.2)
 
 
 def test_a_note_is_begun_before_the_others_have_been_read(server, page):

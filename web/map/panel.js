@@ -24,6 +24,7 @@ import { COLORS, LAYERS } from "./state.js";
  * @import {MapIndex} from "../shared/http_types"
  */
 
+const SPEEDS = [1, 2, 4, 8, 16]; // of a flight, times that of the walk
 /** Layers that a guest does not get. @type {Layer[]} */
 const OF_THE_TEAM = ["marks", "notes"];
 
@@ -237,6 +238,7 @@ function layers(/** @type {Act} */ act) {
         ? state.layers.filter((one) => one !== layer)
         : [...state.layers, layer],
     });
+  const seek = (/** @type {Event} */ event) => act.seek(Number(targetOf(event).value));
   const every = /** @type {Array<[Layer, string]>} */ (Object.entries(LAYERS));
   const names = every.filter(([layer]) => !page.guest || !OF_THE_TEAM.includes(layer));
   return html`${names.map(
@@ -252,15 +254,28 @@ function layers(/** @type {Act} */ act) {
   ${
     walk?.t_s.length
       ? html`<label
-          ><span>${t("along-walk")}</span
-          ><input
-            type="range"
-            min="0"
-            step="0.1"
-            max=${walk.t_s.at(-1) ?? 0}
-            .value=${String(flight.time)}
-            @input=${(/** @type {Event} */ event) => act.seek(Number(targetOf(event).value))}
-        /></label>`
+            ><span>${t("along-walk")}</span
+            ><input
+              type="range"
+              min="0"
+              step="0.1"
+              max=${walk.t_s.at(-1) ?? 0}
+              .value=${String(flight.time)}
+              @input=${seek} /></label
+          ><label
+            ><span>${t("flight-speed")}</span
+            ><select
+              @change=${(/** @type {Event} */ event) =>
+                (flight.speed = Number(targetOf(event).value))}
+            >
+              ${SPEEDS.map(
+                (speed) =>
+                  html`<option value=${speed} ?selected=${speed === flight.speed}>
+                    ${t("times-walk", { speed })}
+                  </option>`,
+              )}
+            </select></label
+          >`
       : nothing
   }`;
 }
