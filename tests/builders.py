@@ -279,7 +279,8 @@ class Bag:
         self.write(topic, "nav_msgs/msg/Odometry", int(t_ns), message)
 
     def cloud(self, topic, t_ns, table):
-        codes = {"i1": 1, "u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
+        kinds = ("i1", "u1", "i2", "u2", "i4", "u4", "f4", "f8", "i8", "u8")
+        codes = {kind: code for code, kind in enumerate(kinds, start=1)}
         dtype = np.dtype([(name, column.dtype) for name, column in table.items()])
         points = np.zeros(len(next(iter(table.values()))), dtype)
         fields = []

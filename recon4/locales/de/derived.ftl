@@ -281,6 +281,9 @@ LINES-UNTIMED =
 
 ## Punkte
 
+FIELDS-UNREAD =
+    .text1 = { $where }: Felder unbekannter Typen werden nicht gelesen: { $fields }.
+
 INTENSITY-MISSING =
     .text1 = { $where }: kein Feld für die Intensität, 0 wird gespeichert.
     .text2-if-line_scans = Zeilenscans ohne Intensitäten: 0 wird gespeichert.

@@ -278,6 +278,9 @@ LINES-UNTIMED =
 
 ## Points
 
+FIELDS-UNREAD =
+    .text1 = { $where }: fields of types that are not known are not read: { $fields }.
+
 INTENSITY-MISSING =
     .text1 = { $where }: no intensity field, 0 is stored.
     .text2-if-line_scans = Line scans without intensities: 0 is stored.

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import text_of
+from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
@@ -20,8 +22,9 @@ from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.clouds.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import BagMessage
-from recon4.recording.formats.cloud_tables import cloud_table
+from recon4.recording.formats.cloud_tables import cloud_table, unread_fields
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning import LISTED
 
 
 class CloudReader:
@@ -68,11 +71,15 @@ class CloudReader:
 
     def _decoded(self, clouds: Iterable[tuple[int, tuple[BagMessage, Any]]]) -> Iterator[Shots]:
         for t_ns, (message, cloud) in clouds:
+            if unread := unread_fields(cloud):
+                fields = ", ".join(unread[: LISTED.few])
+                self._report.derive(DerivedKind.FIELDS_UNREAD, where=message.topic, fields=fields)
             try:
                 table = cloud_table(cloud)
                 shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
             except CorruptFile as error:
                 self._report.count("messages_corrupt")
+                self._report.details.setdefault("messages_corrupt", text_of(error))
                 self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=error)
                 continue
             if len(shots):

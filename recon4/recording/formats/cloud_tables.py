@@ -10,10 +10,15 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.recording.formats.cloud_files import Table
+from recon4.recording.formats.limits import clean_name
 from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
 from recon4.recording.formats.point_messages import POINTS, PointMessage
+from recon4.recording.tuning import LISTED
 
-_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
+_FIELD_TYPES = {
+    **{1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"},
+    **{9: "i8", 10: "u8", 11: "u1"},  # by PCL first (``PCLPointField``), then by ROS 2
+}
 
 
 def cloud_lists(cloud: Any) -> Mapping[str, Table]:
@@ -23,6 +28,14 @@ def cloud_lists(cloud: Any) -> Mapping[str, Table]:
         CorruptFile: If the data are shorter than the layout.
     """
     return cloud.lists if isinstance(cloud, PointMessage) else {POINTS: cloud_table(cloud)}
+
+
+def unread_fields(cloud: Any) -> list[str]:
+    """Fields of a ``PointCloud2`` whose types nobody has defined, with these types."""
+    if isinstance(cloud, PointMessage):
+        return []
+    unread = [f for f in cloud.fields if f.datatype not in _FIELD_TYPES]
+    return [f"{clean_name(f.name)} ({f.datatype})" for f in unread]
 
 
 def cloud_table(cloud: Any) -> Table:
@@ -35,9 +48,16 @@ def cloud_table(cloud: Any) -> Table:
         return cloud.table
     order = ">" if cloud.is_bigendian else "<"
     known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
+    if {f.name.lower() for f in cloud.fields if f not in known} & {"x", "y", "z"}:
+        fields = ", ".join(unread_fields(cloud)[: LISTED.few])
+        raise CorruptFile(
+            f"a cloud with fields of unknown types: {fields}: expected 1 to {max(_FIELD_TYPES)}"
+        )
     step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)
-    row_step = int(cloud.row_step) or step * width
     data: NDArray[np.uint8] = np.asarray(cloud.data, np.uint8)
+    # Some drivers leave the length of a row as it was: their data have no room for any other.
+    is_packed = not cloud.row_step or len(data) == step * width * height
+    row_step = step * width if is_packed else int(cloud.row_step)
     if step <= 0 or row_step < step * width or len(data) < row_step * height:
         raise CorruptFile(
             f"a cloud of {width} x {height} points of {step} bytes in rows of {row_step} "
