@@ -11,6 +11,7 @@ import secrets
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any
 
 import sqlalchemy as sa
@@ -142,8 +143,7 @@ class GuestLinks:
         with writing(self._engine) as connection:  # a revocation comes before or after
             found = _links(connection, GUEST_LINKS.c.token_hash == hash_of(token), now_s)
             if not found or not found[0].works:
-                # The same words for all: a stranger learns nothing of a link.
-                raise Refused(CodedText("guest-link-invalid"))
+                raise Refused(_why_not(found[0] if found else None, now_s))
             (link,) = found
             mine = SESSIONS.c.guest_link == link.id
             newest = sa.select(SESSIONS.c.id).where(mine).order_by(SESSIONS.c.began_s.desc())
@@ -169,6 +169,19 @@ class GuestLinks:
     def _select(self, condition: sa.ColumnElement[bool]) -> list[GuestLink]:
         with self._engine.connect() as connection:
             return _links(connection, condition, self._clock())
+
+
+def _why_not(link: GuestLink | None, now_s: float) -> CodedText:
+    """Why a token opens nothing: only who was given it finds its link, a stranger finds none."""
+    if link is not None and link.revoked_s is not None:
+        return CodedText("guest-link-revoked", day=_day(link.revoked_s))
+    if link is not None and link.until_s <= now_s:
+        return CodedText("guest-link-expired", day=_day(link.until_s))
+    return CodedText("guest-link-invalid")
+
+
+def _day(t_s: float) -> str:
+    return datetime.fromtimestamp(t_s, UTC).date().isoformat()
 
 
 def _links(
