@@ -13,6 +13,7 @@ import pytest
 
 from recon4.recording.formats.cloud_files import ENDING_FORMATS
 from recon4.recording.formats.cloud_headers import HEADER_FORMATS
+from recon4.recording.gnss.files import GNSS_FORMATS
 from recon4.recording.packets.families import FAMILIES
 from tests.security.fuzz.broken import BROKEN
 from tests.security.fuzz.corpus import CORPUS, read_kind
@@ -66,6 +67,16 @@ def test_every_format_of_clouds_is_fuzzed() -> None:
 
     missing = [one.suffix for one in formats if one.suffix not in fuzzed]
     assert not missing, f"no Kind of tests/security/fuzz/ has a file_name with the ending {missing}"
+
+
+def test_every_format_of_positions_is_fuzzed() -> None:
+    seeds = [
+        seed for name, one in KINDS.items() if name.startswith("gnss-") for seed in one.seeds()
+    ]
+
+    formats = [one for one in GNSS_FORMATS if not any(one.detects(s, len(s)) for s in seeds)]
+    missing = [one.title for one in formats]
+    assert not missing, f"no Kind gnss-… of tests/security/fuzz/ has a seed of {missing}"
 
 
 def test_every_family_of_lidars_is_fuzzed() -> None:

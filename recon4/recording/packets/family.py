@@ -1,5 +1,6 @@
-"""What a family of LiDARs gives so that its packets are read: one module, one row in `families`.
+"""What a family of LiDARs gives so that its packets are read.
 
+One module, which `recon4.recording.packets.families` finds by the maker in the table of models.
 Everything else is common to all families: finding the senders in a capture, clocks, order, holes,
 bags, live capture. A family tells what its packets look like and turns packets into points::
 
