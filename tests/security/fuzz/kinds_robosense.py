@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from functools import cache, partial
-from pathlib import Path
 
 import numpy as np
 
-from recon4.model.rig import Sensor
-from recon4.recording.formats.datagrams import datagrams_of
-from recon4.recording.packets.family import PacketSensor, Payloads
+from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.encode import (
     SpinningBlocks,
     encode_device,
@@ -17,14 +14,12 @@ from recon4.recording.packets.robosense.encode import (
     encode_spinning,
 )
 from recon4.recording.packets.robosense.family import FAMILY as ROBOSENSE
-from recon4.recording.packets.robosense.models import MODELS
+from recon4.recording.packets.robosense.models import MODELS, SIZE
 from recon4.recording.packets.robosense.packets import packet_s
 from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
-from recon4.recording.report import ImportReport
-from recon4.settings import IngestSettings
 from tests.builders import T0_NS
-from tests.security.fuzz import seeds_tables as tables
-from tests.security.fuzz.kind import Kind, Reading
+from tests.security.fuzz.kind import Kind
+from tests.security.fuzz.packets import PacketRun
 
 _PACKETS = 12
 _NAMES = ("Helios 5515", "Bpearl", "Ruby Plus", "Airy", "M1", "E1")
@@ -58,25 +53,8 @@ def _seeds(name: str) -> tuple[bytes, ...]:
     return (packets_of(name).tobytes(),)
 
 
-def _read(name: str, path: Path) -> Reading:
-    """Packets of one sensor, one behind the other."""
-    size = SOLID_MODELS[name].size if name in SOLID_MODELS else 1248
-    data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    payloads = data[: len(data) // size * size].reshape(-1, size)
-    head = datagrams_of([T0_NS] * len(payloads), [row.tobytes() for row in payloads])
-    ROBOSENSE.recognize(head, ())
-    report = ImportReport()
-    base: Sensor = tables.rig().sensors[0]
-    sensor = Sensor(name=base.name, model=name, T_body_sensor=base.T_body_sensor)
-    settings = IngestSettings()
-    layout = ROBOSENSE.open(
-        PacketSensor(row=0, sensor=sensor, head=head, settings=settings, report=report)
-    )
-    sound = payloads[layout.sound(payloads)]
-    shots = layout.decode(layout.stamps_ns(sound), sound)
-    assert np.isfinite(shots.xyz).all()
-    assert np.abs(shots.xyz).max(initial=0) <= 2 * settings.max_range_m
-    return Reading(len(shots), salvaged=len(sound) < _PACKETS or len(data) % size > 0)
+def _size(name: str) -> int:
+    return SOLID_MODELS[name].size if name in SOLID_MODELS else SIZE
 
 
 KINDS = tuple(
@@ -84,7 +62,7 @@ KINDS = tuple(
         name=f"robosense-{name.lower().replace(' ', '-')}",
         file_name="packets.bin",
         seeds=partial(_seeds, name),
-        read=partial(_read, name),
+        read=PacketRun(ROBOSENSE, name, _size(name), _PACKETS).read,
         # A run of packets has no end mark.
         knows_end=False,
     )

@@ -7,19 +7,14 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.model.rig import Sensor
-from recon4.recording.formats.datagrams import datagrams_of
-from recon4.recording.packets.family import Companion, PacketSensor
+from recon4.recording.packets.family import Companion
 from recon4.recording.packets.velodyne.family import FAMILY as VELODYNE
 from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
 from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.packets.velodyne.wide_encode import encode_wide
 from recon4.recording.packets.velodyne.wide_models import VLS128, WideModel, hdl64_model
-from recon4.recording.report import ImportReport
-from recon4.settings import IngestSettings
-from tests.builders import T0_NS
-from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
+from tests.security.fuzz.packets import PacketRun
 
 _PACKETS = 12
 _YAML = "lasers:\n" + "".join(
@@ -48,31 +43,6 @@ def _seeds(name: str) -> tuple[bytes, ...]:
     return (encode_wide(t_us, azimuth, returns, model=model).tobytes(),)
 
 
-def _read(name: str, path: Path) -> Reading:
-    """Packets of one sensor, one behind the other."""
-    data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    payloads = data[: len(data) // DATA_SIZE * DATA_SIZE].reshape(-1, DATA_SIZE)
-    head = datagrams_of([T0_NS] * len(payloads), [row.tobytes() for row in payloads])
-    VELODYNE.recognize(head, ())
-    pose = tables.rig().sensors[0].T_body_sensor
-    report, settings = ImportReport(), IngestSettings()
-    layout = VELODYNE.open(
-        PacketSensor(
-            row=0,
-            sensor=Sensor(name="a", model=name, T_body_sensor=pose),
-            head=head,
-            companions=(CALIBRATION,),
-            settings=settings,
-            report=report,
-        )
-    )
-    sound = payloads[layout.sound(payloads)]
-    shots = layout.decode(layout.stamps_ns(sound), sound)
-    assert np.isfinite(shots.xyz).all()
-    assert np.abs(shots.xyz).max(initial=0) <= 2 * settings.max_range_m
-    return Reading(len(shots), salvaged=len(sound) < _PACKETS or len(data) % DATA_SIZE > 0)
-
-
 def _calibration(path: Path) -> Reading:
     """A file beside a recording: a calibration, or none."""
     found = calibration_of_file(Companion(path.name, path.read_bytes()))
@@ -85,7 +55,7 @@ KINDS = (
             name=f"velodyne-{name.lower()}",
             file_name="packets.bin",
             seeds=partial(_seeds, name),
-            read=partial(_read, name),
+            read=PacketRun(VELODYNE, name, DATA_SIZE, _PACKETS, (CALIBRATION,)).read,
             # A run of packets has no end mark.
             knows_end=False,
         )
