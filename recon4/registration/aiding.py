@@ -55,8 +55,8 @@ class GnssAiding:
             else (at_ns, T_enu_body)
         )
 
-    def velocity(self, t_ns: int) -> tuple[Array, float] | None:
-        """Mean velocity right after a time [m/s], (3,), and its standard deviation.
+    def velocity(self, t_ns: int) -> Array | None:
+        """Mean velocity right after a time [m/s], (3,).
 
         None without fixes, or if the body stands: it is known better then.
         """
@@ -65,9 +65,7 @@ class GnssAiding:
         if ends[0] is None or ends[1] is None:
             return None
         velocity = (ends[1].t - ends[0].t) / (1e-9 * span_ns)
-        sd_m = float(self.sd_m[np.searchsorted(self.t_ns, t_ns)].max())
-        moves = float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s
-        return (velocity, np.sqrt(2.0) * sd_m / (1e-9 * span_ns)) if moves else None
+        return velocity if float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s else None
 
     def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
         """Information (6, 6) and gradient (6,) of a left correction about the body's origin.

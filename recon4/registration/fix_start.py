@@ -11,6 +11,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.motion import MotionState, Prediction
 from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
+from recon4.registration.tuning_motion import MOVING_START
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
 
@@ -41,9 +42,9 @@ def start_at_fixes(
     moving = aiding.velocity(at_ns)
     if moving is None:
         return begun, aiding
-    velocity = moving[0] - begun.R @ state.R.T @ met.vector[VECTOR.velocity]
+    velocity = moving - begun.R @ state.R.T @ met.vector[VECTOR.velocity]
     vector = begun.vector.copy()
     vector[VECTOR.position] -= 1e-9 * (at_ns - state.t_ns) * velocity
     grown = (met.P - state.P)[STATE.velocity, STATE.velocity]
-    sd_m_s = np.hypot(moving[1], np.sqrt(np.diag(grown).max()))
+    sd_m_s = np.hypot(MOVING_START.sd_m_s, np.sqrt(np.diag(grown).max()))
     return replace(begun, vector=vector).moving(velocity, float(sd_m_s)), aiding

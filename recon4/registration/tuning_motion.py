@@ -144,7 +144,8 @@ class MovingStartTuning(Struct, frozen=True, kw_only=True):
     moving_m_s: float = 0.3
     """A slower body is taken for one that stands [m/s]."""
     sd_m_s: float = 0.2
-    """Standard deviation of the velocity between two scans [m/s]."""
+    """Standard deviation of the velocity between two scans, or two fixes: their errors are
+    correlated over seconds [m/s]."""
     longest_ns: int = 300_000_000
     """Frames that are farther apart do not show the velocity of the first [ns]."""
 

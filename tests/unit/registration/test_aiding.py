@@ -110,9 +110,7 @@ def test_an_odometry_begins_in_the_frame_of_fixes_that_begin_soon() -> None:
 def test_the_velocity_of_a_body_that_moves_is_that_between_its_fixes() -> None:
     found = walking().velocity(100_000_000)
 
-    assert found is not None
-    assert found[0] == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
-    assert found[1] == pytest.approx(np.sqrt(2.0) * SD_M / 0.3)
+    assert found == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
     assert standing().velocity(100_000_000) is None
     assert walking().velocity(2_900_000_000) is None  # no fixes are so far after it
 
