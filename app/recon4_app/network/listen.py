@@ -29,7 +29,7 @@ from recon4_app.network.connections import (
 )
 from recon4_app.network.hosts import LOOPBACK, own_names
 from recon4_app.network.http_timeouts import HttpTimeoutsProtocol
-from recon4_app.network.tuning import ACCEPT, HTTP_TIMEOUTS, PINGS
+from recon4_app.network.tuning import HTTP_TIMEOUTS, PINGS
 from recon4_app.settings import ServerSettings
 
 
@@ -75,19 +75,11 @@ class AnnouncingServer(uvicorn.Server):
             self._ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End; connections that are still open after the graceful time are aborted.
-
-        Event streams never end by themselves: they see that nobody listens any more, and end.
-        """
-        late = asyncio.get_running_loop().call_later(ACCEPT.graceful_s, self._abort)
+        """End; connections that are still open after the graceful time are aborted."""
         await super().shutdown(sockets)
-        late.cancel()
-        self._abort()
-        await asyncio.sleep(0)  # the sockets close on the loop's next round
-
-    def _abort(self) -> None:
         for connection in self._table:
             connection.abort()
+        await asyncio.sleep(0)  # the sockets close on the loop's next round
 
     def _protocol(self, connection: Connection) -> asyncio.Protocol:
         return HttpTimeoutsProtocol(
@@ -122,7 +114,7 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
         ws_ping_timeout=PINGS.ping_timeout_s,
         ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
         timeout_keep_alive=HTTP_TIMEOUTS.keep_alive_s,
-        timeout_graceful_shutdown=ACCEPT.stuck_s,
+        timeout_graceful_shutdown=2,  # event streams never end by themselves
         server_header=False,
         ssl_context_factory=(lambda config, default: context) if context is not None else None,
     )

@@ -20,10 +20,6 @@ class AcceptTuning(Struct, frozen=True, kw_only=True):
     """Pause of accepting after file descriptors or memory ran out [s]."""
     spared_s: float = 1.0
     """A connection this young is not closed when file descriptors run out [s]."""
-    graceful_s: float = 2.0
-    """After this time connections that are still open are aborted when the server ends [s]."""
-    stuck_s: int = 4
-    """After this time requests that go on all the same are canceled [s]."""
     sweep_s: float = 5.0
     """Interval of the search for clients that do not read [s]."""
 
