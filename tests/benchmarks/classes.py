@@ -1,10 +1,12 @@
 """Classes of points on simulated walks, against the true cause of each point, and what they change.
 
-    python -m tests.benchmarks.classes [SCENE ...] [--seed 11] [--work FOLDER]
+    python -m tests.benchmarks.classes [SCENE ...] [--seed 11] [--work FOLDER] [--estimated]
 
 The carrier returns beams. Points are placed by the true poses, so the figures are those of the
 stages `classes` and `map` alone: how many points of each cause are kept or left out, and the mean
 distance of the delivered points from the true surfaces, without classes and with them.
+``--estimated``: the packets of the walk are mapped, and multiframes, poses and mirrors are those
+of the whole program; no distances, for which there is `tests.benchmarks.delivered`.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import argparse
 import shutil
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,20 +26,25 @@ from recon4.evaluation.table import text_table
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3
 from recon4.mapping.build import MapInputs, build_map
-from recon4.mapping.mirrors import Mirror, Sight, find_mirrors
+from recon4.mapping.mirrors import Mirror, Sight, find_mirrors, load_mirrors
 from recon4.mapping.undistort import place_with_origins
 from recon4.model.classes import PointClass
 from recon4.model.rig import Rig, load_rig
 from recon4.model.trajectory import Trajectory
+from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.settings import MapSettings
 from recon4.simulation.crowd import ALONE, Crowd
+from recon4.simulation.degradation import PEOPLE, VEHICLES
 from recon4.simulation.frames import simulate_frames
 from recon4.simulation.lidar import LidarModel
 from recon4.simulation.setup import Models, SimulationSetup, prepare
+from recon4.simulation.simulate import record
+from recon4.store.arrays import load_trajectory
 from recon4.store.classes import StoredClasses
 from recon4.store.frames import FrameStore
 from tests.benchmarks.causes import Cause, causes
+from tests.benchmarks.proving_ground import map_walk
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,45 +78,73 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     parser.add_argument("--seed", type=int, default=11)
     parser.add_argument("--work", type=Path)
+    parser.add_argument("--estimated", action="store_true", help="poses of the whole program")
     a = parser.parse_args()
+    tables = estimated_figures if a.estimated else figures
     with tempfile.TemporaryDirectory() as folder:
         for name in a.scenes:
-            print(f"\n{name}\n{figures(name, a.work or Path(folder), seed=a.seed)}", flush=True)
+            print(f"\n{name}\n{tables(name, a.work or Path(folder), seed=a.seed)}", flush=True)
 
 
 def figures(name: str, work: Path, *, seed: int) -> str:
-    """The tables of a scene; its walk is kept in the folder for the next run."""
-    scene, folder = SCENES[name], work / f"{name}-{seed}"
-    models = Models(lidar=replace(LidarModel(), carrier_returns=True))
-    setup = prepare(
-        scene.world,
-        seconds=scene.seconds,
-        seed=seed,
-        rig=tilted(load_rig("4recon"), scene.tilt_deg),
-        models=models,
-        crowd=scene.crowd,
-    )
+    """The tables of a scene by true poses; its walk is kept in the folder for the next run."""
+    setup, folder = walk_of(name, seed), work / f"{name}-{seed}"
     if not folder.exists():
         folder.mkdir(parents=True)
         simulate_frames(setup, folder)
     frames, truth = FrameStore.open(folder), read_tum(folder / "truth.tum")
-    classes = work / "classes"
-    shutil.rmtree(classes, ignore_errors=True)
-    classes.mkdir()
-    mirrors = mirrors_of(frames, truth)
-    begun = time.process_time()
-    write_classes(classify(frames, truth, mirrors=mirrors), classes)
-    ms = 1e3 * (time.process_time() - begun) / len(frames)
-    stored = StoredClasses.open(classes)
+    stored, cost = classified(frames, truth, mirrors_of(frames, truth), work)
     found = by_cause(frames, truth, stored, setup=setup)
     maps = [
         map_figures(label, frames, truth, work, classes=given, world=setup.surroundings.scene)
         for label, given in (("without", None), ("with", stored))
     ]
-    size = (classes / "classes.zst").stat().st_size / frames.points
     head = ("", "points", "mean cm", "median cm", "> 10 cm %", "> 50 cm %")
-    cost = f"{ms:.1f} ms of CPU a multiframe, {size:.3f} bytes a point"
     return f"{found}\n{cost}\n\n{text_table(head, maps)}"
+
+
+def estimated_figures(name: str, work: Path, *, seed: int) -> str:
+    """The table of a scene whose packets the whole program maps; walk and project are kept."""
+    setup, recording = walk_of(name, seed), work / f"{name}-{seed}-packets"
+    if not recording.exists():
+        crowd = SCENES[name].crowd
+        beside = {PEOPLE: crowd.people, VEHICLES: crowd.vehicles}
+        values = {kind: float(number) for kind, number in beside.items() if number}
+        record(setup, {recording: values}, bag=False, progress=Silent())
+    runs, _ = map_walk(recording, work / f"{name}-{seed}-project", audited=False)
+    level = runs["level"].artifact.folder
+    frames, truth = FrameStore.open(runs["frames"].artifact.folder), recording / "truth.tum"
+    mirrors = load_mirrors(level / "mirrors.npz")
+    stored, cost = classified(frames, load_trajectory(level / "trajectory.npz"), mirrors, work)
+    return f"{by_cause(frames, read_tum(truth), stored, setup=setup)}\n{cost}"
+
+
+def walk_of(name: str, seed: int) -> SimulationSetup:
+    """The walk of a scene."""
+    scene = SCENES[name]
+    return prepare(
+        scene.world,
+        seconds=scene.seconds,
+        seed=seed,
+        rig=tilted(load_rig("4recon"), scene.tilt_deg),
+        models=Models(lidar=replace(LidarModel(), carrier_returns=True)),
+        crowd=scene.crowd,
+    )
+
+
+def classified(
+    frames: FrameStore, trajectory: Trajectory, mirrors: Sequence[Mirror], work: Path
+) -> tuple[StoredClasses, str]:
+    """The classes of a walk, and what they cost."""
+    classes = work / "classes"
+    shutil.rmtree(classes, ignore_errors=True)
+    classes.mkdir()
+    begun = time.process_time()
+    write_classes(classify(frames, trajectory, mirrors=mirrors), classes)
+    ms = 1e3 * (time.process_time() - begun) / len(frames)
+    size = (classes / "classes.zst").stat().st_size / frames.points
+    cost = f"{ms:.1f} ms of CPU a multiframe, {size:.3f} bytes a point"
+    return StoredClasses.open(classes), cost
 
 
 def tilted(rig: Rig, tilt_deg: float) -> Rig:

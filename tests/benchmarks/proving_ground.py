@@ -139,11 +139,11 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
     spent: Mapping[str, float] = {}
     audited = not quick or not OF_LIDARS.isdisjoint(degradation.split("+"))
     try:
-        runs, findings = _process(recording, work, audited=audited)
+        runs, findings = map_walk(recording, work, audited=audited)
         errors = measure(runs, truth)
         if not audited and not errors.right:
             audited = True
-            runs, findings = _process(recording, work, audited=True)
+            runs, findings = map_walk(recording, work, audited=True)
         verdict = verdict_of(findings)
         lost = runs["odometry"].figures.lost
         multiframes = runs["frames"].figures.multiframes
@@ -168,10 +168,16 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
     )
 
 
-def _process(
+def map_walk(
     recording: Path, work: Path, *, audited: bool
 ) -> tuple[Mapping[str, StageRun[Any]], tuple[Finding, ...]]:
-    """The stages up to the trajectory, and what the witnesses find in what they leave."""
+    """The stages up to the trajectory, and what the witnesses find in what they leave.
+
+    Args:
+        recording: Folder of ``recon4 simulate``.
+        work: Folder to make a project in.
+        audited: Whether to compare the rig file with the recording.
+    """
     outdoors = json.loads((recording / "world.json").read_text("utf-8"))["outdoors"]
     name = "outdoor" if outdoors else "indoor"
     settings, rig = preset(name), load_rig(recording / "rig.toml")
