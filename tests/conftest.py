@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Protocol
 import pytest
 from hypothesis import settings
 
+from recon4.system.tuning import PROCESSES
 from tests.chromium import CHROMIUM, FLAGS
 from tests.file_order import mixed
 from tests.made_once import made_once
@@ -66,6 +67,7 @@ def pytest_collection() -> Generator[None, object, object]:
     collected = yield
     gc.collect()
     gc.freeze()
+    gc.set_threshold(PROCESSES.collected_after)  # as in programs of recon4
     gc.enable()
     return collected
 
