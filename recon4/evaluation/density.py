@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from recon4.errors import ConfigError
@@ -98,7 +99,7 @@ def surface_density(
     return SurfaceDensity(len(places), radius_m, float(low), float(median), float(high))
 
 
-def _rows_within(tree: cKDTree, points: Array, radius_m: float) -> Array:
+def _rows_within(tree: cKDTree, points: Array, radius_m: float) -> NDArray[np.int64]:
     """Rows of the tree's places, one for every (place, point) pair within the radius."""
     if not len(points):
         return np.empty(0, dtype=np.int64)

@@ -65,7 +65,7 @@ def _warm_up_lidars(rig: Rig, settings: Settings) -> None:
             t_ns=t_ns,
             duration_ns=100_000_000,
             xyz=(ray * reach_m).astype(np.float32),
-            intensity=np.full(count, 30, np.uint8),
+            intensity=np.full(count, 30, np.uint16),
             ring=ring.ravel().astype(np.uint8),
             sensor=np.zeros(count, np.uint8),
             echo=np.zeros(count, np.uint8),
