@@ -149,7 +149,7 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
     screenshot(page, "running")
     page.get_by_role("button", name="Cancel").click()
     expect(page.locator("job-status")).to_contain_text("Cancelled")
-    expect(page.locator("job-status")).to_contain_text("finished stages are kept")
+    expect(page.locator("job-status")).to_contain_text("what was finished is kept")
 
     page.get_by_role("button", name="Resume").click()
     expect(page.get_by_role("row").filter(has_text="frames")).to_contain_text("Reused")

@@ -128,7 +128,7 @@ def test_a_running_job_stops_on_request_and_resumes_as_a_new_one(server, recordi
     done = server.wait_state(again, "succeeded")
 
     os.close(gate)
-    assert view["job"]["note"] == "stopped on request; finished stages are kept"
+    assert view["job"]["note"] == "stopped on request; what was finished is kept"
     assert done["status"]["stages"][0]["state"] == "reused"
 
 

@@ -1,6 +1,6 @@
 ### Gründe, aus denen Aufträge endeten.
 
-job-stopped = auf Wunsch beendet; fertige Stufen bleiben
+job-stopped = auf Wunsch beendet; was fertig ist, bleibt
 job-stopped-early = auf Wunsch beendet
 job-out-of-memory = der Speicher reicht nicht: der Auftrag hat die Grenze des Servers erreicht; andere Programme schließen oder weniger Punkte verarbeiten (ein größeres map.voxel_m, eine kürzere Aufzeichnung), dann fortsetzen
 job-taken-over = eine Datei hat den Prozess übernommen, der sie las; er wurde beendet: diese Aufzeichnung nicht verwenden

@@ -1,6 +1,6 @@
 ### Reasons why jobs ended: each has a code, which is stored, and values.
 
-job-stopped = stopped on request; finished stages are kept
+job-stopped = stopped on request; what was finished is kept
 job-stopped-early = stopped on request
 job-out-of-memory = out of memory: the job reached the server's memory limit; close other programs, or process fewer points (a larger map.voxel_m, a shorter recording), then resume
 job-taken-over = a file took over the process that read it, which was ended: do not use this recording
