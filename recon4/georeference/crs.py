@@ -170,6 +170,18 @@ def area_of_use(crs: str) -> tuple[float, float, float, float]:
     return tuple(area.bounds) if area else (-180.0, -90.0, 180.0, 90.0)
 
 
+def false_easting_m(crs: str) -> float:
+    """Easting of the central meridian of a system [m]; 0 if it states none.
+
+    Raises:
+        GeoreferenceError: If there is no such system.
+    """
+    system = _system(crs)
+    plane = system.sub_crs_list[0] if system.is_compound else system
+    stated = plane.coordinate_operation.params if plane.coordinate_operation else ()
+    return next((float(one.value) for one in stated if one.name == "False easting"), 0.0)
+
+
 def _topocentric(origin: GeodeticOrigin) -> Any:
     from pyproj import Transformer
 

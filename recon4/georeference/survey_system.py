@@ -9,11 +9,19 @@ import numpy as np
 
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import Array
-from recon4.georeference.crs import CrsTransform, GeodeticOrigin, area_of_use, code_of, origin_near
+from recon4.georeference.crs import (
+    CrsTransform,
+    GeodeticOrigin,
+    area_of_use,
+    code_of,
+    false_easting_m,
+    origin_near,
+    to_enu,
+)
 from recon4.georeference.tuning_control import SURVEY_SYSTEMS
 from recon4.units import FOOT_M
 
-_CODE = re.compile(r"EPSG:([0-9]+)(.*)")
+_CODE = re.compile(r"EPSG:([0-9]+)")
 
 
 def survey_system(crs: str, p_crs: Array, *, origin: GeodeticOrigin | None = None) -> CrsTransform:
@@ -31,7 +39,10 @@ def survey_system(crs: str, p_crs: Array, *, origin: GeodeticOrigin | None = Non
     try:
         return _placed(crs, p_crs, origin)
     except GeoreferenceError as error:
-        found = [words for words, code, p in _readings(crs, p_crs) if _is_there(code, p, origin)]
+        plan = _without_heights(crs)
+        if _is_there(plan, p_crs, origin):  # only the heights have no transformation
+            raise
+        found = [words for words, code, p in _readings(plan, p_crs) if _is_there(code, p, origin)]
         better = f"; {' or '.join(found)} they are there: correct the survey or the system"
         raise GeoreferenceError(f"{error}{better if found else ''}") from error
 
@@ -58,12 +69,25 @@ def _placed(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> CrsTransfo
 
 
 def _is_there(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> bool:
-    """Whether a reading of the survey lies near the map, or else in the area of its system."""
+    """Whether a reading of the survey lies near the map, or else in the area of its system.
+
+    No grids are needed: datums differ by less than what counts as far.
+    """
     try:
-        system = _placed(crs, p_crs, origin)
+        place = origin_near(crs, p_crs)
     except GeoreferenceError:
         return False
-    return origin is not None or _in_area(crs, system.origin)
+    if origin is None:
+        return _in_area(crs, place)
+    lat, lon = np.array([place.lat_rad]), np.array([place.lon_rad])
+    off_m = np.hypot(*to_enu(origin, lat, lon, ellipsoidal_height_m=np.zeros(1))[0, :2])
+    return bool(off_m <= SURVEY_SYSTEMS.far_m)
+
+
+def _without_heights(crs: str) -> str:
+    """The horizontal system of a compound one: a missing geoid does not hide where points are."""
+    code = _CODE.match(code_of(crs))
+    return code[0] if code else crs
 
 
 def _in_area(crs: str, place: GeodeticOrigin) -> bool:
@@ -82,7 +106,10 @@ def _readings(crs: str, p_crs: Array) -> Iterator[tuple[str, str, Array]]:
     if p_crs[0] > million:
         without = p_crs - [p_crs[0] // million * million, 0.0, 0.0]
         yield "without the number of the zone before the easting", crs, without
+    elif (zone_m := false_easting_m(crs) // million * million) > 0.0:
+        number = f"with the number of the zone, {zone_m / million:.0f}, before the easting"
+        yield number, crs, p_crs + np.array([zone_m, 0.0, 0.0])
     code = _CODE.fullmatch(code_of(crs))
     for step in SURVEY_SYSTEMS.zones if code else ():
-        other = f"EPSG:{int(code[1]) + step}{code[2]}" if code else crs
+        other = f"EPSG:{int(code[1]) + step}" if code else crs
         yield f"in {other}", other, p_crs

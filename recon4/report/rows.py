@@ -126,14 +126,15 @@ def quantity(name: str, value: Any) -> tuple[str, str]:
         return label.removesuffix(" ns"), f"{text.replace('T', ' ')} (sensor's clock, UTC)"
     for ending, unit, digits in _UNITS:
         if name.endswith(ending):
-            return label.removesuffix(ending.replace("_", " ")), _text(value, digits) + (
-                f" {unit}" if value is not None else ""
-            )
+            shown = _LABELS.get(name, label.removesuffix(ending.replace("_", " ")))
+            return shown, _text(value, digits) + (f" {unit}" if value is not None else "")
     return label, _text(value, 3)
 
 
 _FIRST_DATE_NS = 365 * 86_400 * 10**9
 """Earlier times are relative to the start of the clock, not dates."""
+
+_LABELS = {"lat_deg": "latitude", "lon_deg": "longitude"}
 
 _UNITS = (
     ("lat_deg", "°", 8),

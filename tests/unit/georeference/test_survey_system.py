@@ -49,5 +49,20 @@ def test_a_grid_that_is_missing_is_still_named():
         survey_system("EPSG:25832+7837", AT)
 
 
+def test_a_grid_that_is_missing_does_not_hide_exchanged_axes():
+    said = "latitude .* longitude .* exchanged they are there"
+    with pytest.raises(GeoreferenceError, match=said):
+        survey_system("EPSG:25832+7837", AT[[1, 0, 2]])
+    with pytest.raises(GeoreferenceError, match=r"needs the grid [^;]*\.tif; [^;]* without$"):
+        survey_system("EPSG:25833+7837", AT)
+
+
+@pytest.mark.parametrize(("crs", "zone"), [("EPSG:31467", 3), ("EPSG:4647", 32)])
+def test_a_zone_number_that_is_missing_is_named(crs, zone):
+    said = f"with the number of the zone, {zone}, before the easting they are there"
+    with pytest.raises(GeoreferenceError, match=said):
+        survey_system(crs, AT)
+
+
 def test_a_bare_number_is_a_code():
     assert CrsTransform(GNSS, "25832").crs == "EPSG:25832"

@@ -22,6 +22,7 @@ TIME = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
     ("name", "value", "row"),
     [
         ("roll_deg", -0.0, ("roll", "0.000 °")),
+        ("lat_deg", 49.2265, ("latitude", "49.22650000 °")),
         ("height_m", 276.76837, ("height", "276.768 m")),
         ("rotation_hz", 19.9714, ("rotation", "19.97 Hz")),
         ("rmse_enu_m", [0.28767, 0.2, 0.5], ("rmse", "0.288, 0.200, 0.500 m (east, north, up)")),
