@@ -12,6 +12,7 @@ from recon4.export.expected import expected_points
 from recon4.export.map_files import map_to_export
 from recon4.export.options import ExportOptions
 from recon4.mapping.tiles import TileSet
+from recon4.slices.map_crs import frame_of
 
 
 def estimate_export(
@@ -31,6 +32,8 @@ def estimate_export(
     """
     kind = kind_named(kind_name, options)
     if not kind.point_bytes:
+        if options.crs:
+            frame_of(dict(artifacts), options.crs)  # refuses one that is not possible here
         size = _raster_bytes(artifacts, kind, options)
         return ExportEstimate(points=0, bytes=size, is_most=True)
     map_ = map_to_export(artifacts, None, options)

@@ -289,6 +289,11 @@ def _hint(rows: Sequence[Residual], points: Sequence[ControlPoint], context: Con
     if not rows:
         return beside_map(points, context.map_heights_m, context.say)
     horizontal = _known(row.known_2d_m for row in rows)
+    xy_m = np.array([point.xyz_m[:2] for point in points])
+    off_m, apart_m = min(horizontal, default=0.0), float(np.hypot(*np.ptp(xy_m, axis=0)))
+    if len(rows) > 1 and off_m > apart_m:
+        values = {"off": off_m, "apart": apart_m}
+        return context.say("other-system-hint", **values)
     return common_height(_known(row.up_m for row in rows), horizontal, context.say)
 
 

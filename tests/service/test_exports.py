@@ -80,6 +80,7 @@ def test_the_estimate_is_the_number_of_points_of_a_small_map(server, made):
     [
         ({"file": "map.e57", "options": {"all_points": True}}, "takes no all_points"),
         ({"file": "map.laz", "options": {"crs": "EPSG:25832"}}, "cannot be put into EPSG:25832"),
+        ({"file": "plan.dxf", "options": {"crs": "EPSG:25832"}}, "cannot be put into EPSG:25832"),
         ({"file": "map.las"}, "map.copc.laz"),
         ({"file": "map.laz", "options": {"sqeeze": 1}}, "sqeeze"),
         ({"file": "map.laz", "options": {"storey": "7"}}, "storey"),

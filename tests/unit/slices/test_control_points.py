@@ -149,8 +149,10 @@ def test_control_and_check_points_are_judged_apart():
         ((-44.1, -40.0), 0.1, ""),
         ((-44.1, -44.2), 3.0, ""),
         ((-0.4, -0.4), 0.1, ""),
+        ((-44.1, -44.2), 12.0, "The points are 12 m and more from where they were measured"),
+        ((-44.1,), 12.0, ""),
     ],
-    ids=["geoid", "one point", "unlike heights", "wrong place", "small"],
+    ids=["geoid", "one point", "unlike heights", "wrong place", "small", "system", "one far"],
 )
 def test_heights_above_sea_level_are_told_by_the_points(up_m, east_m, said):
     points = [ControlPoint(str(k), (10.0 * k, 0.0, 300.0)) for k in range(len(up_m))]
