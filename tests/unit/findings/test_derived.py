@@ -22,7 +22,8 @@ from recon4.recording.report import ImportReport
 from tests.source_trees import sources, trees_with
 
 CODE = Path(__file__).parents[3]
-MADE_IN = ("info.py", "info_head.py", "folders.py", "frame_numbers.py")
+MADE_IN = {"info", "frame_files"}
+"""Rooms of `recon4/recording/` with functions that make such records."""
 FROZEN = Path(__file__).with_name("report_with_sentences.json")
 """``report.json`` of a version that wrote sentences."""
 WORDS = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
@@ -42,7 +43,11 @@ def calls():
 
 def made(node, path):
     """The kind of a record that a reader makes itself, such as `RecordingInfo.walk`."""
-    if isinstance(node, ast.Call) and ast.unparse(node.func) == "Derived" and path.name in MADE_IN:
+    if (
+        isinstance(node, ast.Call)
+        and ast.unparse(node.func) == "Derived"
+        and path.parent.name in MADE_IN
+    ):
         return next(one.value for one in node.keywords if one.arg == "kind")
     return None
 
@@ -103,7 +108,7 @@ def test_a_reader_states_all_values_of_some_sentence():
 
 def test_faults_of_topics_are_values_that_the_words_quote():
     code = "".join(
-        (CODE / "recon4" / "recording" / name).read_text("utf-8")
+        (CODE / "recon4" / "recording" / "bags" / name).read_text("utf-8")
         for name in ("topic_contents.py", "topic_choice.py")
     )
     named = set(re.findall(r'Fault\([\d.]+, "(\w+)"|less(?:: str)? ?= ?"(\w+)"', code))
