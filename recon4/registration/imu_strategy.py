@@ -62,7 +62,7 @@ class ImuStrategy:
 
     def remember(self, known: MotionState) -> None:
         """See `MotionStrategy.remember`."""
-        self._imu.remember(known)
+        self._imu.remember(known, of_walk=True)
 
     def extend(self, imu: ImuSamples) -> None:
         """See `MotionStrategy.extend`."""
@@ -160,7 +160,7 @@ class ImuStrategy:
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """The last position and heading, with what the IMU says of the attitude now."""
-        self.remember(self._before_hole or state)
+        self._imu.remember(self._before_hole or state)
         self._before_hole = None
         leveled = self._imu.initial(t_ns)
         vector = leveled.vector.copy()

@@ -16,7 +16,7 @@ from recon4.model.trajectory import Times
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
-from recon4.registration.tuning_imu import PREDICTION
+from recon4.registration.tuning_imu import IMU_ERRORS, PREDICTION
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
 from recon4.units import STANDARD_GRAVITY_M_S2
@@ -121,19 +121,24 @@ class ImuMotion:
         self._unit_cov = np.diag(np.repeat([s.gyro_gain_sd, s.imu_clock_sd_s], [9, 1]) ** 2)
         self._is_estimated = np.diag(self._unit_cov) > 0.0
 
-    def remember(self, state: MotionState) -> None:
+    def remember(self, state: MotionState, *, of_walk: bool = False) -> None:
         """Begin later initial states with what this one knows of gain and clock.
 
         What is far beyond the expected was found with a trajectory that it had bent: some of it is
-        left.
+        left. A gain that a whole walk has found with a wrong clock is found again: turns that come
+        late look like turns about another axis.
         """
-        found = state.vector[VECTOR.unit]
+        found, cov = state.vector[VECTOR.unit].copy(), state.P[STATE.unit, STATE.unit].copy()
         less = np.repeat([PREDICTION.less_sure_gain, PREDICTION.less_sure_clock_s], [9, 1])
         beyond = np.abs(found - self._unit)
-        beyond[beyond < PREDICTION.beyond_sd * np.sqrt(np.diag(self._unit_cov))] = 0.0
-        less = np.maximum(less, PREDICTION.left_ratio * beyond)
-        self._unit = found
-        self._unit_cov = state.P[STATE.unit, STATE.unit] + np.diag(self._is_estimated * less**2)
+        usual = beyond < PREDICTION.beyond_sd * np.sqrt(np.diag(self._unit_cov))
+        less = np.maximum(less, PREDICTION.left_ratio * np.where(usual, 0.0, beyond))
+        usual[9] = False
+        if of_walk and beyond[9] > IMU_ERRORS.most_clock_s:
+            found[usual] = self._unit[usual]
+            cov[usual, :] = cov[:, usual] = 0.0
+            cov[usual, usual] = np.diag(self._unit_cov)[usual]
+        self._unit, self._unit_cov = found, cov + np.diag(self._is_estimated * less**2)
 
     def extend(self, imu: ImuSamples) -> None:
         """Append newer samples of a live capture; drop samples older than a minute."""

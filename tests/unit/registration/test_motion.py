@@ -260,6 +260,24 @@ def test_what_is_known_of_the_unit_outlives_a_new_start():
     np.testing.assert_array_equal(begun.vector[:12], learned.vector[:12])
 
 
+@pytest.mark.parametrize(("clock_s", "gain"), [(0.015, 0.0), (0.003, 0.02)])
+def test_a_gain_that_a_walk_has_found_with_a_wrong_clock_is_found_again(clock_s, gain):
+    motion = imu_motion()
+    learned = motion.initial(T0_NS)
+    vector, P = learned.vector.copy(), learned.P.copy()
+    vector[15:24], vector[24] = 0.02, clock_s
+    P[18:, 18:] = np.diag(np.repeat([2e-4, 3e-4], [9, 1]) ** 2)
+
+    motion.remember(replace(learned, vector=vector, P=P), of_walk=True)
+    begun = motion.initial(T0_NS + S_NS)
+
+    np.testing.assert_array_equal(begun.vector[15:], np.repeat([gain, clock_s], [9, 1]))
+    sd = np.sqrt(np.diag(begun.P))[18:]
+    np.testing.assert_allclose(
+        sd, np.repeat([1.02e-3 if gain else 1.005e-2, 5.83e-4], [9, 1]), rtol=1e-2
+    )
+
+
 def test_a_saturated_gyroscope_is_not_taken_for_a_measurement():
     imu = imu_of(spinning, 3.0)
     limit = 2.5
