@@ -158,7 +158,7 @@ class _Statements:
     def add_constant(self, name: str, messages: Iterator[Any]) -> None:
         """Add the transforms of ``/tf`` that never change, and the joints that move."""
         for pair, one in self._collect(name, messages, last=False).items():
-            if last_name(pair[0]) in WORLD_FRAMES or one.count < 2 or pair[1] in self._children:
+            if last_name(pair[0]) in WORLD_FRAMES or pair[1] in self._children:
                 continue
             if one.differs:
                 self._moving.append(MovingJoint(*pair, one.tilt_rad, name))

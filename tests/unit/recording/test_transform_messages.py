@@ -84,6 +84,18 @@ def test_of_tf_only_what_does_not_change_counts(tmp_path):
         assert frames.T_a_b("base_link", moving) is None
 
 
+def test_a_transform_that_tf_states_once_is_a_mount(tmp_path):
+    path = bag_path(tmp_path, "db3")
+    with RobotBag(path, "db3") as bag:
+        bag.tf(("base_link", "lidar", mount(0.2)), topic="/tf")
+        bag.tf(("odom", "base_link", mount(0.1)), topic="/tf")
+
+    frames, _ = frames_of(path)
+
+    assert_mount(frames.T_a_b("base_link", "lidar"), mount(0.2))
+    assert frames.T_a_b("base_link", "odom") is None
+
+
 def test_tf_is_not_read_where_static_transforms_say_it_all(tmp_path):
     path = bag_path(tmp_path, "db3")
     with RobotBag(path, "db3") as bag:
