@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -32,17 +32,21 @@ class PathSums:
 
     Exact for up to `BOUNDS.anchors` places. Of more, every n-th is an anchor, and paths lead past
     the anchors of both places, or along all places in between: an upper bound, larger than the
-    best by what is stated of some meters of path. Memory does not grow with K then.
+    best by what is stated of some meters of path. Memory does not grow with K then. Paths are
+    followed from the anchors of those places that are asked for.
     """
 
+    links: csr_array
+    anchors: Rows
+    """Nodes, (A,)."""
     anchor: Rows
     """Row of the anchor of each place, (K,)."""
     beside: Array
     """From each place to its anchor, (K,)."""
-    between: Array
-    """From anchor to anchor, (A, A)."""
     along: Array
     """From the first place past all others to each, (K,)."""
+    followed: dict[int, Array] = field(default_factory=dict)
+    """From an anchor to all of them, (A,), by its row."""
 
     @staticmethod
     def of(links: csr_array, places: Rows) -> PathSums:
@@ -50,24 +54,44 @@ class PathSums:
         stride = -(-len(places) // BOUNDS.anchors)
         anchors = places[::stride]
         anchor = np.minimum((np.arange(len(places)) + stride // 2) // stride, len(anchors) - 1)
-        between = np.empty((len(anchors), len(anchors)))
-        beside = np.empty(len(places))
-        for first in range(0, len(anchors), BOUNDS.chunk):
-            some = slice(first, first + BOUNDS.chunk)
-            sums = dijkstra(links, directed=False, indices=anchors[some])
-            between[some] = sums[:, anchors]
-            mine = np.flatnonzero((anchor >= first) & (anchor < first + len(sums)))
-            beside[mine] = sums[anchor[mine] - first, places[mine]]
-        steps = _steps(links, places) if stride > 1 else np.zeros(len(places))
-        return PathSums(anchor, beside, between, np.cumsum(steps))
+        along, beside = np.zeros(len(places)), np.zeros(len(places))
+        if stride > 1:
+            along = np.cumsum(_steps(links, places))
+            beside = _beside(links, places, anchor, anchors=anchors, along=along)
+        return PathSums(links, anchors, anchor, beside, along)
 
     def __getitem__(self, at: tuple[Any, Any]) -> Any:
         """Sums from some places to others, as of an array (K, K)."""
         a, b = (np.arange(len(self.anchor))[rows] for rows in at)
-        far = self.beside[a] + self.between[self.anchor[a], self.anchor[b]] + self.beside[b]
-        if len(self.between) == len(self.anchor):
+        rows, row = np.unique(self.anchor[b], return_inverse=True)
+        between = self._between(rows)[row.reshape(np.shape(b)), self.anchor[a]]
+        far = self.beside[a] + between + self.beside[b]
+        if len(self.anchors) == len(self.anchor):
             return far
         return np.fmin(far, np.abs(self.along[b] - self.along[a]))
+
+    def _between(self, rows: Rows) -> Array:
+        """From some anchors to all of them, (R, A)."""
+        new = [row for row in rows.tolist() if row not in self.followed]
+        for first in range(0, len(new), BOUNDS.chunk):
+            some = new[first : first + BOUNDS.chunk]
+            sums = dijkstra(self.links, directed=False, indices=self.anchors[some])
+            self.followed.update(zip(some, sums[:, self.anchors], strict=True))
+        return np.stack([self.followed[row] for row in rows.tolist()])
+
+
+def _beside(links: csr_array, places: Rows, anchor: Rows, *, anchors: Rows, along: Array) -> Array:
+    """From each place to its anchor; arguments as of `PathSums`, (K,)."""
+    beside = np.zeros(len(places))
+    own = along[np.searchsorted(places, anchors)]
+    # The path along the places is never better; a little more leaves room for rounding.
+    farthest = float(np.abs(along - own[anchor]).max()) * (1.0 + 1e-6)
+    for first in range(0, len(anchors), BOUNDS.chunk):
+        some = slice(first, first + BOUNDS.chunk)
+        sums = dijkstra(links, directed=False, indices=anchors[some], limit=farthest)
+        mine = np.flatnonzero((anchor >= first) & (anchor < first + len(sums)))
+        beside[mine] = sums[anchor[mine] - first, places[mine]]
+    return beside
 
 
 def _steps(links: csr_array, places: Rows) -> Array:

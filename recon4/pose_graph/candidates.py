@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -46,15 +46,15 @@ def pairs_at_distances(
     """All pairs ``d`` nodes apart (Algorithm 2.1 with 0-based nodes, A0 no. 5)."""
     count = len(graph)
     tried = {(e.i, e.j) for e in graph.edges if e.kind is not EdgeKind.ODOMETRY}
-    pairs = []
+    ends = []
     for d in distances:
         last = count if settings.closed_trajectory else count - d
         for start in range(max(last, 0)):
             i, j = sorted((start, (start + d) % count))
             if i != j and (i, j) not in tried:
                 tried.add((i, j))
-                pairs.append(_pair(graph, i, j, settings=settings))
-    return pairs
+                ends.append((i, j))
+    return _pairs(graph, ends, settings=settings)
 
 
 def distance_schedule(farthest: int) -> list[range]:
@@ -81,7 +81,7 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphTuning, limit: int) -> lis
     t = graph.T_map_body.t
     walked_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(t, axis=0), axis=1))])
     tried = {(e.i, e.j) for e in graph.edges}
-    pairs = []
+    ends: list[Ends] = []
     for j in range(settings.neighbors + 1, len(t)):
         earlier = slice(0, j - settings.neighbors)
         distance_m = np.linalg.norm(t[earlier] - t[j], axis=1)
@@ -90,8 +90,8 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphTuning, limit: int) -> lis
         )
         inside = np.flatnonzero(distance_m < allowed_m)
         chosen = _spread(inside, distance_m[inside], limit)
-        pairs += [_pair(graph, i, j, settings=settings) for i in chosen if (i, j) not in tried]
-    return pairs
+        ends += [(i, j) for i in chosen if (i, j) not in tried]
+    return _pairs(graph, ends, settings=settings)
 
 
 def _spread(nodes: NDArray[np.int64], distance_m: Array, limit: int) -> list[int]:
@@ -133,6 +133,11 @@ def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float
     ]
 
 
-def _pair(graph: PoseGraph, i: int, j: int, *, settings: GraphTuning) -> Pair:
-    kind = EdgeKind.NEIGHBOR if j - i <= settings.neighbors else EdgeKind.LOOP
-    return Pair(i, j, kind, graph.T_map_body[i].inverse() @ graph.T_map_body[j])
+def _pairs(graph: PoseGraph, ends: Sequence[Ends], *, settings: GraphTuning) -> list[Pair]:
+    i, j = np.array(ends, np.intp).reshape(-1, 2).T
+    T_i_j = graph.T_map_body[i].inverse() @ graph.T_map_body[j]
+    near, loop = EdgeKind.NEIGHBOR, EdgeKind.LOOP
+    return [
+        Pair(a, b, near if b - a <= settings.neighbors else loop, T_i_j[row])
+        for row, (a, b) in enumerate(ends)
+    ]

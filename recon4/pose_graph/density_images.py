@@ -21,6 +21,7 @@ _REACH = round(DENSITY.max_shift_m / DENSITY.cell_m)
 _SHIFTS = np.arange(-_REACH, _REACH + 1)
 """Shifts that are tried along each axis, in cells."""
 _HEIGHTS_M = np.arange(*DENSITY.heights_m)
+"""Lower edges of the layers, and the upper one of the last."""
 
 Spectrum = NDArray[np.complex64]
 Layers = NDArray[np.int64]
@@ -70,7 +71,8 @@ def make_density_image(walls_m: Array, layers: Layers) -> DensityImage:
 
 def layers_of(heights_m: Array) -> Layers:
     """How many points are in each layer around the body, by their heights from it [m], (M,)."""
-    return np.histogram(heights_m, _HEIGHTS_M)[0].astype(np.int64)
+    above = np.searchsorted(_HEIGHTS_M, heights_m, side="right")
+    return np.bincount(above, minlength=len(_HEIGHTS_M) + 1)[1:-1]
 
 
 class TurnedImage:
@@ -101,7 +103,7 @@ def overlays(target: DensityImage, source: TurnedImage, *, yaws: Array, most: in
         yaws: Rotations that are tried [rad], (Y,).
         most: Number of overlays; those next to a better one are omitted.
     """
-    scores = np.stack([_correlate(target, source, float(yaw)) for yaw in yaws])
+    scores = _correlate(target, source, yaws)
     found = []
     for _ in range(most):
         k, a, b = np.unravel_index(int(np.argmax(scores)), scores.shape)
@@ -119,11 +121,12 @@ def yaws_within(bound_rad: float) -> Array:
     return np.asarray(np.arange(-steps, steps + 1) * DENSITY.yaw_step_rad)
 
 
-def _correlate(target: DensityImage, source: TurnedImage, yaw: float) -> NDArray[np.float32]:
-    """Cosine of the images for all shifts of the turned source, (S, S)."""
+def _correlate(target: DensityImage, source: TurnedImage, yaws: Array) -> NDArray[np.float32]:
+    """Cosine of the images for all shifts of the source, turned by each yaw, (Y, S, S)."""
+    turned = np.stack([source.spectrum(float(yaw)) for yaw in yaws])
     # As `irfft2` does it, one axis after the other, without the rows that no shift asks for.
-    rows = fft.ifft(target.spectrum * source.spectrum(yaw), axis=0)[_SHIFTS]
-    chosen: NDArray[np.float32] = fft.irfft(rows, n=DENSITY.cells, axis=1)[:, _SHIFTS]
+    rows = fft.ifft(target.spectrum * turned, axis=1)[:, _SHIFTS]
+    chosen: NDArray[np.float32] = fft.irfft(rows, n=DENSITY.cells, axis=2)[:, :, _SHIFTS]
     return chosen
 
 

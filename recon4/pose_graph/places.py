@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import EdgeKind, Flags, PoseGraph, Rows
+from recon4.model.pose_graph import Flags, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
 from recon4.pose_graph.density_images import (
     DensityImage,
@@ -19,6 +19,7 @@ from recon4.pose_graph.density_images import (
     make_density_image,
 )
 from recon4.pose_graph.node_views import NodeRangeImages
+from recon4.pose_graph.relations import odometry_steps
 from recon4.pose_graph.stored_images import ChosenImages, StoredImages
 from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.pose_graph.tuning_places import DENSITY, PLACES
@@ -176,10 +177,9 @@ def _path_m(graph: PoseGraph) -> Array:
 def _unbroken_parts(graph: PoseGraph) -> NDArray[np.int64]:
     """Number of the stretch of certain odometry that each node belongs to, (N,)."""
     breaks = np.zeros(len(graph), np.int64)
-    for edge in graph.edges:
-        if edge.kind is EdgeKind.ODOMETRY:
-            cov = np.linalg.inv(edge.information)
-            breaks[edge.j] = np.sqrt(np.trace(cov[3:, 3:])) > PLACES.broken_sd_m
+    of, steps = graph.relations, odometry_steps(graph)
+    cov = np.linalg.inv(of.information[steps])
+    breaks[of.j[steps]] = np.sqrt(np.einsum("eaa->e", cov[:, 3:, 3:])) > PLACES.broken_sd_m
     return np.cumsum(breaks)
 
 

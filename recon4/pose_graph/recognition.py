@@ -138,14 +138,16 @@ def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list
         )
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
         height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place])
-        for overlay in laid.onto(k, yaws):
-            if overlay.score < settings.min_score:
-                break  # the best ones come first
-            T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)
-            move_m = T.t - T_map_place.t[place]
-            across = float(np.linalg.norm(move_m[:2])) / (likely_m + settings.bound_m)
-            unlikely = max(across, abs(float(move_m[2])) / (height_m + RECOGNITION.height_m))
-            found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
+        fit = [one for one in laid.onto(k, yaws) if one.score >= settings.min_score]
+        T = _moved(T_map_place[place], T_map_place[k], fit, height_m=height_m)
+        move_m = T.t - T_map_place.t[place]
+        across = np.linalg.norm(move_m[:, :2], axis=1) / (likely_m + settings.bound_m)
+        up = np.abs(move_m[:, 2]) / (height_m + RECOGNITION.height_m)
+        unlikely = np.maximum(across, up).tolist()
+        found += [
+            _PlaceHypothesis(place, T[row], one.score, k, unlikely[row])
+            for row, one in enumerate(fit)
+        ]
     return _distinct(sorted(found, key=lambda one: -one.rank), settings.hypotheses)
 
 
@@ -178,18 +180,19 @@ def _candidates(places: Places, place: int, settings: RecognitionTuning) -> list
     return chosen
 
 
-def _moved(T_map_body: SE3, T_map_earlier: SE3, overlay: Overlay, *, height_m: float) -> SE3:
-    """Pose of a place in the map if it is laid onto an earlier one.
+def _moved(T_map_body: SE3, T_map_earlier: SE3, laid: Sequence[Overlay], *, height_m: float) -> SE3:
+    """Poses of a place in the map if it is laid onto an earlier one, a batch of L.
 
     Images from above show no heights: on stairs one place lies above another. A height difference
     that the graph knows (``height_m`` is its drift) stays; else the visits have the same height.
     """
-    turn = so3_exp([0.0, 0.0, overlay.yaw_rad])
     above_m = float(T_map_body.t[2] - T_map_earlier.t[2])
     above_m = (
         above_m if height_m < RECOGNITION.known_m and abs(above_m) < RECOGNITION.flight_m else 0.0
     )
-    return SE3(turn @ T_map_body.R, T_map_earlier.t + np.append(overlay.shift_m, above_m))
+    turns = so3_exp(np.array([(0.0, 0.0, one.yaw_rad) for one in laid]).reshape(-1, 3))
+    shifts_m = np.array([(*one.shift_m, above_m) for one in laid]).reshape(-1, 3)
+    return SE3(turns @ T_map_body.R, T_map_earlier.t + shifts_m)
 
 
 def _same(a: _PlaceHypothesis, b: _PlaceHypothesis) -> bool:

@@ -17,7 +17,7 @@ from recon4.model.pose_graph import Flags, PoseGraph, Relations
 from recon4.pose_graph.priors import Priors
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import Solution, solved
-from recon4.pose_graph.tuning_solve import GRADUAL, ROBUST
+from recon4.pose_graph.tuning_solve import GRADUAL, NEAR, ROBUST
 
 if TYPE_CHECKING:
     from recon4.pose_graph.factors import FactorProblem
@@ -52,7 +52,7 @@ def optimize_gnc(
     of = graph.relations
     problem = FactorProblem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     everything = of.in_graph.astype(np.float64)
-    T_cauchy, _ = problem.solve(graph.T_map_body, weights=everything, kernel="cauchy")
+    T_cauchy, _ = problem.solve(graph.T_map_body, weights=everything, kernel="cauchy", tuning=NEAR)
     chi2 = squared_residuals(T_cauchy, of)
     limit = outlier_limit(chi2[of.in_graph & ~of.protected], probability=probability)
     best, lowest = None, np.inf

@@ -39,7 +39,7 @@ from recon4.pose_graph.recognition import recognize, without_settled
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
-from recon4.pose_graph.tuning_solve import COARSE, SEARCH, SOLVE, SolveTuning
+from recon4.pose_graph.tuning_solve import COARSE, NEAR, SEARCH, SOLVE, SolveTuning
 from recon4.progress import Progress
 from recon4.registration.submap import Submaps, TrackedFrames, node_rows
 from recon4.settings.reads import GraphReads
@@ -219,7 +219,7 @@ def close_loops(
         graph = attempts.run(graph, select(graph))
     for _ in range(g.retry_rounds):
         again = retry_pairs(graph, attempts.expected, move_m=g.retry_move_m)
-        graph = attempts.run(graph, again, tuning=SOLVE)
+        graph = attempts.run(graph, again, tuning=NEAR)
     return without_settled(attempts.settled(graph))
 
 
@@ -300,7 +300,7 @@ class _Attempts:
 
     def settled(self, graph: PoseGraph) -> PoseGraph:
         """The graph with its final poses."""
-        return self._solved(graph, "cauchy", SOLVE) if self._is_coarse else graph
+        return self._solved(graph, "cauchy", NEAR) if self._is_coarse else graph
 
     def _solved(self, graph: PoseGraph, kernel: Kernel, tuning: SolveTuning) -> PoseGraph:
         self._is_coarse = tuning is COARSE

@@ -148,6 +148,9 @@ class SolveTuning(Struct, frozen=True, kw_only=True):
 SOLVE = SolveTuning()
 COARSE = SolveTuning(last_step_m=0.3)
 """Between the rounds of a search: centimeters are left, pairs need decimeters."""
+NEAR = SolveTuning(last_step_m=0.001)
+"""The end of a search and the start of a robust solve: hundredths of a millimeter
+are left (docs/studies/benchmarks.md)."""
 GRADUAL = SolveTuning(max_iterations=ROBUST.inner_iterations)
 """Rounds of the graduated robust solve."""
 

@@ -116,7 +116,7 @@ def _refine(
 
 
 ODOMETRY = Stage("odometry", 55, OdometryReads, _odometry, OdometryFigures, percent=14.0)
-GRAPH = Stage("graph", 14, GraphReads, _graph, GraphFigures, percent=25.0)
+GRAPH = Stage("graph", 15, GraphReads, _graph, GraphFigures, percent=25.0)
 REFINE = Stage("refine", 5, RefineReads, _refine, RefineFigures, percent=8.0)
 LIDAR = Workflow(
     "lidar",

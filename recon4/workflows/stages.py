@@ -179,8 +179,8 @@ CALIBRATION = Stage(
     "calibration", 16, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
 )
 VERIFICATION = Stage(
-    "verification", 3, VerificationReads, _verification, VerificationFigures, percent=2.0
+    "verification", 4, VerificationReads, _verification, VerificationFigures, percent=2.0
 )
-REVIEW = Stage("review", 5, VerificationReads, _review, ReviewFigures)
-LEVEL = Stage("level", 36, LevelReads, _level, LevelFigures, percent=1.0)
+REVIEW = Stage("review", 6, VerificationReads, _review, ReviewFigures)
+LEVEL = Stage("level", 37, LevelReads, _level, LevelFigures, percent=1.0)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures, percent=1.0)

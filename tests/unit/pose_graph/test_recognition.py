@@ -20,6 +20,7 @@ from recon4.pose_graph import best_paths
 from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density_images import (
     TurnedImage,
+    layers_of,
     overlays,
     yaws_within,
 )
@@ -143,6 +144,26 @@ def test_bounds_of_a_long_walk_are_hardly_larger_than_the_best_path(monkeypatch)
         assert (other >= one - 1e-9).all()
         assert np.diagonal(other, 1) == pytest.approx(np.diagonal(one, 1))
     assert (bounded.horizontal_m[rows] - exact.horizontal_m[rows]).max() < 2.2  # 22 m of path
+
+
+def test_paths_are_followed_only_from_places_that_are_asked_for(monkeypatch):
+    monkeypatch.setattr(best_paths, "BOUNDS", BoundTuning(anchors=12, chunk=5))
+    nodes = np.arange(121)
+    walk = straight(121, edge(20, 100, kind=EdgeKind.LOOP))
+    some, all_m = (relative_bounds(walk, nodes, leveled=True).horizontal_m for _ in range(2))
+    every = all_m[nodes[:, None], nodes[None, :]]
+
+    np.testing.assert_array_equal(some[:90, 90], every[:90, 90])
+    assert [*some.followed] == [some.anchor[90]]
+    assert some[3, 117] == every[3, 117]
+    assert {*some.followed} == {some.anchor[90], some.anchor[117]}
+
+
+def test_a_height_on_the_edge_of_a_layer_belongs_to_the_layer_above():
+    edges_m = np.arange(*DENSITY.heights_m)
+    heights_m = np.concatenate([edges_m[:-1], edges_m[:-1] + 0.1, [-9.0, 9.0]])
+
+    assert layers_of(heights_m).tolist() == [2] * (len(edges_m) - 1)
 
 
 def test_images_come_back_from_the_disk_as_they_were(tmp_path):

@@ -8,7 +8,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Reason, Ver
 from recon4.pose_graph import search
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.tuning import RecognitionTuning
-from recon4.pose_graph.tuning_solve import COARSE, SOLVE
+from recon4.pose_graph.tuning_solve import COARSE, NEAR, SOLVE
 from recon4.progress import Silent
 from tests.large_walk import TrueRegistrar, odometry_graph, true_poses
 
@@ -31,7 +31,7 @@ class FirstRoundOnly(TrueRegistrar):
         return edges
 
 
-def test_rounds_without_an_edge_are_not_solved_and_only_the_last_solve_is_exact(monkeypatch):
+def test_rounds_without_an_edge_are_not_solved_and_the_last_solve_is_near(monkeypatch):
     truth, log = true_poses(NODES), []
 
     def watched(graph, **given):
@@ -47,9 +47,9 @@ def test_rounds_without_an_edge_are_not_solved_and_only_the_last_solve_is_exact(
         progress=Silent(),
     )
 
-    assert log == [True, COARSE, False, SOLVE]
+    assert log == [True, COARSE, False, NEAR]
     again = optimize(graph, kernel="cauchy").T_map_body
-    assert np.linalg.norm(again.t - graph.T_map_body.t, axis=1).max() < 1e-6
+    assert np.linalg.norm(again.t - graph.T_map_body.t, axis=1).max() < NEAR.last_step_m / 6.0
 
 
 @pytest.mark.parametrize(("fits", "kernels"), [(True, ["cauchy"]), (False, ["none", "cauchy"])])
