@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import ConfigError, RecordingError, StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.events import Warned
 from recon4.model.rig import Rig, load_rig
@@ -217,7 +218,7 @@ def _describe(project: Project, sources: Sources, *, preset: str, progress: Prog
 def _finished(out: Path) -> Workflow:
     made = read_artifacts(out)
     if not has_map(made):
-        raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
+        raise StoreError(CodedText("map-not-yet", out=out.name))
     return of_project(made)
 
 

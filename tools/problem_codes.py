@@ -35,6 +35,9 @@ TITLES = {
     "references": "What is said of references",
     "recordings": "What is said of recordings",
     "files": "What is wrong with files, settings and projects",
+    "formats": "What is wrong with recordings, clouds, tables and models",
+    "usage": "Wrong usage of commands",
+    "results": "What is wrong with results, and with what commands are given",
 }
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import recon4
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText, at
 from recon4.sandbox import ONE_THREAD as ONE_THREAD
 from recon4.sandbox import allowed_environment
 from recon4.untrusted.names import is_unnameable, visible
@@ -98,25 +99,25 @@ class ServerSettings:
         if not self.lan:
             _refuse_open_network(self.host)
             if self.tls_certificate or self.tls_key:
-                raise ConfigError("a certificate goes with --lan, which also turns on the login")
+                raise ConfigError(CodedText("server-certificate-lan"))
         if self.lan and self.behind is not None:
-            raise ConfigError("--behind and --lan exclude each other: the proxy does TLS")
+            raise ConfigError(CodedText("server-behind-lan"))
         if (self.tls_certificate is None) != (self.tls_key is None):
-            raise ConfigError("give --tls-cert and --tls-key together, or neither")
+            raise ConfigError(CodedText("server-tls-both"))
         if is_unnameable(self.root):
-            raise ConfigError(
-                f"the path {visible(str(self.root))} is no UTF-8 text, so no request can name it: "
-                "rename the folder"
-            )
+            raise ConfigError(CodedText("server-root-utf8", root=visible(str(self.root))))
         if not self.root.is_dir():
-            raise ConfigError(f"no folder {self.root}: give the folder that holds the projects")
+            raise ConfigError(CodedText("projects-no-folder", root=str(self.root)))
         if (self.root / "project.json").exists():
             raise ConfigError(
-                f"{self.root} is a project itself: give the folder that holds it, "
-                f"{self.root.resolve().parent}"
+                CodedText(
+                    "projects-is-project",
+                    root=str(self.root),
+                    parent=str(self.root.resolve().parent),
+                )
             )
         if not 0 <= self.port <= 65535:
-            raise ConfigError(f"port must be 0 to 65535, got {self.port}")
+            raise ConfigError(CodedText("server-port-range", port=self.port))
 
     @property
     def state(self) -> Path:
@@ -166,7 +167,7 @@ def webhook_networks_from_environment() -> tuple[Network, ...]:
     try:
         return tuple(ipaddress.ip_network(part.strip()) for part in named if part.strip())
     except ValueError as error:
-        raise ConfigError(f"RECON4_WEBHOOK_NETWORKS: {error}") from error
+        raise ConfigError(at("RECON4_WEBHOOK_NETWORKS", str(error))) from error
 
 
 def worker_environment() -> dict[str, str]:
@@ -188,8 +189,4 @@ def _refuse_open_network(host: str) -> None:
     except ValueError:
         loopback = False
     if not loopback:
-        raise ConfigError(
-            f"will not listen on {host!r}: without TLS and login only loopback (127.0.0.1) is "
-            "allowed; use --lan for both, or from another computer: "
-            "ssh -L 8000:127.0.0.1:8000 THIS-HOST"
-        )
+        raise ConfigError(CodedText("server-host", host=host))

@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import unreadable
 from recon4.store.atomic import atomic_file
 from recon4.store.sqlite_files import connect
 from recon4_app.tuning import STATE_COPIES
@@ -119,7 +120,7 @@ def integrity_error(path: Path) -> str:
         with closing(connect(path)) as connection:
             (found,) = connection.execute("PRAGMA quick_check(1)").fetchone()
     except sqlite3.OperationalError as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
+        raise StoreError(unreadable(str(path), error)) from error
     except sqlite3.DatabaseError as error:
         return str(error)
     return "" if found == "ok" else str(found).splitlines()[0]

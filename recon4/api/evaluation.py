@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.evaluation.evaluate import Evaluation, MapChunks
@@ -57,7 +58,7 @@ def evaluate(
     artifacts = read_artifacts(root) if is_project(root) else {}
     tiles = TileSet.open(artifacts["map"]) if "map" in artifacts else None
     if true_poses and "frames" not in artifacts:
-        raise ConfigError(f"the true poses need a project with its frames, got {root}")
+        raise ConfigError(CodedText("true-poses-project", root=str(root)))
     return evaluate_result(
         root,
         truth=Path(truth),
@@ -82,7 +83,7 @@ def _mesh(path: Path, unit: str, tiles: TileSet | None) -> TriangleMesh:
 
     chosen = next((known for known in UNITS_M if known == unit), None)
     if unit and chosen is None:
-        raise ConfigError(f"unit: expected one of {', '.join(UNITS_M)}, got {unit[:40]!r}")
+        raise ConfigError(CodedText("unit-unknown", units_m=", ".join(UNITS_M), unit=unit[:40]))
     mesh = read_mesh(path)
     if chosen:
         return TriangleMesh(mesh.vertices_m * UNITS_M[chosen], mesh.triangles)

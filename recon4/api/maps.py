@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.mapping.tiles import Surface, TileSet
@@ -73,7 +74,7 @@ def open_map(project: Path, *, draft: bool = False, crs: str = "") -> OpenedMap:
 
     artifacts = read_artifacts(project)
     if PLANAR in artifacts:
-        raise StoreError(f"{project} has no points: it is a 2-D map, see map.png and map.yaml")
+        raise StoreError(CodedText("map-2d-no-points", project=str(project)))
     keys = {stage: folder.name for stage, folder in artifacts.items()}
     approval = None if draft else approval_of(project, keys)
     if approval:

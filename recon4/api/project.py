@@ -12,6 +12,7 @@ import msgspec
 
 from recon4.api.maps import PLANAR, read_tiles
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, unreadable
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.usability import MapVerdict, Usability
@@ -156,7 +157,9 @@ class MapProject:
         for stage in stages:
             if stage in artifacts:
                 return artifacts[stage]
-        raise StoreError(f"{self.folder} has no finished stage {' or '.join(stages)}")
+        raise StoreError(
+            CodedText("project-no-stage", folder=str(self.folder), stages=" or ".join(stages))
+        )
 
 
 def open_project(folder: str | PathLike[str]) -> MapProject:
@@ -184,14 +187,14 @@ def open_project(folder: str | PathLike[str]) -> MapProject:
     read_description(root)
     record = read_summary(root)
     if record is None:
-        raise StoreError(f"{root} has no finished run: process its recording to the end first")
+        raise StoreError(CodedText("project-no-run", root=str(root)))
     try:
         summary = msgspec.convert(record, ProjectSummary)
         if "findings" not in record:
             summary = replace(summary, findings=_earlier_findings(record.get("warnings", [])))
         return MapProject(root, summary)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{root / 'summary.json'} cannot be read: {error}") from error
+        raise StoreError(unreadable(str(root / "summary.json"), error)) from error
 
 
 def _earlier_findings(warnings: object) -> tuple[MapFinding, ...]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from recon4.api.maps import OpenedMap, open_map
 from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.slices.colors import ColorBy
@@ -132,7 +133,7 @@ def write_planes(
     ending = file.suffix.lower()
     writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
     if ending in writers and look.reference:
-        raise ConfigError(f"distances to a reference are written as an image, got {file.name}")
+        raise ConfigError(CodedText("slice-distances-image", file=file.name))
     if ending in writers:
         with atomic_file(file) as temporary:
             chosen = SliceSelection(opened.tiles, tuple(planes))
@@ -141,9 +142,9 @@ def write_planes(
                 stamp_file(temporary, temporary, opened.stamp)
         return points
     if ending not in _IMAGES:
-        raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
+        raise ConfigError(CodedText("slice-formats", file=file.name))
     if len(planes) > 1:
-        raise ConfigError("an image has one slice; use .dxf, .laz or .csv for several")
+        raise ConfigError(CodedText("slice-one-image"))
     return _write_image(opened, planes[0], file, look=look)
 
 
@@ -156,7 +157,7 @@ def _write_image(opened: OpenedMap, plane: SlicePlane, file: Path, *, look: Slic
     from recon4.slices.slice_image import RasterGrid, draw
 
     if look.color not in LABELS:
-        raise ConfigError(f"colors are {', '.join(LABELS)}; got {look.color!r}")
+        raise ConfigError(CodedText("slice-colors", labels=", ".join(LABELS), color=look.color))
     tiles, color, frame = opened.tiles, look.color, opened.frame
     approval = approval_text(opened.stamp.to_json() if opened.stamp else None)
     window = extent(tiles, plane)

@@ -26,6 +26,7 @@ from pathlib import Path, PurePosixPath
 
 from recon4.archive.listing import BackedUpFile, BackupListing, Entries, newest, read_list
 from recon4.errors import ConfigError, NoSpace, StoreError
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress, track
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
 from recon4.store.atomic import atomic_file, fsync, raise_if_full, write_json
@@ -97,7 +98,9 @@ def back_up(root: Path, out: Path, *, with_keys: bool, progress: Progress) -> Ba
         path = _write_list(out, taken, left_out, with_keys=with_keys)
     except OSError as error:
         raise_if_full(error, out)
-        raise StoreError(f"cannot write {out}: {error.strerror or error}") from error
+        raise StoreError(
+            CodedText("cannot-write", name=str(out), why=error.strerror or str(error))
+        ) from error
     check_backup(path, progress)
     total = sum(entry.bytes for entry in taken.values())
     return BackedUp(path, len(taken), total, new_bytes, tuple(left_out), tuple(damaged))
@@ -122,9 +125,9 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     path, root = newest(backup), root.resolve()
     listing = read_list(path)
     if root.exists() and any(root.iterdir()):
-        raise ConfigError(f"{root} is not empty: a backup is restored into an empty folder")
+        raise ConfigError(CodedText("restore-not-empty", root=str(root)))
     if with_keys and not listing.with_keys:
-        raise ConfigError(f"{path.name} was made without keys: leave out --with-keys")
+        raise ConfigError(CodedText("restore-no-keys", file=path.name))
     files = {n: e for n, e in listing.files.items() if with_keys or not _is_secret(n)}
     _check_room(root, sum(entry.bytes for entry in files.values()))
     check_backup(path, progress)
@@ -139,7 +142,9 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
         building.rename(root)
     except OSError as error:
         raise_if_full(error, root)
-        raise StoreError(f"cannot write {root}: {error.strerror or error}") from error
+        raise StoreError(
+            CodedText("cannot-write", name=str(root), why=error.strerror or str(error))
+        ) from error
     finally:
         shutil.rmtree(building, ignore_errors=True)
     return len(files)
@@ -151,7 +156,12 @@ def _check_room(root: Path, needed: int) -> None:
     free = shutil.disk_usage(there).free
     if needed > free:
         raise NoSpace(
-            f"{root}: the backup has {needed / 1e9:.1f} GB, the disk has {free / 1e9:.1f} GB free"
+            CodedText(
+                "restore-no-room",
+                root=str(root),
+                needed=needed / 1e9,
+                free=free / 1e9,
+            )
         )
 
 
@@ -166,17 +176,19 @@ def check_backup(path: Path, progress: Progress) -> None:
     for sha256 in track(sorted(sizes), progress, what="compare", unit="files", total=len(sizes)):
         place = _place(objects, sha256)
         if place.is_file() and (found := place.stat().st_size) != sizes[sha256]:
-            raise StoreError(f"{place}: expected {sizes[sha256]} bytes, got {found}")
+            raise StoreError(
+                CodedText("backup-size", place=str(place), sizes=sizes[sha256], found=found)
+            )
         got = hash_file(place) if place.is_file() else "no file"
         if got != sha256:
-            raise StoreError(f"{place}: expected SHA-256 {sha256}, got {got}")
+            raise StoreError(CodedText("backup-hash", place=str(place), sha256=sha256, got=got))
 
 
 def _check_places(root: Path, out: Path) -> None:
     if not is_project(root) and not (root / STATE).is_dir():
-        raise ConfigError(f"{root} is neither a project nor a folder that a server ran on")
+        raise ConfigError(CodedText("backup-no-server", root=str(root)))
     if out.resolve().is_relative_to(root.resolve()):
-        raise ConfigError(f"{out} lies in {root}: a backup belongs elsewhere, best on another disk")
+        raise ConfigError(CodedText("backup-inside", out=str(out), root=str(root)))
 
 
 def _names(root: Path, *, with_keys: bool) -> Iterator[str]:
@@ -279,7 +291,7 @@ def _copy_bytes(source: Path, target: Path) -> bool:
         ):
             read.backup(written)
     except sqlite3.Error as error:
-        raise StoreError(f"{source} cannot be copied: {error}") from error
+        raise StoreError(CodedText("backup-copy", source=str(source), why=str(error))) from error
     return True
 
 
@@ -326,7 +338,7 @@ def _identity(path: Path) -> tuple[int, int, int]:
 
 def _place(objects: Path, sha256: str) -> Path:
     if not re.fullmatch(r"[0-9a-f]{64}", sha256):
-        raise StoreError(f"not a SHA-256: {sha256[:80]!r}")
+        raise StoreError(CodedText("backup-no-hash", sha256=sha256[:80]))
     return objects / sha256[:2] / sha256
 
 
@@ -352,11 +364,11 @@ def _put(objects: Path, building: Path, name: str, *, entry: BackedUpFile) -> No
     target, sha256 = building / name, entry.sha256
     target.parent.mkdir(parents=True, exist_ok=True)
     if target.exists():
-        raise StoreError(f"{name[:100]!r} is there already: the disk takes two names as equal")
+        raise StoreError(CodedText("restore-same-name", name=name[:100]))
     with atomic_file(target) as temporary:
         shutil.copyfile(_place(objects, sha256), temporary)
         if (got := hash_file(temporary)) != sha256:
-            raise StoreError(f"{name}: expected SHA-256 {sha256}, got {got}")
+            raise StoreError(CodedText("backup-hash", place=name, sha256=sha256, got=got))
         temporary.chmod(_restored_mode(name, entry.mode))
 
 

@@ -9,6 +9,7 @@ from pathlib import Path, PurePosixPath
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.formats import FORMATS
 from recon4.store.hashing import hash_json
 from recon4.store.json_files import read_object
@@ -54,7 +55,7 @@ def newest(backup: Path) -> Path:
         return backup
     lists = sorted(p for p in backup.glob("*.json") if _LIST.fullmatch(p.name))
     if not lists:
-        raise StoreError(f"{backup} holds no backup: expected files named by time, .json")
+        raise StoreError(CodedText("backup-none", backup=str(backup)))
     return lists[-1]
 
 
@@ -67,11 +68,11 @@ def read_list(path: Path) -> BackupListing:
     record = read_object(path, max_bytes=1 << 30)
     body = {name: value for name, value in record.items() if name != "sha256"}
     if record.get("format") != FORMATS.backup or record.get("sha256") != hash_json(body):
-        raise StoreError(f"{path} is not the listing of a backup, or was changed")
+        raise StoreError(CodedText("backup-changed", file=str(path)))
     try:
         listing = msgspec.convert(body, BackupListing)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{path} is not the listing of a backup: {error}") from error
+        raise StoreError(CodedText("backup-no-listing", file=str(path), why=str(error))) from error
     for name, entry in listing.files.items():
         _check_entry(path, name, entry)
     return listing
@@ -80,13 +81,20 @@ def read_list(path: Path) -> BackupListing:
 def _check_entry(path: Path, name: str, entry: BackedUpFile) -> None:
     inside = PurePosixPath(name)
     if inside.is_absolute() or ".." in inside.parts or not inside.parts:
-        raise StoreError(f"{path}: the name {name[:100]!r} leads outside the backup")
+        raise StoreError(CodedText("backup-outside", file=str(path), name=name[:100]))
     if "\0" in name or inside.as_posix() != name:
-        raise StoreError(f"{path}: {name[:100]!r} is no name of a file")
+        raise StoreError(CodedText("backup-no-name", file=str(path), name=name[:100]))
     if len(inside.parts) > LIMITS.folders:
         raise StoreError(
-            f"{path}: {name[:100]!r}: expected at most {LIMITS.folders} folders, "
-            f"got {len(inside.parts)}"
+            CodedText(
+                "backup-folders",
+                file=str(path),
+                name=name[:100],
+                folders=LIMITS.folders,
+                count=len(inside.parts),
+            )
         )
     if entry.bytes < 0:
-        raise StoreError(f"{path}: {name[:100]} has {entry.bytes} bytes")
+        raise StoreError(
+            CodedText("backup-bytes", file=str(path), name=name[:100], bytes=entry.bytes)
+        )

@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.approved import VERSIONS
 from recon4.store.atomic import is_temporary, temporary_beside
 from recon4.store.checked import Altered
@@ -130,7 +131,9 @@ def _remove(project: Project, part: StoredPart) -> None:
         project.ledger.forget(path.name)
         shutil.rmtree(gone)
     except OSError as error:
-        raise StoreError(f"cannot free {part.name}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("free-failed", part=part.name, why=str(error.strerror))
+        ) from error
 
 
 def _reason(stage: str, is_current: bool) -> Freeable | None:
@@ -152,7 +155,7 @@ def _approved(root: Path) -> dict[str, int]:
             version, keys = int(statement["version"]), list(statement["artifacts"].values())
         except (StoreError, KeyError, TypeError, ValueError, AttributeError) as error:
             where = path.relative_to(root).as_posix()
-            raise Altered(f"{where} cannot be read, so what it needs is not known") from error
+            raise Altered(CodedText("free-unknown", where=where)) from error
         found |= {str(key): max(version, found.get(str(key), 0)) for key in keys}
     return found
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import Recon4Error, StoreError
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 from recon4.review.newest_approval import APPROVALS, accept_as_it_is
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
@@ -192,7 +193,7 @@ def accept(path: Path) -> Path | None:
         seal_state(path / STATE)
         return None
     if not is_project(path):
-        raise StoreError(f"{path} is not a recon4 project")
+        raise StoreError(CodedText("not-a-project", file=str(path)))
     (path / SEALS).unlink(missing_ok=True)
     later = [f"{one}/{name}" for one in LATER_FOLDERS for name in files_below(path / one)]
     journal = ["decisions.sqlite"] if (path / "decisions.sqlite").exists() else []

@@ -15,6 +15,7 @@ from recon4.batch.walks import WalkTask
 from recon4.errors import StoreError
 from recon4.executors.executor import Finished
 from recon4.export.cells import safe_cell
+from recon4.locales.coded import CodedText
 from recon4.model.usability import verdict_in
 from recon4.store.atomic import write_json, write_text
 from recon4.store.json_files import read_object
@@ -71,7 +72,9 @@ def _row_of_map(task: WalkTask) -> BatchRow:
     try:
         figures = msgspec.convert(summary, _SummaryFigures)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{SUMMARY} of {task.name}: {error}") from error
+        raise StoreError(
+            CodedText("batch-summary", summary=SUMMARY, task=task.name, why=str(error))
+        ) from error
     return BatchRow(
         walk=task.name,
         result=verdict.usability if verdict else "no verdict",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError, RecordingError
+from recon4.locales.coded import CodedText
 from recon4.recording.info.nearby_samples import nearby_samples
 from recon4.recording.kinds import RecordingKind, contents_of, recognize
 
@@ -55,15 +56,15 @@ def find_walks(folder: Path) -> FoundWalks:
         ConfigError: If there is no such folder, it is a recording itself, or holds none.
     """
     if not folder.is_dir():
-        raise ConfigError(f"no folder {folder}: give the one that holds the recordings")
+        raise ConfigError(CodedText("batch-no-folder", folder=str(folder)))
     contents = contents_of(folder)
     of_scans = (RecordingKind.FRAMES, RecordingKind.MANDEYE, RecordingKind.LINE_TABLES)
     if any(len(contents.kinds.get(kind, ())) > 1 for kind in of_scans):
-        raise ConfigError(f"{folder} is one recording: command: recon4 process {folder}")
+        raise ConfigError(CodedText("batch-one", folder=str(folder)))
     files = [path for path in folder.iterdir() if path.is_file() and _is_walk(path)]
     walks = sorted([*files, *contents.folders])
     if not walks:
-        raise ConfigError(f"{folder}: expected recordings in it, found none")
+        raise ConfigError(CodedText("batch-none", folder=str(folder)))
     tops = {path.relative_to(folder).parts[0] for path in walks}
     others = sorted(child.name for child in folder.iterdir() if child.name not in tops)
     return FoundWalks(tuple(walks), tuple(others))
@@ -92,7 +93,7 @@ def walk_tasks(
             both = ", ".join(
                 str(one) for one, own in zip(recordings, names, strict=True) if own == name
             )
-            raise ConfigError(f"{both}: both would become the project {name}: rename one")
+            raise ConfigError(CodedText("batch-same-name", both=both, name=name))
     return [
         WalkTask(name, str(path), str((out / name).absolute()), (*_beside(path, options), *options))
         for path, name in zip((one.absolute() for one in recordings), names, strict=True)

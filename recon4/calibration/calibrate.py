@@ -35,6 +35,7 @@ from recon4.calibration.tuning_joint import AUDIT, JOINT
 from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.calibration_figures import GNSS, IMU, CalibrationOutcome, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress, track
@@ -68,8 +69,9 @@ def reference_of(rig: Rig, settings: CalibrationSettings) -> int | None:
         return next(iter(names.values()), None)
     if settings.reference not in names:
         raise ConfigError(
-            f"calibration.reference: expected a LiDAR of the rig ({', '.join(names)}), "
-            f"got {settings.reference!r:.80}"
+            CodedText(
+                "calibration-reference", names=", ".join(names), reference=settings.reference[:80]
+            )
         )
     return names[settings.reference]
 
@@ -87,8 +89,9 @@ def calibrated_parameters(
     unknown = [name for name in wanted if name not in names and name not in (IMU, GNSS)]
     if unknown:
         raise ConfigError(
-            f"calibration.sensors: expected some of {', '.join([*names, IMU, GNSS])}, "
-            f"got {unknown[0]!r:.80}"
+            CodedText(
+                "calibration-sensors", value=", ".join([*names, IMU, GNSS]), unknown=unknown[0][:80]
+            )
         )
     lidars = tuple(
         row for name, row in names.items() if row != reference and (not wanted or name in wanted)

@@ -14,6 +14,7 @@ import numpy as np
 from recon4.calibration.tuning_methods import GRAVITY_ALIGNMENT
 from recon4.errors import CalibrationError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,8 +48,12 @@ def align_gravity(normal_body: Array, force_imu: Array) -> GravityAlignment:
     n, g = (_unit(v) for v in (normal_body, force_imu))
     if len(n) != len(g) or len(n) < GRAVITY_ALIGNMENT.min_pairs:
         raise CalibrationError(
-            "expected a floor normal and a gravity for each of at least "
-            f"{GRAVITY_ALIGNMENT.min_pairs} inclinations, got {len(n)} and {len(g)}"
+            CodedText(
+                "gravity-pairs",
+                min_pairs=GRAVITY_ALIGNMENT.min_pairs,
+                floors=len(n),
+                gravities=len(g),
+            )
         )
     n = n * np.where(n[:, 2:] < 0.0, -1.0, 1.0)  # a floor's normal points up
     U, singular, Vt = np.linalg.svd(n.T @ g / len(n))
@@ -62,5 +67,5 @@ def _unit(vectors: Array) -> Array:
     v = np.asarray(vectors, np.float64).reshape(-1, 3)
     length = np.linalg.norm(v, axis=1, keepdims=True)
     if not np.isfinite(v).all() or not (length > 0.0).all():
-        raise CalibrationError("expected directions of finite length, got NaN or zero")
+        raise CalibrationError(CodedText("directions-finite"))
     return np.asarray(v / length)

@@ -8,6 +8,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.untrusted.bounded import read_text_limited
 
 
@@ -34,8 +35,14 @@ def read_number_rows(path: Path, columns: str, *, most_bytes: int) -> Array:
             values = []
         if len(values) != len(names) or not np.isfinite(values).all():
             raise CorruptFile(
-                f"{path.name}: line {number}: expected {len(names)} finite numbers ({columns}), "
-                f"got {line[:60]!r}"
+                CodedText(
+                    "number-rows",
+                    file=path.name,
+                    number=number,
+                    count=len(names),
+                    columns=columns,
+                    line=line[:60],
+                )
             )
         rows.append(values)
     return np.array(rows).reshape(-1, len(names))

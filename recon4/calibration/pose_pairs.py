@@ -15,6 +15,7 @@ from recon4.calibration.number_rows import read_number_rows
 from recon4.calibration.tuning_methods import POSE_PAIRS
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, Array, so3_log
+from recon4.locales.coded import CodedText
 
 _COLUMNS = "x y z qx qy qz qw x y z qx qy qz qw"
 
@@ -64,14 +65,18 @@ def read_pose_pairs(path: Path) -> MarkerPosePairs:
     """
     table = read_number_rows(path, _COLUMNS, most_bytes=POSE_PAIRS.max_bytes)
     if not len(table):
-        raise CorruptFile(f"{path.name}: expected a pair of poses a line, got none")
+        raise CorruptFile(CodedText("pose-pairs-none", file=path.name))
     for first in (3, 10):
         length = np.linalg.norm(table[:, first : first + 4], axis=1)
         wrong = np.flatnonzero(np.abs(length - 1.0) > POSE_PAIRS.unit_tolerance)
         if len(wrong):
             raise CorruptFile(
-                f"{path.name}: pair {wrong[0] + 1}: expected a quaternion of length 1, "
-                f"got {length[wrong[0]]:.3f}"
+                CodedText(
+                    "pose-pairs-quaternion",
+                    file=path.name,
+                    wrong=str(wrong[0] + 1),
+                    length=float(length[wrong[0]]),
+                )
             )
     marker = SE3.from_quat(table[:, 3:7], table[:, :3])
     return MarkerPosePairs(marker, SE3.from_quat(table[:, 10:14], table[:, 7:10]))
@@ -85,10 +90,10 @@ def average_pairs(pairs: MarkerPosePairs) -> PairAlignment:
     """
     each = pairs.T_world_marker.inverse() @ pairs.T_world_sensor
     if not len(each.t):
-        raise CalibrationError("expected at least one pair of poses, got none")
+        raise CalibrationError(CodedText("pose-pairs-empty"))
     U, singular, Vt = np.linalg.svd(each.R.mean(axis=0))
     if singular[1] < POSE_PAIRS.min_axes:
-        raise CalibrationError("the pairs contradict each other: their rotations have no mean")
+        raise CalibrationError(CodedText("pose-pairs-contradict"))
     R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
     return _with_residuals(SE3(R, each.t.mean(axis=0)), each)
 
@@ -127,9 +132,7 @@ def hand_eye(pairs: MarkerPosePairs, *, before_m: Array) -> PairAlignment:
     sd_m = np.sqrt(axes**2 @ np.minimum(sd_along_m, 1e3) ** 2)
     found = PairAlignment(SE3(R, t_m), residual_rad, residual_m, sd_rad, sd_m, unknown)
     if not found.contradictory and not sd_rad < POSE_PAIRS.vague_rad:
-        raise CalibrationError(
-            "hand-eye: expected motions that turn about two different axes, got fewer"
-        )
+        raise CalibrationError(CodedText("pose-pairs-axes"))
     return found
 
 

@@ -27,6 +27,7 @@ from scipy.optimize import OptimizeResult, least_squares
 from recon4.calibration.tuning_methods import TRAJECTORY_PAIR, TrajectoryPairTuning
 from recon4.errors import CalibrationError
 from recon4.geometry.se3 import SE3, Array, align_points, so3_exp, so3_log
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times, Trajectory
 
 Flags = NDArray[np.bool_]
@@ -99,7 +100,12 @@ def align_trajectories(
         seconds = (one.t_ns[-1] - one.t_ns[0]) / 1e9 if len(one) > 1 else 0.0
         if seconds < settings.shortest_s:
             raise CalibrationError(
-                f"{name} trajectory: expected at least {settings.shortest_s:g} s, got {seconds:.1f}"
+                CodedText(
+                    "trajectory-short",
+                    name=name,
+                    shortest_s=settings.shortest_s,
+                    seconds=float(seconds),
+                )
             )
     offset_s = _coarse_offset_s(a, b, settings)
     problem = _Problem(a, b, offset_s, settings=settings)
@@ -108,8 +114,12 @@ def align_trajectories(
     used = problem.agreeing(found.x)
     if used.mean() < settings.least_agreeing:
         raise CalibrationError(
-            f"the trajectories do not show the same motion: {1 - used.mean():.0%} of their motions "
-            f"differ by more than {np.rad2deg(settings.most_rad):.0f}° or {settings.most_m:g} m"
+            CodedText(
+                "trajectories-differ",
+                used=f"{1 - used.mean():.0%}",
+                most_deg=float(np.rad2deg(settings.most_rad)),
+                most_m=settings.most_m,
+            )
         )
     return problem.result(problem.solve(found.x, used), used)
 
@@ -153,7 +163,7 @@ class _Problem:
         step_ns = round(1e9 * settings.step_s)
         self.t_b_ns: Times = np.arange(first, last - self._motion_ns, step_ns)
         if len(self.t_b_ns) * settings.step_s < settings.shortest_s / 2:
-            raise CalibrationError("the trajectories have too little time in common")
+            raise CalibrationError(CodedText("trajectories-overlap"))
         self._middle_ns = (first + last) // 2
         self._half_s = (last - first) / 2e9
         self._B = self._motions(b, self.t_b_ns)
@@ -169,8 +179,9 @@ class _Problem:
         turned = np.rad2deg(second / np.sqrt(len(turn_b)))
         if turned < self._settings.least_turn_deg:
             raise CalibrationError(
-                f"the walk turns about one axis only (about another by {turned:.2f}° in "
-                f"{self._settings.motion_s:g} s): the rotation of the mount is not observable"
+                CodedText(
+                    "trajectory-one-axis", turned=float(turned), motion_s=self._settings.motion_s
+                )
             )
         return align_points(turn_a, turn_b).R
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from recon4.classes.carrier import CarrierCubes
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, at
 from recon4.orders.order import OrderKind, Workers
 from recon4.orders.parts import Part, Parts
 from recon4.progress import Progress
@@ -137,9 +138,11 @@ def take_classes(folder: Path, rows: range) -> Classes:
     try:
         found = msgspec.msgpack.decode(data, type=list[bytes])
     except msgspec.DecodeError as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, str(error))) from error
     if len(found) != len(rows):
-        raise StoreError(f"{path.name}: expected {len(rows)} multiframes, got {len(found)}")
+        raise StoreError(
+            CodedText("classes-rows", file=path.name, expected=len(rows), got=len(found))
+        )
     path.unlink()
     return [np.frombuffer(one, np.uint8) for one in found]
 

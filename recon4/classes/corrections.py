@@ -94,10 +94,7 @@ def count_points(
         StoreError: If the points of the map have no classes, or it cannot be read.
     """
     if "classification" not in tiles.fields:
-        raise StoreError(
-            "the points of this map have no classes: an earlier version of recon4 made it; process "
-            "its recording again"
-        )
+        raise StoreError(CodedText("classes-missing"))
     new, pending = ClassVolume.of(what), ClassVolumes.of(before)
     changed, inside = np.zeros(256, np.int64), np.zeros(256, np.int64)
     slots: list[NDArray[np.int64]] = [np.empty((0, 2), np.int64)]

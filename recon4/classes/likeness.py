@@ -36,10 +36,7 @@ def find_alike(tiles: TileSet, picked: PickedThing, before: Sequence[Reclassifie
         StoreError: If the points of the map have no classes, or it cannot be read.
     """
     if "classification" not in tiles.fields:
-        raise StoreError(
-            "the points of this map have no classes: an earlier version of recon4 made it; process "
-            "its recording again"
-        )
+        raise StoreError(CodedText("classes-missing"))
     pending = ClassVolumes.of(before)
     place, code = _nearest(tiles, picked, pending)
     cells = cells_of_class(tiles, code, pending)

@@ -10,6 +10,7 @@ import typer
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.terminal import write
 from recon4.errors import CalibrationError, ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.workflows.calibration_methods import MethodResult
@@ -45,7 +46,7 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
 ) -> None:
     """Calibrate the mounts and clocks of a rig from a walk; the rig file stays as it is."""
     if out.suffix != ".toml":
-        raise ConfigError(f"--out: expected a file that ends with .toml, got {out.name!r}")
+        raise ConfigError(CodedText("out-toml", out=out.name))
     folder = project or out.with_suffix(".project")
     compile_first()
     confine_command(write=[result_folder(folder), out.parent])
@@ -75,7 +76,7 @@ def _write(found: MethodResult, out: Path) -> None:
     from recon4.store.atomic import atomic_file
 
     if found.rig is None:
-        raise CalibrationError(f"{out.name} was not written: {found.outcome}")
+        raise CalibrationError(CodedText("out-not-written", out=out.name, outcome=found.outcome))
     with atomic_file(out) as temporary:
         temporary.write_text(format_rig(found.rig), "utf-8")
     write(f"{found.outcome}\n{out}")

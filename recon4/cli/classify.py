@@ -12,6 +12,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.terminal import write
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText, text_of
 
 if TYPE_CHECKING:
     from recon4.model.class_corrections import ClassCorrection, Reclassified
@@ -42,13 +43,13 @@ def classify_points(
     """
     confine_command(write=[project])
     if corrections and undo:
-        raise ConfigError("expected CORRECTIONS or --undo, got both")
+        raise ConfigError(CodedText("classify-both"))
     if corrections:
         return _correct(project, corrections, apply=apply)
     if undo:
         return _withdraw(project, undo, apply=apply)
     if apply:
-        raise ConfigError("--apply: expected CORRECTIONS or --undo")
+        raise ConfigError(CodedText("classify-apply"))
     _list(project)
 
 
@@ -101,7 +102,9 @@ def _counted(
         what = _resolved(artifacts, one, [*before, *made])
         trial = try_correction(artifacts, what, [*before, *made])
         if trial.refused is not None:
-            raise ConfigError(f"{one.where}: {trial.refused.text}; nothing was changed")
+            raise ConfigError(
+                CodedText("classify-refused", where=one.where, text=trial.refused.text)
+            )
         assert trial.correction is not None
         now = ", ".join(f"{count} {title}" for title, count in trial.now.items())
         to = titles_of([what.to])[0]
@@ -126,7 +129,9 @@ def _resolved(
     try:
         found = propose_alike(artifacts, one.what.picked, before)
     except ConfigError as error:
-        raise ConfigError(f"{one.where}: {error}; nothing was changed") from error
+        raise ConfigError(
+            CodedText("classify-refused", where=one.where, text=text_of(error))
+        ) from error
     chosen = [each for each in found.clusters if each.difference <= one.what.most_different]
     write(f"{one.where}: {len(chosen)} of {titles_of([found.of])[0]} alike")
     for each in chosen:
@@ -153,7 +158,9 @@ def _withdraw(project: Path, ids: Sequence[str], *, apply: bool) -> None:
     chosen = list(there) if list(ids) == ["all"] else list(dict.fromkeys(ids))
     unknown = [one for one in chosen if one not in there]
     if unknown or not chosen:
-        raise ConfigError(f"no correction {', '.join(unknown)}; there are: {', '.join(there)}")
+        raise ConfigError(
+            CodedText("classify-unknown", unknown=", ".join(unknown), there=", ".join(there))
+        )
     for one in chosen:
         write(f"withdraw {described(there[one])}")
         if apply:

@@ -10,6 +10,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.terminal import write
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.comparison.common_frame import MapSide
@@ -65,5 +66,5 @@ def _before(project: Path) -> MapSide:
 
     earlier = earlier_maps(project)
     if not earlier:
-        raise ConfigError(f"{project} has no earlier map any more: name another project")
+        raise ConfigError(CodedText("compare-no-earlier", project=str(project)))
     return open_side(earlier[0])

@@ -18,6 +18,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.sandbox import Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import is_compiled, use_private_cache
@@ -58,7 +59,9 @@ def result_folder(path: Path) -> Path:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("cannot-write", name=str(path), why=str(error.strerror))
+        ) from error
     if missing:
         _remove_if_empty(missing)
     return path

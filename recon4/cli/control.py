@@ -12,6 +12,7 @@ from recon4.cli.confinement import confine_command
 from recon4.cli.targets import targets
 from recon4.cli.terminal import write
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.model.site_control import SiteControl
@@ -60,7 +61,7 @@ def control_points(
 
     if not survey:
         if not apply or picks or crs:
-            raise ConfigError("SURVEY: expected a file with surveyed points")
+            raise ConfigError(CodedText("control-no-survey"))
         _make_again(project, SiteControl(targets=(), crs=""))
         return
     points, crs = surveyed_points(survey[0], crs)
@@ -101,7 +102,7 @@ def _with_covariances(
     from recon4.untrusted.bounded import read_bytes_limited
 
     if len(files) > 1:
-        raise ConfigError("SURVEY: expected the survey and at most one file of covariances")
+        raise ConfigError(CodedText("control-survey-files"))
     data = read_bytes_limited(files[0], CONTROL_FILES.max_bytes)
     return with_covariances(points, read_covariances(data, files[0].name), files[0].name)
 
@@ -131,9 +132,7 @@ def _picked(picks: Path) -> dict[str, MeasuredPosition]:
     for marker in read_markers(picks, partial=True):
         along = np.eye(3)[np.isfinite(marker.xyz_m)]
         if len(along) < 3:
-            raise ConfigError(
-                f"{picks.name}: {marker.name}: expected x, y and z of the place in the map"
-            )
+            raise ConfigError(CodedText("control-pick", picks=picks.name, marker=marker.name))
         found[marker.name] = MeasuredPosition(marker.xyz_m, along)
     return found
 
@@ -143,7 +142,7 @@ def _picked_on_page(project: Path, key: str) -> dict[str, MeasuredPosition]:
 
     found = stored_picks(project, key)
     if not found:
-        raise ConfigError("no point was picked in this map on the page Slices: give --picks")
+        raise ConfigError(CodedText("control-no-picks"))
     return found
 
 

@@ -11,6 +11,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.exports import DraftOption
 from recon4.cli.terminal import write, write_json
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def report(
     """
     wanted = [path for path in (client, html) if path]
     if not wanted:
-        raise typer.BadParameter("name the file to write: --client FILE or --html FILE")
+        raise typer.BadParameter(CodedText("report-name"))
     spoken = of_terminal()
     signer = organization(certificate)
     confine_command(write=[path.parent for path in wanted])
@@ -129,7 +130,7 @@ def show_checked(path: Path, *, as_json: bool, accept: bool = False) -> None:
         typer.Exit: If not all is as it was sent, or the signature does not count.
     """
     if accept:
-        raise typer.BadParameter("--accept is for projects: what was received is only compared")
+        raise typer.BadParameter(CodedText("accept-projects"))
 
     confine_command()
     from recon4.delivery.check import check_file
@@ -161,7 +162,11 @@ def organization(certificate: Path | None) -> Organization | None:
         passphrase = os.environ[PASSPHRASE]
     else:
         raise typer.BadParameter(
-            f"the passphrase of {certificate.name} is missing: put it into the environment, "
-            f"{PASSPHRASE}, or into a file named by {PASSPHRASE_FILE}"
+            CodedText(
+                "passphrase-missing",
+                certificate=certificate.name,
+                passphrase=PASSPHRASE,
+                passphrase_file=PASSPHRASE_FILE,
+            )
         )
     return Organization(file=certificate, passphrase=passphrase.encode())

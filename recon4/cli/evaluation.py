@@ -12,6 +12,7 @@ from recon4.cli.confinement import confine_command
 from recon4.cli.tables import parse_choice
 from recon4.cli.terminal import write, write_json
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density
@@ -94,9 +95,9 @@ def evaluate(  # noqa: PLR0913 - options of a command
     from recon4.evaluation.text import density_text, relations_text
 
     if truth is None and markers is None and not patch:
-        raise typer.BadParameter("expected --truth, --markers or --patch")
+        raise typer.BadParameter(CodedText("evaluate-needs"))
     if report is not None and truth is None:
-        raise typer.BadParameter("--report needs --truth")
+        raise typer.BadParameter(CodedText("evaluate-report"))
     record: dict[str, object] = {}
     texts: list[str] = []
     if truth is not None and truth.suffix == RELATIONS_SUFFIX:
@@ -172,9 +173,9 @@ def _patch_density(project: Path, text: str) -> Density:
     try:
         corner, u, v = np.array([float(part) for part in text.split(",")]).reshape(3, 3)
     except ValueError as error:
-        raise ConfigError(f"--patch: expected nine numbers with commas, got {text!r}") from error
+        raise ConfigError(CodedText("evaluate-patch-numbers", text=text)) from error
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
-        raise ConfigError(f"--patch: expected a project with a map, got {project}")
+        raise ConfigError(CodedText("evaluate-patch-project", project=str(project)))
     points = (tile.xyz_m() for tile in TileSet.open(artifacts["map"]))
     return patch_density(points, PlanePatch(corner, u - corner, v - corner))

@@ -13,6 +13,7 @@ from recon4.cli.confinement import confine_command
 from recon4.cli.slices import numbers
 from recon4.cli.terminal import write
 from recon4.export.options import Box, ExportOptions, classes_named, option_text
+from recon4.locales.coded import CodedText
 
 exports = typer.Typer()
 
@@ -106,9 +107,9 @@ def _write_export(project: Path, file: Path, wanted: ExportOptions) -> None:
 
     ending = file.suffix.lower()
     if ending in (".txt", ".3dtk", *ENDINGS) and set(wanted.changed) - {"draft"}:
-        raise typer.BadParameter(f"{ending} is written as it is: only --draft can be given")
+        raise typer.BadParameter(CodedText("export-as-is", ending=ending))
     if ending == ".gpkg" and set(wanted.changed) - {"draft", "crs"}:
-        raise typer.BadParameter(".gpkg takes only --crs and --draft")
+        raise typer.BadParameter(CodedText("export-gpkg"))
     if ending in (".txt", *ENDINGS):
         _export_text(project, file, draft=wanted.draft)
         return

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.sandbox.private_cache import cache_in_use, planted
 from recon4.system.runtime_folder import private_folder, runtime_folder
 
@@ -25,7 +26,4 @@ def settle_kernel_cache() -> None:
         folder = private_folder(runtime_folder() / "kernels")
         os.environ["NUMBA_CACHE_DIR"] = str(folder)
     elif why := planted(cache):
-        raise ConfigError(
-            f"compiled kernels are code, and others may have put some there: {why}; remove the "
-            "folder, or name another one (NUMBA_CACHE_DIR)"
-        )
+        raise ConfigError(CodedText("kernel-cache-others", why=why))

@@ -15,6 +15,7 @@ from recon4.cli.exports import DraftOption
 from recon4.cli.slices import ProjectArgument, numbers
 from recon4.cli.terminal import write
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.api.maps import OpenedMap
@@ -121,7 +122,7 @@ def volume_of(
 
 def _surface(name: str) -> TerrainKind:
     if name not in ("dtm", "dsm"):
-        raise ConfigError(f"a surface is dtm or dsm, got {name!r}")
+        raise ConfigError(CodedText("terrain-surface", name=name))
     return "dtm" if name == "dtm" else "dsm"
 
 

@@ -13,6 +13,7 @@ import typer
 
 from recon4.cli.tables import parse_choice
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def open_reference(
 
     columns, unit, asked = reading
     if asked not in ("auto", "map", "crs"):
-        raise ConfigError(f"--frame: expected auto, map or crs, got {asked[:40]!r}")
+        raise ConfigError(CodedText("reference-frame", asked=asked[:40]))
     read_as = ReadAs(asked, parse_choice(columns, unit))  # type: ignore[arg-type]
     with TemporaryDirectory(prefix="recon4-reference-") as scratch:
         out = Path(scratch) / "reference"

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.terminal import write
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.model.rig import Rig
@@ -59,7 +60,7 @@ def simulate(  # noqa: PLR0913 - options of a command
 ) -> None:
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
     if rig and lidar:
-        raise typer.BadParameter("give --rig or --lidar, not both")
+        raise typer.BadParameter(CodedText("simulate-rig-lidar"))
     given = _Given(world, out, seconds, seed, figure, bag, tuple(degrade or ()), targets)
     _simulate(given, _rig(rig, lidar))
 
@@ -97,9 +98,9 @@ def _simulate(given: _Given, mounted: Rig) -> None:
     degradations = parse_degradations(given.degrade)
     profiler = mounted.row_of("profiler") is not None
     if given.figure and not profiler:
-        raise typer.BadParameter("--figure is for rigs with a profiler, as --rig wuerzburg")
+        raise typer.BadParameter(CodedText("simulate-figure"))
     if given.targets and profiler:
-        raise typer.BadParameter("--targets is for rigs without a profiler")
+        raise typer.BadParameter(CodedText("simulate-targets"))
     crowd = Crowd.of(degradations)
     with watcher() as progress:
         if profiler:

@@ -17,6 +17,7 @@ from recon4.cli.references import (
     open_reference,
 )
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.slices.slice_plane import SlicePlane
@@ -96,7 +97,7 @@ def _slice_plane(z: float | None, line: str, plane: str, *, thickness_m: float) 
     from recon4.slices.slice_plane import SlicePlane
 
     if (z is not None) + bool(line) + bool(plane) != 1:
-        raise ConfigError("say where to cut: one of --z, --line, --plane")
+        raise ConfigError(CodedText("slice-where"))
     if z is not None:
         return SlicePlane.horizontal(z, thickness_m=thickness_m)
     if line:
@@ -111,7 +112,7 @@ def numbers(text: str, count: int) -> list[float]:
     try:
         values = [float(word) for word in text.split(",")]
     except ValueError as error:
-        raise ConfigError(f"expected {count} numbers with commas, got {text!r}") from error
+        raise ConfigError(CodedText("numbers-commas", count=count, text=text)) from error
     if len(values) != count:
-        raise ConfigError(f"expected {count} numbers with commas, got {text!r}")
+        raise ConfigError(CodedText("numbers-commas", count=count, text=text))
     return values

@@ -9,6 +9,7 @@ import typer
 
 from recon4.cli.terminal import write, write_json
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -65,7 +66,7 @@ def _chosen(words: Sequence[str]) -> list[Freeable]:
     for word in words:
         if word not in set(Freeable):
             known = ", ".join(Freeable)
-            raise ConfigError(f"command: --free {word!r}: expected one of {known}")
+            raise ConfigError(CodedText("storage-free", word=word, known=known))
     return [Freeable(word) for word in words]
 
 

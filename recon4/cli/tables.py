@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.recording.tables.coordinates import ColumnChoice
@@ -21,5 +22,5 @@ def parse_choice(columns: str, unit: str) -> ColumnChoice:
 
     chosen = next((known for known in UNITS_M if known == unit), None)
     if unit and chosen is None:
-        raise ConfigError(f"--unit: expected one of {', '.join(UNITS_M)}, got {unit[:40]!r}")
+        raise ConfigError(CodedText("option-unit", units_m=", ".join(UNITS_M), unit=unit[:40]))
     return ColumnChoice(parse_meanings(columns), chosen)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.errors import ConfigError, Recon4Error
+from recon4.locales.coded import CodedText
 from recon4.system.stopping import StopSignals
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ def certificates_of(folder: Path | None) -> Certificates:
     from recon4.executors.chosen import certificates_in
 
     if folder is None:
-        raise ConfigError("command: --scheduler needs --tls FOLDER with its certificates")
+        raise ConfigError(CodedText("scheduler-tls"))
     return certificates_in(folder)
 
 
@@ -107,10 +108,7 @@ def run_confined(context: typer.Context, out: Path, executor: Executor) -> int:
     if stop.received is not None:
         stop.is_said()
     elif code < 0:
-        raise Recon4Error(
-            f"ended by {Signals(-code).name}: too little memory? The same command goes on "
-            "after its last finished stage"
-        )
+        raise Recon4Error(CodedText("stage-killed", code=Signals(-code).name))
     return code
 
 

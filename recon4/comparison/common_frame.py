@@ -11,6 +11,7 @@ import numpy as np
 from recon4.comparison.tuning import RELATION
 from recon4.errors import ConfigError, GeoreferenceError, StoreError
 from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.review.approved import Approval, approval_of, approval_of_map
 from recon4.slices.map_crs import MapFrame, frame_of
@@ -61,7 +62,7 @@ def open_side(path: Path) -> MapSide:
     root = path.parent.parent if earlier else path
     artifacts = dict(read_artifacts(root))
     if not earlier and "map" not in artifacts:
-        raise StoreError(f"{root.name} has no map of points: process it first")
+        raise StoreError(CodedText("compare-no-map", root=root.name))
     map_folder = path if earlier else artifacts["map"]
     if earlier:
         approval = approval_of_map(root, path.name)
@@ -133,8 +134,13 @@ def relate(first: MapSide, second: MapSide) -> Relation | None:
     if ours.to_crs is not None and theirs.to_crs is not None:
         if (ours.wkt, ours.crs) != (theirs.wkt, theirs.crs):
             raise GeoreferenceError(
-                f"{first.name} is in {ours.crs}, {second.name} in {theirs.crs}: process one of "
-                "them with the CRS of the other"
+                CodedText(
+                    "compare-crs",
+                    first=first.name,
+                    first_crs=ours.crs,
+                    second=second.name,
+                    second_crs=theirs.crs,
+                )
             )
         return Relation(_between(first, second), f"both are georeferenced in {ours.crs}")
     local = ours.to_crs is None and theirs.to_crs is None
@@ -153,7 +159,7 @@ def _between(first: MapSide, second: MapSide) -> SE3:
     """The rigid motion between two maps in one CRS."""
     low, high = second.tiles.bounds_m
     if not np.isfinite(low).all():
-        raise ConfigError(f"the map of {second.name} has no points")
+        raise ConfigError(CodedText("compare-no-points", second=second.name))
     corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
     assert second.frame.to_crs is not None
     p_a: Array = first.frame.from_crs(second.frame.to_crs(corners))
@@ -161,7 +167,6 @@ def _between(first: MapSide, second: MapSide) -> SE3:
     off_m = float(np.linalg.norm(p_a - T_a_b @ corners, axis=1).max())
     if off_m > RELATION.rigid_m:
         raise GeoreferenceError(
-            f"{first.name} and {second.name} do not differ by a rigid motion: their corners are "
-            f"{off_m:.2f} m off"
+            CodedText("compare-not-rigid", first=first.name, second=second.name, off_m=off_m)
         )
     return T_a_b

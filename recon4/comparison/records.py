@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from recon4.comparison.tuning import M3C2
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 
 
 class CoreState(IntEnum):
@@ -71,15 +72,20 @@ class M3C2Scales:
         least, most = M3C2.spacing_m
         if not least <= self.core_spacing_m <= most:
             raise ConfigError(
-                f"distance of core points: expected {least} to {most:.0f} m, "
-                f"got {self.core_spacing_m}"
+                CodedText(
+                    "compare-spacing", least=least, most=most, core_spacing_m=self.core_spacing_m
+                )
             )
         for field in fields(self)[1:]:
             value = getattr(self, field.name)
             if not 0.0 < value <= M3C2.longest_m:
                 raise ConfigError(
-                    f"{field.name}: expected more than 0 and at most {M3C2.longest_m:.0f} m, "
-                    f"got {value}"
+                    CodedText(
+                        "compare-length",
+                        field=field.name,
+                        longest_m=M3C2.longest_m,
+                        value=str(value),
+                    )
                 )
         return self
 

@@ -20,6 +20,7 @@ from recon4.comparison.records import (
 )
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION
 from recon4.progress import Progress
 from recon4.slices.align import align_by_icp
@@ -110,10 +111,7 @@ def common_frame(first: MapSide, second: MapSide, *, align: bool) -> Relation:
     if align:
         return _aligned(first, second, relation.T_a_b if relation else SE3.identity())
     if relation is None:
-        raise ConfigError(
-            f"{first.name} and {second.name} have no common frame: they are of different "
-            "recordings, and not both are georeferenced; align them first"
-        )
+        raise ConfigError(CodedText("compare-no-frame", first=first.name, second=second.name))
     return relation
 
 

@@ -13,6 +13,7 @@ from recon4.comparison.records import CoreDifferences, CoreState, MapDifferences
 from recon4.comparison.run import MapPair, Sink, compare_maps
 from recon4.comparison.tuning import PAGE_POINTS
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.plain import to_plain
 from recon4.progress import Progress
 from recon4.slices.map_crs import MapFrame
@@ -44,7 +45,7 @@ def sink_of(path: Path, frame: MapFrame, low_m: NDArray[np.float64]) -> Sink:
         return lambda parts: _write_csv(parts, path, frame=frame)
     if ending == ".json":
         return exhaust
-    raise ConfigError(f"expected a file {', '.join(ENDINGS)}, got {path.name!r}")
+    raise ConfigError(CodedText("write-endings", endings=", ".join(ENDINGS), file=path.name))
 
 
 def exhaust(parts: Iterator[CoreDifferences]) -> None:

@@ -12,6 +12,7 @@ from recon4.delivery.manifest import MANIFEST, DeliveryManifest, read_manifest
 from recon4.delivery.pdf_signature import SignedBy, signatures_in
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import CorruptFile, StoreError, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.review.signature import fingerprint
 from recon4.review.trusted_keys import TrustedKeys, UnknownSigner, trusted_for
 from recon4.untrusted.bounded import open_regular
@@ -59,15 +60,13 @@ def check_file(path: Path) -> CheckedFile:
         return _check_pdf(path)
     if head == _ZIP:
         return _check_zip(path)
-    raise UnknownFormat(
-        f"{path.name}: expected a project, a delivery (.zip) or a report (.pdf) of recon4"
-    )
+    raise UnknownFormat(CodedText("check-unknown", file=path.name))
 
 
 def _check_zip(path: Path) -> CheckedFile:
     with open_zip(path) as (archive, entries):
         if MANIFEST not in entries:
-            raise CorruptFile(f"{path.name}: expected a {MANIFEST}: this is no delivery")
+            raise CorruptFile(CodedText("check-no-manifest", file=path.name, manifest=MANIFEST))
         limit = DELIVERIES.max_manifest_bytes
         blocks = blocks_of(archive, entries[MANIFEST], most=limit, where=path.name)
         manifest = read_manifest(b"".join(blocks))

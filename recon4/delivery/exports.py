@@ -12,6 +12,7 @@ from recon4.errors import StoreError
 from recon4.export.findings import export_findings
 from recon4.export.map_files import export_poses, map_to_export, points_text, write_map
 from recon4.export.options import ExportOptions
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.products.fitted_plans import FittedPlans
 from recon4.progress import Progress
@@ -62,7 +63,7 @@ def _wanted(project: Path, options: ExportOptions) -> tuple[WantedFile, dict[str
     """What files of a project are made of, and the keys of its artifacts."""
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
-        raise StoreError(f"{project.name} has no map of points yet: process it first")
+        raise StoreError(CodedText("export-no-map", project=project.name))
     keys = {name: one.name for name, one in artifacts.items()}
     approval = None if options.draft else approval_of(project, keys)
     return WantedFile(artifacts, approval.evidence if approval else None, options), keys

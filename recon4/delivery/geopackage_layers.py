@@ -14,6 +14,7 @@ from recon4.export.findings import placed_findings
 from recon4.export.geopackage import Feature, FeatureLayer, Value, write_geopackage
 from recon4.findings.summary_notes import SaidFinding
 from recon4.georeference.crs_file import read_crs
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.model.site_control import SeenTarget
 from recon4.model.trajectory import Trajectory
@@ -87,7 +88,7 @@ def _control(project: Path, level: Path) -> FeatureLayer:
     surveyed = read_decided(project).control
     used = read_manifest(level)["recipe"]["inputs"].get("control")
     if used is not None and used != read_decided(project).control_key:
-        raise StoreError("the control points were changed after this map was made: make it again")
+        raise StoreError(CodedText("control-changed"))
     features = []
     if outcome is not None and surveyed is not None and system is not None:
         rows = {one.id: one for one in outcome.points}

@@ -14,6 +14,7 @@ from typing import BinaryIO, cast
 
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.untrusted.bounded import open_regular
 from recon4.untrusted.limits import LIMITS
 from recon4.untrusted.names import visible
@@ -58,18 +59,26 @@ def open_zip(path: Path) -> Iterator[tuple[zipfile.ZipFile, dict[str, zipfile.Zi
         try:
             archive = zipfile.ZipFile(file)
         except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
-            raise CorruptFile(f"{path.name}: expected a ZIP file: {visible(str(error))}") from error
+            raise CorruptFile(
+                CodedText("zip-expected", file=path.name, why=visible(str(error)))
+            ) from error
         with archive:
             entries = archive.infolist()
             if len(entries) > DELIVERIES.max_files:
                 raise CorruptFile(
-                    f"{path.name}: expected at most {DELIVERIES.max_files} files, "
-                    f"got {len(entries)}"
+                    CodedText(
+                        "zip-many",
+                        file=path.name,
+                        max_files=DELIVERIES.max_files,
+                        count=len(entries),
+                    )
                 )
             for entry in entries:
                 if wrong := _harm(entry):
                     name = visible(entry.orig_filename, most=100)
-                    raise CorruptFile(f"{path.name}: {name!r} is refused: {wrong}")
+                    raise CorruptFile(
+                        CodedText("zip-refused", file=path.name, name=name, wrong=wrong)
+                    )
             _refuse_same(path, entries)
             _refuse_hidden(path, entries, archive)
             yield archive, {entry.filename: entry for entry in entries}
@@ -96,14 +105,16 @@ def blocks_of(
                 count += len(block)
                 if count > most:
                     raise CorruptFile(
-                        f"{where}: {entry.filename}: expected at most {most} bytes, got more"
+                        CodedText("zip-large", where=where, filename=entry.filename, most=most)
                     )
                 yield block
     except CorruptFile:
         raise
     except Exception as error:  # whatever damaged compressed data leads to
         text = visible(str(error), most=200)
-        raise CorruptFile(f"{where}: {entry.filename} cannot be unpacked: {text}") from error
+        raise CorruptFile(
+            CodedText("zip-unpack", where=where, filename=entry.filename, text=text)
+        ) from error
 
 
 def unsafe_name(name: str) -> str:
@@ -140,14 +151,14 @@ def _refuse_same(path: Path, entries: list[zipfile.ZipInfo]) -> None:
     for entry in entries:
         folded = entry.filename.casefold()
         if folded in seen:
-            raise CorruptFile(f"{path.name}: {entry.filename!r} is in it twice")
+            raise CorruptFile(CodedText("zip-twice", file=path.name, filename=entry.filename))
         seen.add(folded)
 
 
 def _refuse_hidden(path: Path, entries: list[zipfile.ZipInfo], archive: zipfile.ZipFile) -> None:
     """Refuse entries with the same bytes, and bytes that belong to no entry."""
     if archive.comment:
-        raise CorruptFile(f"{path.name}: expected no comment at its end")
+        raise CorruptFile(CodedText("zip-comment", file=path.name))
     file = cast(BinaryIO, archive.fp)
     ends = {0}
     for entry in sorted(entries, key=lambda one: one.header_offset):
@@ -161,7 +172,7 @@ def _refuse_hidden(path: Path, entries: list[zipfile.ZipInfo], archive: zipfile.
     signature, *disks, here, every, _, _, comment = _END.unpack(file.read(_END.size))
     counts = {here, every} - {ZipField.COUNT_IN_ZIP64}
     if signature != _END_SIGNATURE or comment or any(disks) or counts - {len(entries)}:
-        raise CorruptFile(f"{path.name}: expected the end of its list of entries at its end")
+        raise CorruptFile(CodedText("zip-end", file=path.name))
 
 
 def _wrong_start(start: int, ends: set[int]) -> str:
@@ -176,14 +187,14 @@ def _packed_size(path: Path, file: BinaryIO, entry: zipfile.ZipInfo) -> int:
     file.seek(entry.header_offset)
     head = file.read(_LOCAL.size)
     if len(head) < _LOCAL.size:
-        raise CorruptFile(f"{path.name}: {visible(entry.filename)!r} begins beyond its end")
+        raise CorruptFile(CodedText("zip-beyond", file=path.name, filename=visible(entry.filename)))
     _, _, flags, method, _, _, *sums, name_bytes, extra_bytes = _LOCAL.unpack(head)
     listed = (entry.CRC, entry.compress_size, entry.file_size)
     alike = all(a in (b, ZipField.SIZE_IN_ZIP64) for a, b in zip(sums, listed, strict=True))
     described = flags & ZipFlag.DESCRIPTOR
     if (flags, method) != (entry.flag_bits, entry.compress_type) or not (alike or described):
         raise CorruptFile(
-            f"{path.name}: {visible(entry.filename)!r} differs from the list at its end"
+            CodedText("zip-differs", file=path.name, filename=visible(entry.filename))
         )
     return _LOCAL.size + int(name_bytes) + int(extra_bytes) + entry.compress_size
 

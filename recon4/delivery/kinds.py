@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import recon4
 from recon4.errors import ConfigError
 from recon4.export.options import ExportOptions
-from recon4.locales.coded import StoredText
+from recon4.locales.coded import CodedText, StoredText
 from recon4.store.hashing import FileDigest
 from recon4.untrusted.names import visible
 
@@ -151,10 +151,10 @@ def kind_named(name: str, options: ExportOptions) -> ExportKind:
         ConfigError: If there is none of this name, or it takes no such option.
     """
     if name not in KINDS:
-        raise ConfigError(f"expected a kind of file: {', '.join(KINDS)}; got {visible(name)!r}")
+        raise ConfigError(CodedText("deliver-kind", kinds=", ".join(KINDS), name=visible(name)))
     kind = KINDS[name]
     for option in options.changed:
         if option not in kind.takes:
-            raise ConfigError(f"{kind.title} takes no {option}: leave it out")
+            raise ConfigError(CodedText("deliver-option", title=kind.title, option=option))
     options.selection()
     return kind

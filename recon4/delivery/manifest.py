@@ -10,6 +10,7 @@ import msgspec
 
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, at
 from recon4.review.signature import has_valid_signature, sign
 from recon4.store.formats import FORMATS
 from recon4.store.json_files import parse_object
@@ -66,16 +67,23 @@ def read_manifest(data: bytes) -> DeliveryManifest:
     """
     record = parse_object(data, MANIFEST)
     if record.get("kind") != KIND or record.get("format") != FORMATS.delivery:
-        raise StoreError(f"{MANIFEST}: expected a {KIND} of format {FORMATS.delivery}")
+        raise StoreError(
+            CodedText("manifest-format", manifest=MANIFEST, kind=KIND, delivery=FORMATS.delivery)
+        )
     try:
         found = msgspec.convert(record, DeliveryManifest)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{MANIFEST}: {visible(str(error))}") from error
+        raise StoreError(at(MANIFEST, visible(str(error)))) from error
     if not found.files or len(found.files) > DELIVERIES.max_files:
         raise StoreError(
-            f"{MANIFEST}: expected 1 to {DELIVERIES.max_files} files, got {len(found.files)}"
+            CodedText(
+                "manifest-files",
+                manifest=MANIFEST,
+                max_files=DELIVERIES.max_files,
+                count=len(found.files),
+            )
         )
     body = {name: value for name, value in record.items() if name != "signature"}
     if found.signature is not None and not has_valid_signature(body, found.signature):
-        raise StoreError(f"{MANIFEST} was changed after it was signed")
+        raise StoreError(CodedText("manifest-changed", manifest=MANIFEST))
     return found

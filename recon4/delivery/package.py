@@ -30,6 +30,7 @@ from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import ConfigError, StoreError
 from recon4.export.map_files import MapToExport, map_to_export
 from recon4.export.options import ExportOptions
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.model.height_system import height_system
 from recon4.products.fitted_plans import FittedPlans
@@ -142,7 +143,7 @@ def chosen_files(given: Sequence[str]) -> tuple[str, ...]:
         fitting = [name for name in CHOICES if word in (name, name.partition(".")[2])]
         if len(fitting) != 1:
             known = ", ".join(fitting or CHOICES)
-            raise ConfigError(f"--files {visible(word)!r}: expected some of {known}")
+            raise ConfigError(CodedText("deliver-files", word=visible(word), known=known))
         out.append(fitting[0])
     return tuple(dict.fromkeys(out)) or USUAL
 
@@ -151,15 +152,15 @@ def _refuse(out: Path, wish: DeliveryWish) -> None:
     """Refuse what cannot work before the long work begins."""
     require_pdf()
     if out.suffix.lower() != ".zip" or unsafe_name(out.name):
-        raise ConfigError(f"a delivery must be named .zip, got {visible(out.name)}")
+        raise ConfigError(CodedText("deliver-zip", out=visible(out.name)))
     if wish.license is not None and not wish.license.is_file():
-        raise ConfigError(f"the license {wish.license.name} is no file")
+        raise ConfigError(CodedText("deliver-license", license=wish.license.name))
 
 
 def _open(project: Path, wish: DeliveryWish) -> _Map:
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
-        raise StoreError(f"{project} has no map yet: run recon4 process")
+        raise StoreError(CodedText("deliver-no-map", project=str(project)))
     state, approval = checked_approval(project, draft=False)
     evidence = approval.evidence if approval else None
     options = ExportOptions(crs=wish.crs)
@@ -180,14 +181,14 @@ def _folder_beside(out: Path) -> Iterator[Path]:
     except Exception as error:
         raise_if_full(error, out)  # also if a file in it says so: its path means nothing to people
         if isinstance(error, OSError):
-            raise StoreError(f"{out} cannot be made: {error}") from error
+            raise StoreError(CodedText("deliver-failed", out=str(out), why=str(error))) from error
         raise
 
 
 def _refuse_changed(map_: _Map) -> None:
     """Refuse to pack exports of one map with the report of another, made meanwhile."""
     if dict(read_artifacts(map_.project)) != dict(map_.export.artifacts):
-        raise StoreError("the map was made again while it was packed: deliver it once more")
+        raise StoreError(CodedText("deliver-map-changed"))
 
 
 def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Progress) -> None:
@@ -287,4 +288,8 @@ def _compare(found: CheckedFile, listed: dict[str, DeliveredFile]) -> None:
     """Refuse a delivery that does not read back as it was packed."""
     wrong = (*found.altered, *found.missing, *found.added)
     if wrong or set(found.intact) != set(listed):
-        raise StoreError(f"the delivery reads back wrong: {', '.join(wrong) or 'files missing'}")
+        raise StoreError(
+            CodedText(
+                "delivery-wrong", files=", ".join(wrong) or CodedText("delivery-files-missing")
+            )
+        )

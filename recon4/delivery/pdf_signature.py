@@ -12,6 +12,7 @@ from typing import Any
 
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import ConfigError, Recon4Error, StoreError
+from recon4.locales.coded import CodedText
 from recon4.report.pdf import require_pdf
 from recon4.review.certificate import certificate_of, ed25519_key_in
 from recon4.review.signature import fingerprint
@@ -105,7 +106,7 @@ def signatures_in(path: Path) -> list[SignedBy]:
         raise
     except Exception as error:  # of a hostile file: whatever its parser raises
         text = visible(f"{type(error).__name__}: {error}", most=300)
-        raise StoreError(f"{path.name} is not a PDF that can be read: {text}") from error
+        raise StoreError(CodedText("pdf-unreadable", file=path.name, text=text)) from error
 
 
 def _checked(embedded: Any) -> SignedBy:
@@ -156,9 +157,7 @@ def _of_organization(given: Organization) -> Any:
     with _quiet():  # it logs what it cannot read
         signer = SimpleSigner.load_pkcs12(str(given.file), passphrase=given.passphrase)
     if signer is None:
-        raise ConfigError(
-            f"{given.file.name} cannot be opened: expected PKCS#12 with this passphrase"
-        )
+        raise ConfigError(CodedText("pkcs12", file=given.file.name))
     return signer
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from recon4.delivery.pdf_signature import Organization, sign_pdf
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Section, Signature, Table
@@ -120,7 +121,7 @@ def write_html(root: Path, path: Path, *, draft: bool = False) -> WrittenReport:
     state, _ = checked_approval(root, draft=draft)
     source = root / HTML
     if not source.is_file():
-        raise StoreError(f"expected a project with a finished run, got {root}")
+        raise StoreError(CodedText("report-no-run", root=str(root)))
     with atomic_file(path) as temporary, temporary.open("wb") as file:
         file.writelines(report_with_notes(root, source))
     return WrittenReport(state, signed=False)
@@ -157,7 +158,7 @@ def report_of(
         StoreError: If the map is none of a 3-D walk, or a file is damaged.
     """
     if not (read_artifacts(root).get("map", root) / "tiles.json").is_file():
-        raise StoreError(f"{root.name}: a report for the client is made of a finished 3-D map")
+        raise StoreError(CodedText("report-2d", root=root.name))
     assessed = assess(project_facts(root))
     extras = ReportExtras(
         signature=_signature(approval, state, words(wish.language), wish=wish),

@@ -10,6 +10,7 @@ import numpy as np
 from recon4.errors import OutOfRange
 from recon4.evaluation.tuning import ATE
 from recon4.geometry.se3 import SE3, Array, align_points, quat_from_matrix
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times, Trajectory
 
 Alignment = Literal["svd", "first", "none"]
@@ -95,8 +96,13 @@ def pair_poses(
         covered = (t >= truth.t_ns[0]) & (t <= truth.t_ns[-1]) & (gap_ns <= max_gap_ns)
     if covered.sum() < 2:
         raise OutOfRange(
-            f"the truth covers {covered.sum()} of {len(t)} estimated poses, at least 2 are needed: "
-            f"estimate {_span(estimate)}, truth {_span(truth)}"
+            CodedText(
+                "ate-few",
+                covered=str(covered.sum()),
+                count=len(t),
+                estimate=_span(estimate),
+                truth=_span(truth),
+            )
         )
     return PosePairs(
         t_ns=t[covered],

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 
 _CM2_PER_M2 = 1e4
 
@@ -74,7 +75,7 @@ def patch_density(chunks: Iterable[Array], patch: PlanePatch) -> Density:
         ConfigError: If the sides of the patch span no area.
     """
     if not patch.area_m2 > 1e-6:
-        raise ConfigError(f"patch: expected sides that span an area, got {patch.area_m2} m²")
+        raise ConfigError(CodedText("density-area", area_m2=patch.area_m2))
     points = sum(patch.count(np.asarray(chunk, dtype=np.float64)) for chunk in chunks)
     return Density(points, patch.area_m2, points / (patch.area_m2 * _CM2_PER_M2))
 

@@ -14,6 +14,7 @@ from recon4.evaluation.sharpness import thin
 from recon4.evaluation.slices import RelativeError, Slice, relative_error, spread_slices
 from recon4.evaluation.tuning import SENSOR_FLOOR
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.undistort import place
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -75,7 +76,7 @@ def relative_error_floor(
     given = [frame for frame in frames if len(frame)]
     used = [frame for frame in given if _covers(estimate, frame) and _covers(truth, frame)]
     if not used:
-        raise OutOfRange(f"none of {len(given)} multiframes is covered by estimate and truth")
+        raise OutOfRange(CodedText("floor-none", count=len(given)))
     where = spread_slices(mesh)
     start = absolute_error(pair_poses(estimate, truth)).T_true_map
     errors = [

@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import CorruptFile
 from recon4.evaluation.tuning import MARKER_FILES
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, raise_question
 from recon4.recording.tables.points import TablePoint, read_point_table
 from recon4.untrusted.bounded import read_bytes_limited
@@ -50,13 +51,18 @@ def read_markers(
     found = read_point_table(data, path.name, choice=choice, purpose="markers", partial=partial)
     raise_question(found.preview, path.name)
     if found.skipped:
-        raise CorruptFile(f"{path.name} {found.skipped[0]}")
+        raise CorruptFile(CodedText("markers-skipped", file=path.name, skipped=found.skipped[0]))
     lines: dict[str, int] = {}
     for row in found.points:
         if lines.setdefault(row.name, row.line) != row.line:
             raise CorruptFile(
-                f"{path.name} line {row.line}: marker {row.name[:40]!r} is in line "
-                f"{lines[row.name]} already: remove one of them, or rename it"
+                CodedText(
+                    "markers-twice",
+                    file=path.name,
+                    line=row.line,
+                    row=row.name[:40],
+                    lines=lines[row.name],
+                )
             )
     return tuple(_marker(row, f"{path.name} line {row.line}") for row in found.points)
 
@@ -66,7 +72,12 @@ def _marker(row: TablePoint, where: str) -> SurveyMarker:
     role = row.role or "check"
     if role not in {"control", "check"} or np.isnan(xyz_m).all():
         raise CorruptFile(
-            f"{where}: expected a name, a role control or check and finite numbers, got "
-            f"{row.name[:40]!r}, {role[:40]!r}, {list(row.xyz_m)}"
+            CodedText(
+                "markers-row",
+                where=where,
+                row=row.name[:40],
+                role=role[:40],
+                place=str(list(row.xyz_m)),
+            )
         )
     return SurveyMarker(row.name, xyz_m, "control" if role == "control" else "check")

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile
 from recon4.evaluation.tuning import MESH_FILES
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.recording.formats.cloud_headers import HEADER_BYTES, is_ply, ply_layout, whole
 from recon4.untrusted.bounded import lines_limited, open_regular
@@ -53,7 +54,7 @@ def read_triangles(path: Path) -> Corners:
         return _obj(path)
     if path.suffix.lower() == ".stl":
         return _stl(path, head)
-    raise CorruptFile(f"{path.name}: expected a triangle mesh (PLY, OBJ or STL)")
+    raise CorruptFile(CodedText("mesh-expected", file=path.name))
 
 
 # -- OBJ
@@ -81,10 +82,10 @@ def _obj_corner(word: str, count: int, where: str) -> int:
     try:
         number = -whole(text[1:]) if text.startswith("-") else whole(text)
     except ValueError as error:
-        raise CorruptFile(f"{where}: expected a vertex's number, got {word[:40]!r}") from error
+        raise CorruptFile(CodedText("mesh-vertex-word", where=where, word=word[:40])) from error
     row = number - 1 if number > 0 else count + number
     if number == 0 or row < 0:
-        raise CorruptFile(f"{where}: expected a vertex from 1 on, or back to 1, got {number}")
+        raise CorruptFile(CodedText("mesh-vertex-number", where=where, number=number))
     return row
 
 
@@ -100,8 +101,13 @@ def _stl(path: Path, head: bytes) -> Corners:
             if re.match(rb"\s*solid\b", head) and b"\0" not in head:
                 return _stl_text(path)
             raise CorruptFile(
-                f"{path.name}: {count} triangles need {count * _STL_ROW.itemsize} bytes behind the "
-                f"header, got {max(left, 0)}"
+                CodedText(
+                    "mesh-stl-cut",
+                    file=path.name,
+                    triangles=count,
+                    needed=count * _STL_ROW.itemsize,
+                    got=max(left, 0),
+                )
             )
         _refuse_many(count, path.name)
         file.seek(_STL_HEAD)
@@ -123,13 +129,13 @@ def _stl_text(path: Path) -> Corners:
             inside += 1
         elif key == "endfacet":
             if inside != 3:
-                raise CorruptFile(f"{where}: expected a facet of 3 vertices, got {inside}")
+                raise CorruptFile(CodedText("mesh-facet", where=where, inside=inside))
             inside, facets = 0, facets + 1
         elif key not in ("", "solid", "endsolid", "facet", "outer", "endloop"):
-            raise CorruptFile(f"{where}: expected a line of an STL file, got {line[:40]!r}")
+            raise CorruptFile(CodedText("mesh-stl-line", where=where, line=line[:40]))
         ended = ended and key == "" if key != "endsolid" else True
     if inside or not ended:
-        raise CorruptFile(f"{path.name}: cut: expected endsolid at the end, behind {facets} facets")
+        raise CorruptFile(CodedText("mesh-cut", file=path.name, facets=facets))
     _refuse_many(facets, path.name)
     return _arrays(vertices, array("q", range(3 * facets)))
 
@@ -143,20 +149,21 @@ def _ply(path: Path, head: bytes) -> Corners:
     elements = re.findall(r"^\s*element\s+(\w+)\s+(\d+)", top, re.MULTILINE)
     if [kind for kind, _ in elements[:2]] != ["vertex", "face"]:
         raise CorruptFile(
-            f"{path.name}: expected a triangle mesh with the elements vertex and face, in this "
-            f"order, got {[kind for kind, _ in elements][:8]}"
+            CodedText(
+                "mesh-elements", file=path.name, elements=str([kind for kind, _ in elements][:8])
+            )
         )
     faces = whole(elements[1][1])
     _refuse_many(faces, path.name)
     table = read_cloud(path)
     if any(axis not in table for axis in "xyz"):
-        raise CorruptFile(f"{path.name}: the vertices have no x, y, z")
+        raise CorruptFile(CodedText("mesh-no-xyz", file=path.name))
     vertices = np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
     properties = _face_properties(top, path.name)
     if layout.encoding == "ascii":
         return vertices, _face_lines(path, layout.rows, faces, properties=properties)
     if len(elements) > 2:
-        raise CorruptFile(f"{path.name}: expected nothing behind the faces, got {elements[2][0]}")
+        raise CorruptFile(CodedText("mesh-behind", file=path.name, elements=str(elements[2][0])))
     start = layout.data_at + layout.rows * layout.row_bytes
     order = "<" if "binary_little" in top else ">"
     return vertices, _face_rows(path, start, faces, row=_face_dtype(properties, order))
@@ -175,11 +182,9 @@ def _face_properties(top: str, name: str) -> list[list[str]]:
             kind in _INTEGERS or (words[0] != "list" and kind in _OTHER_BYTES) for kind in kinds
         )
         if not known or (words[0] == "list" and len(words) != 4):
-            raise CorruptFile(f"{name}: PLY faces of unknown type: {' '.join(words)[:80]!r}")
+            raise CorruptFile(CodedText("mesh-face-type", name=name, words=" ".join(words)[:80]))
     if len(found) > 64 or sum(words[0] == "list" for words in found) != 1:
-        raise CorruptFile(
-            f"{name}: PLY faces need one list of corners, got {len(found)} properties"
-        )
+        raise CorruptFile(CodedText("mesh-face-lists", name=name, count=len(found)))
     return found
 
 
@@ -201,13 +206,12 @@ def _face_rows(path: Path, start: int, count: int, *, row: np.dtype[np.void]) ->
         needed, left = count * row.itemsize, os.fstat(file.fileno()).st_size - start
         if left != needed:
             raise CorruptFile(
-                f"{path.name}: {count} triangles need {needed} bytes behind the vertices, got "
-                f"{left} (cut, or faces that are not triangles: triangulate the mesh)"
+                CodedText("mesh-ply-cut", file=path.name, count=count, needed=needed, left=left)
             )
         file.seek(start)
         faces = np.frombuffer(file.read(needed), row, count)
     if np.any(faces["n"] != 3):
-        raise CorruptFile(f"{path.name}: faces that are not triangles: triangulate the mesh")
+        raise CorruptFile(CodedText("mesh-triangulate", file=path.name))
     return np.asarray(faces["corner"].astype(np.int64))
 
 
@@ -224,16 +228,23 @@ def _face_lines(
             sides = whole(words[before])
             corners = [whole(word) for word in words[before + 1 : before + 1 + sides]]
         except (ValueError, IndexError) as error:
-            raise CorruptFile(f"{where}: expected a face, got {' '.join(words)[:80]!r}") from error
+            raise CorruptFile(
+                CodedText("mesh-face", where=where, words=" ".join(words)[:80])
+            ) from error
         if len(words) != len(properties) + sides:
             raise CorruptFile(
-                f"{where}: a face of {sides} corners has {len(properties) + sides} numbers, "
-                f"got {len(words)}"
+                CodedText(
+                    "mesh-face-numbers",
+                    where=where,
+                    sides=sides,
+                    expected=len(properties) + sides,
+                    got=len(words),
+                )
             )
         _fan(triangles, corners, where)
         faces += 1
     if faces != count:
-        raise CorruptFile(f"{path.name}: cut: {count} faces promised, got {faces}")
+        raise CorruptFile(CodedText("mesh-faces-cut", file=path.name, count=count, faces=faces))
     return np.array(triangles, np.int64).reshape(-1, 3)
 
 
@@ -264,17 +275,19 @@ def _numbers(words: Sequence[str], count: int, where: str) -> list[float]:
         return [float(word) for word in words]
     except ValueError as error:
         raise CorruptFile(
-            f"{where}: expected {count} numbers, got {' '.join(words)[:80]!r}"
+            CodedText("mesh-numbers", where=where, count=count, words=" ".join(words)[:80])
         ) from error
 
 
 def _fan(triangles: array[int], corners: Sequence[int], where: str) -> None:
     if not 3 <= len(corners) <= MESH_FILES.max_sides:
         raise CorruptFile(
-            f"{where}: expected 3 to {MESH_FILES.max_sides} corners, got {len(corners)}"
+            CodedText(
+                "mesh-corners", where=where, max_sides=MESH_FILES.max_sides, count=len(corners)
+            )
         )
     if max(corners) >= 1 << 62:
-        raise CorruptFile(f"{where}: expected numbers of vertices, got {max(corners)}")
+        raise CorruptFile(CodedText("mesh-vertex-numbers", where=where, corners=max(corners)))
     for b, c in pairwise(corners[1:]):
         triangles.extend((corners[0], b, c))
     _refuse_many(len(triangles) // 3, where)
@@ -290,5 +303,10 @@ def _arrays(vertices: array[float], triangles: array[int]) -> Corners:
 def _refuse_many(triangles: int, where: str) -> None:
     if triangles > MESH_FILES.max_triangles:
         raise CorruptFile(
-            f"{where}: expected at most {MESH_FILES.max_triangles} triangles, got {triangles}"
+            CodedText(
+                "mesh-many",
+                where=where,
+                max_triangles=MESH_FILES.max_triangles,
+                triangles=triangles,
+            )
         )

@@ -14,6 +14,7 @@ from recon4.errors import CorruptFile, RecordingError
 from recon4.evaluation.tuning import MESH_ALIGNMENT
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4.geometry.raycast import Scene
@@ -49,17 +50,22 @@ def read_mesh(path: Path) -> TriangleMesh:
     from recon4.evaluation.mesh_files import read_triangles
 
     if not path.is_file():
-        raise RecordingError(f"no model file {path.name}")
+        raise RecordingError(CodedText("model-none", file=path.name))
     vertices, triangles = read_triangles(path)
     if not len(triangles):
-        raise CorruptFile(f"{path.name}: expected a triangle mesh, found 0 triangles")
+        raise CorruptFile(CodedText("model-empty", file=path.name))
     if triangles.min() < 0 or triangles.max() >= len(vertices):
         raise CorruptFile(
-            f"{path.name}: triangles name corners that do not exist: expected 0 to "
-            f"{len(vertices) - 1}, got {triangles.min()} to {triangles.max()}"
+            CodedText(
+                "model-corners",
+                file=path.name,
+                most=len(vertices) - 1,
+                low=str(triangles.min()),
+                high=str(triangles.max()),
+            )
         )
     if not np.isfinite(vertices).all():
-        raise CorruptFile(f"{path.name}: corners have coordinates that are not numbers")
+        raise CorruptFile(CodedText("model-not-finite", file=path.name))
     return TriangleMesh(vertices, triangles)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.evaluation.tuning import RELATIONS
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times, Trajectory
 from recon4.untrusted.bounded import lines_limited, parse_float
 
@@ -67,17 +68,27 @@ def read_relations(path: Path) -> ReferenceRelations:
         try:
             values = [parse_float(word) for word in words]
         except ValueError as error:
-            raise CorruptFile(f"{path.name}: line {number}: {error}") from error
+            raise CorruptFile(
+                CodedText("relations-line", file=path.name, number=number, why=str(error))
+            ) from error
         if len(values) != _COLUMNS or not np.all(np.isfinite(values)):
             raise CorruptFile(
-                f"{path.name}: line {number}: expected {_COLUMNS} finite numbers, got {line[:80]!r}"
+                CodedText(
+                    "relations-numbers",
+                    file=path.name,
+                    number=number,
+                    columns=_COLUMNS,
+                    line=line[:80],
+                )
             )
         if max(abs(value) for value in values[:2]) > RELATIONS.latest_s:
-            raise CorruptFile(f"{path.name}: line {number}: expected seconds, got {line[:80]!r}")
+            raise CorruptFile(
+                CodedText("relations-seconds", file=path.name, number=number, line=line[:80])
+            )
         times.append((round(values[0] * 1e9), round(values[1] * 1e9)))
         rows.append(values[2:])
     if not rows:
-        raise EmptyRecording(f"{path.name}: no relation in this file")
+        raise EmptyRecording(CodedText("relations-none", file=path.name))
     table, t_ns = np.array(rows), np.array(times, np.int64)
     T = SE3.stack(SE3.from_rpy(*row[3:], t=row[:3]) for row in table)
     return ReferenceRelations(t_ns[:, 0], t_ns[:, 1], T)
@@ -98,8 +109,14 @@ def relation_errors(trajectory: Trajectory, reference: ReferenceRelations) -> Re
     inside = np.all((both >= low) & (both <= high), axis=0)
     if not inside.any():
         raise ConfigError(
-            f"the trajectory ({low / 1e9:.3f} to {high / 1e9:.3f} s) covers none of the "
-            f"{len(inside)} relations ({both.min() / 1e9:.3f} to {both.max() / 1e9:.3f} s)"
+            CodedText(
+                "relations-cover",
+                low_s=float(low / 1e9),
+                high_s=float(high / 1e9),
+                count=len(inside),
+                begin_s=float(both.min() / 1e9),
+                end_s=float(both.max() / 1e9),
+            )
         )
     T_i = trajectory.at(reference.t_i_ns[inside], slack_ns=RELATIONS.slack_ns)
     T_j = trajectory.at(reference.t_j_ns[inside], slack_ns=RELATIONS.slack_ns)

@@ -12,6 +12,7 @@ import msgspec
 from recon4.errors import StoreError
 from recon4.evaluation.table import text_table
 from recon4.evaluation.tuning import ACCURACY_CLASSES
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts, texts
 
@@ -87,7 +88,7 @@ def control_in(record: Mapping[str, object]) -> ControlOutcome | None:
     try:
         return msgspec.convert(record["control"], ControlOutcome)
     except msgspec.ValidationError as error:
-        raise StoreError(f"georeference.json: control cannot be read: {error}") from error
+        raise StoreError(CodedText("control-unreadable", why=str(error))) from error
 
 
 def accuracy_of(outcome: ControlOutcome, role: str, *, rigid: bool = False) -> RoleAccuracy:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.errors import UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import read_tum, tum_hint
 from recon4.recording.report import ImportReport
@@ -25,12 +26,12 @@ def find_trajectory(path: Path, report: ImportReport | None = None) -> Trajector
     """
     file = path / "trajectory.tum" if path.is_dir() else path
     if not file.is_file():
-        raise UnknownFormat(f"{path.name}: expected a trajectory file or a project with one")
+        raise UnknownFormat(CodedText("trajectory-none", file=path.name))
     if file.suffix == ".npz":
         return load_trajectory(file)
     if file.suffix in {".tum", ".txt"}:
         return read_tum(file, report)
-    raise UnknownFormat(f"{file.name}: expected a trajectory as .tum, .txt or .npz")
+    raise UnknownFormat(CodedText("trajectory-endings", file=file.name))
 
 
 def trajectory_with_hints(path: Path) -> tuple[Trajectory, tuple[str, ...]]:

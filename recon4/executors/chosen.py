@@ -14,7 +14,7 @@ import msgspec
 
 from recon4.errors import ConfigError, StoreError
 from recon4.executors.tuning import CLUSTER
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
 
@@ -77,7 +77,7 @@ def read_choice(state: Path) -> ChosenWorkers:
     try:
         return checked_choice(msgspec.convert(read_object(path), ChosenWorkers))
     except (msgspec.ValidationError, ConfigError) as error:
-        raise StoreError(f"{path}: {error}") from error
+        raise StoreError(at(str(path), text_of(error))) from error
 
 
 def store_choice(state: Path, chosen: ChosenWorkers) -> None:

@@ -21,6 +21,7 @@ import recon4
 from recon4.errors import Cancelled, ConfigError
 from recon4.executors.executor import Finished, Result, Say, Task
 from recon4.executors.tuning import CLUSTER
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from distributed import Client, Worker
@@ -123,7 +124,9 @@ def workers_here(count: int) -> Cluster:
     """
     _require()
     if not 1 <= count <= CLUSTER.most_workers:
-        raise ConfigError(f"command: --workers: expected 1 to {CLUSTER.most_workers}, got {count}")
+        raise ConfigError(
+            CodedText("command-workers", most_workers=CLUSTER.most_workers, count=count)
+        )
 
     def connect(opened: ExitStack) -> Client:
         import dask
@@ -165,13 +168,10 @@ def workers_of(scheduler: str, certificates: Certificates, shared: Path) -> Clus
     """
     _require()
     if not scheduler.startswith("tls://"):
-        raise ConfigError(
-            f"command: --scheduler: expected tls://HOST:PORT, got {scheduler!r}: anyone who "
-            "reaches a scheduler without certificates can run programs on its workers"
-        )
+        raise ConfigError(CodedText("command-scheduler", scheduler=scheduler))
     for path in (certificates.authority, certificates.certificate, certificates.key):
         if not path.is_file():
-            raise ConfigError(f"no such certificate or key: {path}")
+            raise ConfigError(CodedText("scheduler-certificate", file=str(path)))
 
     def connect(opened: ExitStack) -> Client:
         from distributed import Client, Security
@@ -185,7 +185,9 @@ def workers_of(scheduler: str, certificates: Certificates, shared: Path) -> Clus
         try:
             client = Client(scheduler, security=security, timeout=CLUSTER.connects_within_s)
         except (OSError, TimeoutError) as error:
-            raise ConfigError(f"no scheduler answers at {scheduler}: {error}") from error
+            raise ConfigError(
+                CodedText("scheduler-silent", scheduler=scheduler, why=str(error))
+            ) from error
         opened.callback(_close, client)
         require_workers(seen_workers(client, shared), shared)
         return client
@@ -212,17 +214,20 @@ def require_workers(workers: Sequence[SeenWorker], shared: Path) -> None:
         ConfigError: If there are none, one has another version, or does not see the folder.
     """
     if not workers:
-        raise ConfigError("the scheduler has no workers: start some")
+        raise ConfigError(CodedText("scheduler-no-workers"))
     for worker in workers:
         if worker.version != recon4.__version__:
             raise ConfigError(
-                f"{worker.address}: expected recon4 {recon4.__version__} as here, "
-                f"got {worker.version}"
+                CodedText(
+                    "scheduler-version",
+                    address=worker.address,
+                    expected=recon4.__version__,
+                    got=worker.version,
+                )
             )
         if not worker.sees_folder:
             raise ConfigError(
-                f"{worker.address} does not see {shared}: all workers need this folder, under the "
-                "same name"
+                CodedText("scheduler-folder", address=worker.address, shared=str(shared))
             )
 
 

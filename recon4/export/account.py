@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.threads import Each, in_turn
 
 
@@ -76,7 +77,11 @@ class PointAccount:
             StoreError: With the first difference.
         """
         for what, expected, got in self._differences(found, within_m):
-            raise StoreError(f"{name} reads back wrong: {what}: expected {expected}, got {got}")
+            raise StoreError(
+                CodedText(
+                    "reread-differs", name=name, what=what, expected=str(expected), got=str(got)
+                )
+            )
 
     def _differences(
         self, found: PointAccount, within_m: float

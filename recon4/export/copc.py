@@ -35,6 +35,7 @@ from recon4.export.octree import Cube, Key, Octree, PointFiles, Records
 from recon4.export.points import CRS_OF_MAP, OutputCrs, PointSource
 from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import OCTREE, REREAD
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
@@ -217,12 +218,18 @@ def _check(path: Path, chunks: list[_Chunk], header: Any, *, meant: PointAccount
                 file.read(chunk.size), compression, packed, [(chunk.points, chunk.size)]
             )
             if chunk.points and zlib.crc32(packed.data) != chunk.crc:
-                raise StoreError(f"{path.name} reads back wrong: the points of node {chunk.key}")
+                raise StoreError(CodedText("reread-node", file=path.name, key=str(chunk.key)))
             add_records(found, packed.view(header.point_format.dtype()), read.header)
     listed = sum(node.point_count for node in read.root_page.entries.values())
     if not found.count == listed == read.header.point_count:
         raise StoreError(
-            f"{path.name} reads back wrong: {found.count} points in nodes, {listed} listed, "
-            f"{read.header.point_count} in the header, expected {meant.count}"
+            CodedText(
+                "reread-nodes",
+                file=path.name,
+                nodes=found.count,
+                listed=str(listed),
+                point_count=str(read.header.point_count),
+                expected=meant.count,
+            )
         )
     meant.compare(found, path.name, within_m=OCTREE.step_m / 2.0 + REREAD.bounds_m)

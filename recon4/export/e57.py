@@ -16,6 +16,7 @@ from recon4.export.node_scans import SCAN_ROW, ScanPoses, node_scans
 from recon4.export.points import PointSource
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.gps_time import adjusted_gps_s, is_absolute
 from recon4.progress import Progress
 
@@ -52,9 +53,7 @@ def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
             _check(path, dict(sorted_.files), source)
         except libe57.E57Exception as error:
             reason = str(error).partition("\n")[0]  # it goes on for a page
-            raise StoreError(
-                f"an E57 file cannot be written: {reason}; is the disk full?"
-            ) from error
+            raise StoreError(CodedText("e57-not-written", reason=reason)) from error
     return source.count
 
 
@@ -176,16 +175,25 @@ def _check(path: Path, files: dict[int, Path], source: PointSource) -> None:
     with pye57.E57(str(path)) as file:
         crs = file.root["coordinateMetadata"].value()
         if crs != source.crs:
-            raise StoreError(f"{path.name} reads back wrong: CRS: expected {source.crs!r}")
+            raise StoreError(CodedText("reread-crs", file=path.name, crs=source.crs))
         if file.scan_count != len(files):
             raise StoreError(
-                f"{path.name} reads back wrong: {file.scan_count} scans, expected {len(files)}"
+                CodedText(
+                    "reread-scans",
+                    file=path.name,
+                    scan_count=str(file.scan_count),
+                    count=len(files),
+                )
             )
         for index, rows in enumerate(files.values()):
             expected, found = np.fromfile(rows, SCAN_ROW), file.read_scan_raw(index)
             for name in SCAN_ROW.names or ():
                 if not np.array_equal(found[name], expected[name]):
-                    raise StoreError(f"{path.name} reads back wrong: {name} of scan {index}")
+                    raise StoreError(
+                        CodedText("reread-scan-field", file=path.name, name=name, index=index)
+                    )
             count += len(expected)
     if count != source.count:
-        raise StoreError(f"{path.name} reads back wrong: {count} points, expected {source.count}")
+        raise StoreError(
+            CodedText("reread-points", file=path.name, got=count, expected=source.count)
+        )

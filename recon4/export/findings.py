@@ -15,6 +15,7 @@ from recon4.export.tuning import FINDING_EXPORT
 from recon4.findings.summary_notes import SaidFinding, findings_in
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs_file import read_crs
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Trajectory
 from recon4.review.state import read_summary
 from recon4.store.arrays import load_trajectory
@@ -47,7 +48,7 @@ def export_findings(project: Path, path: Path) -> int:
 def findings_file(project: Path, ending: str) -> tuple[int, str]:
     """How many findings a finished map has, and the file as text; see `export_findings`."""
     if ending not in ENDINGS:
-        raise ConfigError(f"findings are written as .csv or .geojson, got {ending or 'no ending'}")
+        raise ConfigError(CodedText("findings-endings", got=ending or CodedText("no-ending")))
     placed = placed_findings(project)
     findings, lines = [one for one, _ in placed], [line for _, line in placed]
     artifacts = read_artifacts(project)
@@ -65,7 +66,7 @@ def placed_findings(project: Path) -> list[tuple[SaidFinding, Array]]:
     """
     findings = findings_in(read_summary(project) or {})
     if findings is None:
-        raise StoreError(f"{project} has no findings yet: run recon4 process, or recon4 audit")
+        raise StoreError(CodedText("findings-none", project=str(project)))
     walk = _walk(read_artifacts(project))
     return [(one, _line(one, walk)) for one in findings]
 

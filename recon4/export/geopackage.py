@@ -17,6 +17,7 @@ from recon4.export.geojson import MapSystem
 from recon4.export.tuning import GEOPACKAGES
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import atomic_file
 
 Value = str | int | float | None
@@ -90,10 +91,12 @@ def write_geopackage(
                 _write(file, layers, place, changed=changed)
             count = _count(temporary, layers)
         except sqlite3.Error as error:
-            raise StoreError(f"{path.name} cannot be written: {error}") from error
+            raise StoreError(
+                CodedText("file-not-written", file=path.name, why=str(error))
+            ) from error
         wanted = sum(len(layer.features) for layer in layers)
         if count != wanted:
-            raise StoreError(f"{path.name}: expected {wanted} features, got {count} back")
+            raise StoreError(CodedText("gpkg-features", file=path.name, wanted=wanted, count=count))
     return count
 
 

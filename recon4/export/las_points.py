@@ -17,6 +17,7 @@ from recon4.export.account import PointAccount
 from recon4.export.points import Block, PointSource
 from recon4.export.tuning import LAZ
 from recon4.kernels.las import whole_steps
+from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION
 from recon4.model.gps_time import day_of, is_absolute, point_time_s
 from recon4.progress import Progress
@@ -89,7 +90,7 @@ def _wkt(crs: str) -> str:
     try:
         known = pyproj.CRS.from_user_input(crs)
     except pyproj.exceptions.CRSError as error:
-        raise GeoreferenceError(f"not a CRS: {crs[:80]!r}: {error}") from error
+        raise GeoreferenceError(CodedText("export-no-crs", crs=crs[:80], why=str(error))) from error
     try:
         return str(known.to_wkt("WKT1_GDAL"))
     except pyproj.exceptions.CRSError:
@@ -120,9 +121,7 @@ def las_points(
     corners = np.empty((2, 3))
     if not whole_steps(xyz, header.offsets, header.scales, steps, corners):
         wide_km = round(4e6 * header.scales[0])
-        raise GeoreferenceError(
-            f"the map is wider than {wide_km} km or has coordinates without meaning"
-        )
+        raise GeoreferenceError(CodedText("export-wide", wide_km=str(wide_km)))
     points = laspy.ScaleAwarePointRecord(
         records, header.point_format, header.scales, header.offsets
     )

@@ -39,6 +39,7 @@ from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import LAZ, POINT_EXPORT, REREAD
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.threads import Each, in_order
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
@@ -82,7 +83,7 @@ def writing_las(path: Path, name: str) -> Iterator[ErrorKeepingWriter]:
         except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
             if file.write_error:
                 raise file.write_error from error
-            raise StoreError(f"cannot write {name}: {error}") from error
+            raise StoreError(CodedText("cannot-write", name=name, why=str(error))) from error
 
 
 @contextmanager
@@ -95,7 +96,7 @@ def reading_las(name: str) -> Iterator[None]:
     try:
         yield
     except (laspy.errors.LaspyException, lazrs.LazrsError, ValueError) as error:
-        raise StoreError(f"{name} reads back wrong: {error}") from error
+        raise StoreError(CodedText("reread-why", name=name, why=str(error))) from error
 
 
 def export_laz(
@@ -242,10 +243,10 @@ def _check_bytes(path: Path, written: Mapping[int, tuple[int, int]], name: str) 
     with path.open("rb") as file:
         for first, (count, crc) in sorted(written.items()):
             if first != at or zlib.crc32(file.read(count)) != crc:
-                raise StoreError(f"{name} reads back wrong: {count} bytes from byte {first} on")
+                raise StoreError(CodedText("reread-bytes", name=name, count=count, first=first))
             at += count
         if file.read(1):
-            raise StoreError(f"{name} reads back wrong: more than {at} bytes")
+            raise StoreError(CodedText("reread-longer", name=name, at=at))
 
 
 def _check(path: Path, meant: PointAccount, name: str, *, each: Each | None) -> None:
@@ -287,7 +288,7 @@ def _check_first(file: Any, sums: Sequence[int], name: str) -> None:
         file.seek(first)
         read.add_stored(file.read_points(POINT_EXPORT.summed).array)
         if read.sums != [expected]:
-            raise StoreError(f"{name} reads back wrong: points from number {first} on")
+            raise StoreError(CodedText("reread-from", name=name, first=first))
 
 
 def _account_of_all(file: Any, each: Each) -> PointAccount:
@@ -344,7 +345,7 @@ def write_values(
     stream = iter(parts)
     first = next((part for part in stream if len(part.xyz)), None)
     if first is None:
-        raise ConfigError("there are no points to write")
+        raise ConfigError(CodedText("export-no-points"))
     header = values_header(
         {name: values.dtype.str[1:] for name, values in first.values.items()}, crs, offset_m
     )
@@ -365,5 +366,5 @@ def write_values(
                 count += len(part.xyz)
         with reading_las(path.name), laspy.open(temporary) as written:
             if sum(len(points) for points in written.chunk_iterator(LAZ.together)) != count:
-                raise StoreError(f"{path.name} reads back wrong: expected {count} points")
+                raise StoreError(CodedText("reread-count", file=path.name, count=count))
     return count

@@ -23,6 +23,7 @@ from recon4.export.ptx import export_ptx
 from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.xyz import export_xyz
 from recon4.georeference.crs_file import read_crs
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
@@ -184,7 +185,7 @@ def export_map(
     """
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
-        raise StoreError(f"{project} has no map yet: run recon4 process")
+        raise StoreError(CodedText("deliver-no-map", project=str(project)))
     keys = {name: folder.name for name, folder in artifacts.items()}
     approval = None if wanted.draft else approval_of(project, keys)
     evidence = approval.evidence if approval else None
@@ -233,7 +234,7 @@ def final_trajectory(
         StoreError: If there is none yet.
     """
     if not {"frames", "level"} <= artifacts.keys():
-        raise StoreError(f"{project} has no finished trajectory yet: run recon4 process")
+        raise StoreError(CodedText("export-no-trajectory", project=str(project)))
     keys = {name: folder.name for name, folder in artifacts.items()}
     approval = None if draft else approval_of(project, keys)
     if approval:
@@ -276,7 +277,7 @@ def cloud_writer(path: Path) -> CloudWriter:
     ending = next((one for one in CLOUD_FORMATS if name.endswith(one)), None)
     if ending is None:
         raise ConfigError(
-            f"a map is written as {', '.join(CLOUD_FORMATS)}, .e57, .ptx, got {path.name}"
+            CodedText("export-formats", cloud_formats=", ".join(CLOUD_FORMATS), file=path.name)
         )
     check_name(path, ending)
     return CLOUD_FORMATS[ending]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 COPC = ".copc.laz"
 _UNWRITTEN = {
@@ -24,10 +25,12 @@ def check_name(path: Path, ending: str) -> None:
     """
     name = path.name.lower()
     if ending == ".laz" and name.endswith(COPC):
-        raise ConfigError(f"{path.name}: a map is written as {COPC}, this is a plain LAZ file")
+        raise ConfigError(CodedText("export-copc-name", file=path.name, copc=COPC))
     for special, kind in _UNWRITTEN.items():
         if special.endswith(ending) and name.endswith(special):
             plain = path.name[: -len(special)] + ending
-            raise ConfigError(f"{path.name}: {kind} is not supported; use {plain}")
+            raise ConfigError(CodedText("export-kind", file=path.name, kind=kind, plain=plain))
     if not name.endswith(ending):
-        raise ConfigError(f"a {ending[1:].upper()} file must be named {ending}, got {path.name}")
+        raise ConfigError(
+            CodedText("export-name", ending=ending[1:].upper(), suffix=ending, file=path.name)
+        )

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.export.points import PointSource
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times
 from recon4.progress import Progress
 
@@ -70,7 +71,7 @@ def node_scans(
     """
     if source.selection.left_out:
         kind = path.suffix[1:].upper()
-        raise ConfigError(f"{kind} has no classes, so it cannot hold what the map leaves out")
+        raise ConfigError(CodedText("export-kind-classes", kind=kind))
     origins = source.transform(scans.T_map_body.t)
     with tempfile.TemporaryDirectory(prefix=f"{path.name}.", dir=path.parent) as folder:
         files = _sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, ClassVar
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.untrusted.names import visible
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ class ExportOptions:
 
         classes = EVERY_CLASS if self.all_points else frozenset(self.classes)
         if self.all_points and self.classes:
-            raise ConfigError("choose some classes, or all points: not both")
+            raise ConfigError(CodedText("export-classes-both"))
         return PointSelection(
             classes=classes, box_m=self.box_m, heights_m=heights_m, thin_m=self.thin_m
         )
@@ -95,7 +96,7 @@ def classes_named(text: str) -> tuple[int, ...]:
     for word in filter(None, (_plain(part) for part in text.split(","))):
         if word not in known:
             names = ", ".join(_plain(facts.title) for facts in CLASSES.values())
-            raise ConfigError(f"classes: expected some of {names}, got {visible(word)!r}")
+            raise ConfigError(CodedText("export-classes", names=names, word=visible(word)))
         codes.append(known[word])
     return tuple(dict.fromkeys(codes))
 

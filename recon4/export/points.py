@@ -14,6 +14,7 @@ from recon4.errors import ConfigError
 from recon4.export.selection import DELIVERED, PointSelection, shares_text
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.threads import Each, in_turn
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import Tile, TileSet
@@ -102,7 +103,7 @@ class PointSource:
         """
         tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
         if not len(tiles):
-            raise ConfigError("the map has no points, there is nothing to export")
+            raise ConfigError(CodedText("export-map-empty"))
         shift = np.array(tiles.crs.origin_m if tiles.crs else (0.0, 0.0, 0.0))
         transform = output.map_to_crs or (lambda xyz_m: xyz_m + shift)
         crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
@@ -122,8 +123,7 @@ class PointSource:
             high = np.maximum(high, [column.max() for column in block.xyz.T])
         if not count:
             raise ConfigError(
-                "no point of the map is in the chosen classes, box and storey: there is nothing "
-                f"to export; the map has {shares_text(self.tiles.class_counts())}"
+                CodedText("export-nothing-chosen", tiles=shares_text(self.tiles.class_counts()))
             )
         return replace(self, count=count, offset=np.round((low + high) / 2.0))
 

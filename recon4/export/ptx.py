@@ -19,6 +19,7 @@ from recon4.export.node_scans import SCAN_ROW, ScanPoses, node_scans
 from recon4.export.points import PointSource
 from recon4.export.tuning import POINT_EXPORT, PTX
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 
 
@@ -87,13 +88,13 @@ def _check(path: Path, scans: list[tuple[str, Path]]) -> None:
             rows = np.fromfile(file, SCAN_ROW)
             head = _head(len(rows), pose).splitlines(keepends=True)
             if list(islice(text, len(head))) != head:
-                raise StoreError(f"{path.name} reads back wrong: head of scan {index}")
+                raise StoreError(CodedText("reread-scan-head", file=path.name, index=index))
             for first, found in _blocks(text, len(rows)):
                 expected = _numbers(rows[first : first + POINT_EXPORT.block])
                 if not np.array_equal(found, expected):
-                    raise StoreError(f"{path.name} reads back wrong: points of scan {index}")
+                    raise StoreError(CodedText("reread-scan-points", file=path.name, index=index))
         if text.read(1):
-            raise StoreError(f"{path.name} reads back wrong: more than {len(scans)} scans")
+            raise StoreError(CodedText("reread-more-scans", file=path.name, count=len(scans)))
 
 
 def _blocks(text: IO[str], count: int) -> Iterator[tuple[int, Array]]:

@@ -12,6 +12,7 @@ from recon4.errors import CorruptFile, StoreError
 from recon4.export.account import PointAccount
 from recon4.export.tuning import REREAD
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText, text_of
 from recon4.recording.formats.cloud_files import cloud_chunks
 
 
@@ -23,7 +24,7 @@ def check_size(path: Path, expected: int, name: str) -> None:
     """
     found = path.stat().st_size
     if found != expected:
-        raise StoreError(f"{name}: expected {expected} bytes, got {found}")
+        raise StoreError(CodedText("file-bytes", name=name, expected=expected, found=found))
 
 
 def account_of_rows(path: Path, row: np.dtype[np.void], *, offset: Array) -> PointAccount:
@@ -49,7 +50,7 @@ def account_of_rows(path: Path, row: np.dtype[np.void], *, offset: Array) -> Poi
             found.add(xyz + offset, rows["classification"])
             found.add_stored(rows)
     except (CorruptFile, KeyError) as error:
-        raise StoreError(f"{path.name} reads back wrong: {error}") from error
+        raise StoreError(CodedText("reread-why", name=path.name, why=text_of(error))) from error
     return found
 
 
@@ -72,11 +73,10 @@ def _lines(path: Path) -> Iterator[NDArray[np.float64]]:
             try:
                 values = np.loadtxt(lines, ndmin=2, comments="//")
             except ValueError as error:
-                raise StoreError(f"{path.name} reads back wrong: {error}") from error
+                raise StoreError(CodedText("reread-why", name=path.name, why=str(error))) from error
             if values.size and values.shape[1] != 5:
                 raise StoreError(
-                    f"{path.name} reads back wrong: expected 5 numbers a line, "
-                    f"got {values.shape[1]}"
+                    CodedText("reread-columns", file=path.name, shape=str(values.shape[1]))
                 )
             if values.size:
                 yield values

@@ -11,6 +11,7 @@ from recon4.errors import ConfigError
 from recon4.export.map_files import final_trajectory
 from recon4.export.names import check_name
 from recon4.export.scans import ScanRows, export_scans
+from recon4.locales.coded import CodedText
 from recon4.model.pose_graph import PoseGraph
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.sweeps import find_sweeps
@@ -45,7 +46,7 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress, draft: bool 
     """
     check_name(folder, ".3dtk")
     if folder.exists():
-        raise ConfigError(f"{folder} exists already: name a new folder")
+        raise ConfigError(CodedText("folder-exists", folder=str(folder)))
     artifacts = read_artifacts(project)
     dense = final_trajectory(project, artifacts, draft=draft)
     store = open_frames(artifacts["frames"], artifacts.get("calibration"))

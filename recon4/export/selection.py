@@ -13,6 +13,7 @@ from recon4.errors import ConfigError
 from recon4.export.options import Box
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tile import Columns
 from recon4.model.classes import CLASSES, PointClass
 
@@ -36,13 +37,17 @@ class PointSelection:
     def __post_init__(self) -> None:
         unknown = sorted(self.classes - EVERY_CLASS)
         if unknown:
-            raise ConfigError(f"classes: expected some of {sorted(EVERY_CLASS)}, got {unknown}")
+            raise ConfigError(
+                CodedText(
+                    "classes-unknown", every_class=str(sorted(EVERY_CLASS)), unknown=str(unknown)
+                )
+            )
         if self.box_m is not None:
             _check_box(self.box_m)
         if not (math.isfinite(self.thin_m) and 0.0 <= self.thin_m <= 100.0):
-            raise ConfigError(f"thinning: expected 0 to 100 m, got {self.thin_m}")
+            raise ConfigError(CodedText("thinning-range", thin_m=self.thin_m))
         if 0.0 < self.thin_m < 1e-4:
-            raise ConfigError(f"thinning: expected at least 0.0001 m, got {self.thin_m}")
+            raise ConfigError(CodedText("thinning-least", thin_m=self.thin_m))
 
     @property
     def is_whole(self) -> bool:
@@ -102,11 +107,9 @@ def shares_text(counts: Mapping[int, int]) -> str:
 def _check_box(box_m: Box) -> None:
     low, high = box_m[:3], box_m[3:]
     if len(box_m) != 6 or not all(map(math.isfinite, box_m)):
-        raise ConfigError(f"box: expected six finite numbers, got {list(box_m)}")
+        raise ConfigError(CodedText("box-numbers", box_m=str(list(box_m))))
     if any(a > b for a, b in zip(low, high, strict=True)):
-        raise ConfigError(
-            f"box: expected the smallest x, y, z and then the largest, got {list(box_m)}"
-        )
+        raise ConfigError(CodedText("box-order", box_m=str(list(box_m))))
 
 
 def _first_of_cubes(xyz: NDArray[np.float32], edge_m: float) -> NDArray[np.intp]:

@@ -16,6 +16,7 @@ from recon4.findings import witnesses as folder
 from recon4.findings.tuning import AUDIT_LIST
 from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
+from recon4.locales.coded import unreadable
 from recon4.model.figures import AuditFigures
 from recon4.model.finding import Finding, Level, worst_first
 from recon4.store.atomic import write_json
@@ -62,7 +63,7 @@ def load_findings(folder: Path) -> tuple[Finding, ...]:
     try:
         return tuple(msgspec.convert(record.get("findings"), list[Finding]))
     except msgspec.ValidationError as error:
-        raise StoreError(f"{FINDINGS} cannot be read: {error}") from error
+        raise StoreError(unreadable(FINDINGS, error)) from error
 
 
 def _most_of_a_kind(findings: Iterable[Finding]) -> list[Finding]:

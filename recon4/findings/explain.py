@@ -18,6 +18,7 @@ import msgspec
 from recon4.errors import ConfigError
 from recon4.findings.derived import derived_sentences
 from recon4.findings.wording import KindText, catalog
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
 from recon4.model.derived_kinds import DerivedKind
@@ -90,7 +91,7 @@ def explained(code: str, language: str = ENGLISH) -> str:
     except ValueError:
         near = get_close_matches(name, [*FindingKind, *DerivedKind], n=3)
         hint = f"; similar: {', '.join(near)}" if near else ""
-        raise ConfigError(f"expected the code of a finding, got {code!r}{hint}") from None
+        raise ConfigError(CodedText("explain-code", code=code, hint=hint)) from None
     entry, heads = catalog(language).kinds[kind], texts(language, "findings")
     parts = [("", entry.title), ("", entry.meaning)]
     parts.append((heads("explain-detected"), entry.detection.replace("*", "")))

@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.rejected_fixes import RejectedRun, rejected_runs
 
 
@@ -68,4 +69,4 @@ def placement_in(record: Mapping[str, object]) -> Placement:
     try:
         return msgspec.convert(record, Placement)
     except msgspec.ValidationError as error:
-        raise StoreError(f"georeference.json cannot be read: {error}") from error
+        raise StoreError(CodedText("georeference-unreadable", why=str(error))) from error

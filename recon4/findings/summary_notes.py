@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Level, Point
 
 
@@ -44,7 +45,7 @@ def findings_in(summary: Mapping[str, object]) -> list[SaidFinding] | None:
     try:
         return msgspec.convert(record, list[SaidFinding])
     except msgspec.ValidationError as error:
-        raise StoreError(f"summary.json: its findings cannot be read: {error}") from error
+        raise StoreError(CodedText("summary-findings-unreadable", why=str(error))) from error
 
 
 def notes_in(summary: Mapping[str, object]) -> list[str]:

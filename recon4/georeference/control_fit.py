@@ -19,6 +19,7 @@ import numpy as np
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import SE3, Array, align_points, skew
 from recon4.georeference.tuning_control import CONTROL_FIT
+from recon4.locales.coded import CodedText
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,16 +109,10 @@ def fit_control(targets: Sequence[MeasuredTarget], *, leveled: bool) -> ControlF
     limit_rad = CONTROL_FIT.tilt_sd_rad if leveled else CONTROL_FIT.turn_sd_rad
     if on_its_back or whole.tilt_sd_rad > limit_rad:
         if not leveled:
-            raise GeoreferenceError(
-                f"control points {_names(targets)} lie on one line: a map that is not leveled needs"
-                " three that do not"
-            )
+            raise GeoreferenceError(CodedText("control-one-line", targets=_names(targets)))
         whole = _RigidFit.of(targets, freedom=4, start=None)
     if not whole.heading_sd_rad < CONTROL_FIT.turn_sd_rad:
-        raise GeoreferenceError(
-            f"control points {_names(targets)} lie above each other or too close together: they do "
-            "not say where north is"
-        )
+        raise GeoreferenceError(CodedText("control-too-close", targets=_names(targets)))
     return whole.judged()
 
 
@@ -324,8 +319,12 @@ def _start(targets: Sequence[MeasuredTarget], *, freedom: int) -> SE3:
 def _check(targets: Sequence[MeasuredTarget]) -> None:
     if len(targets) < CONTROL_FIT.least_points:
         raise GeoreferenceError(
-            f"expected at least {CONTROL_FIT.least_points} control points that are found in the "
-            f"map, got {len(targets)}{f' ({_names(targets)})' if targets else ''}"
+            CodedText(
+                "control-few",
+                least=CONTROL_FIT.least_points,
+                got=len(targets),
+                names=f" ({_names(targets)})" if targets else "",
+            )
         )
     _check_unit(targets)
     for place, where in (("p_site", "in the survey"), ("p_map", "in the map")):
@@ -334,8 +333,13 @@ def _check(targets: Sequence[MeasuredTarget]) -> None:
         i, j = divmod(int(apart.argmin()), len(p))
         if apart[i, j] < CONTROL_FIT.apart_m:
             raise GeoreferenceError(
-                f"{targets[i].id} and {targets[j].id} are in one place {where}: expected points "
-                f"at least {100 * CONTROL_FIT.apart_m:g} cm apart"
+                CodedText(
+                    "control-same-place",
+                    name=targets[i].id,
+                    other=targets[j].id,
+                    where=where,
+                    apart_m=100 * CONTROL_FIT.apart_m,
+                )
             )
 
 
@@ -353,8 +357,7 @@ def _check_unit(targets: Sequence[MeasuredTarget]) -> None:
     most = CONTROL_FIT.other_unit
     if (site_m > most * map_m).all() or (site_m * most < map_m).all():
         raise GeoreferenceError(
-            f"control points are up to {site_m.max():.3g} apart in the survey and "
-            f"{map_m.max():.3g} m in the map: expected meters, neither degrees nor another unit"
+            CodedText("control-unit", site_m=float(site_m.max()), map_m=float(map_m.max()))
         )
 
 

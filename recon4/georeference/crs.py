@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +105,7 @@ class CrsTransform:
             out = (*self._transformer.transform(lon, lat, radians=True), height)
         p_crs = np.stack(out, axis=-1)
         if not np.isfinite(p_crs).all():
-            raise GeoreferenceError(f"{self.crs} does not cover this place")
+            raise GeoreferenceError(CodedText("crs-place", crs=self.crs))
         return p_crs
 
     def to_map(self, p_crs: Array) -> Array:
@@ -128,7 +129,7 @@ class CrsTransform:
             height = up
         p_map = to_enu(self.origin, lat, lon, ellipsoidal_height_m=height)
         if not np.isfinite(p_map).all():
-            raise GeoreferenceError(f"{self.crs} does not cover these coordinates")
+            raise GeoreferenceError(CodedText("crs-covers", crs=self.crs))
         return p_map
 
 
@@ -146,8 +147,7 @@ def origin_near(crs: str, p_crs: Array) -> GeodeticOrigin:
     lon, lat = back.transform(float(p_crs[0]), float(p_crs[1]))
     if not np.isfinite([lon, lat]).all():
         raise GeoreferenceError(
-            f"easting {p_crs[0]:.3f}, northing {p_crs[1]:.3f} is not in {crs}: expected coordinates"
-            " of that system"
+            CodedText("crs-coordinates", east_m=float(p_crs[0]), north_m=float(p_crs[1]), crs=crs)
         )
     # Rounded: the origin is a choice, not a measurement.
     lon, lat = round(float(lon), 6), round(float(lat), 6)
@@ -199,11 +199,11 @@ def _system(name: str) -> Any:
     try:
         system = CRS.from_user_input(code_of(name))
     except CRSError as error:
-        raise GeoreferenceError(f"no coordinate reference system {name!r}: {error}") from error
+        raise GeoreferenceError(CodedText("crs-unknown", name=name, why=str(error))) from error
     if not (system.is_projected or (system.is_compound and system.sub_crs_list[0].is_projected)):
-        raise GeoreferenceError(f"{name} is not a map projection in meters: {system.name}")
+        raise GeoreferenceError(CodedText("crs-no-projection", name=name, system=system.name))
     if any(axis.unit_name != "metre" for axis in system.axis_info):
-        raise GeoreferenceError(f"{name} is not in meters")
+        raise GeoreferenceError(CodedText("crs-not-meters", name=name))
     return system
 
 
@@ -232,5 +232,5 @@ def _best_transformer(origin: GeodeticOrigin, target: Any, name: str) -> Any:
             if not grid.available
         ]
         needs = f"needs the grid {', '.join(grids)}" if grids else "has no operation for this place"
-        raise GeoreferenceError(f"{name} {needs}; heights or positions would be wrong without")
+        raise GeoreferenceError(CodedText("crs-needs", name=name, needs=needs))
     return group.transformers[0]

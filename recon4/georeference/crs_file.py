@@ -9,6 +9,7 @@ import numpy as np
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.site_grid import SiteGrid
+from recon4.locales.coded import CodedText
 from recon4.model.local_frame import LocalReason
 from recon4.model.site_control import SITE_GRID
 from recon4.untrusted.bounded import read_json_object
@@ -42,15 +43,12 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | SiteGrid | None:
             if crs:
                 reason = record["georeference"]["reason"]
                 raise GeoreferenceError(
-                    f"the map cannot be put into {crs}: {_WHY.get(reason, reason)}"
+                    CodedText("crs-map", crs=crs, why=str(_WHY.get(reason, reason)))
                 )
             return None
         if record["crs"]["name"] == SITE_GRID:
             if crs:
-                raise GeoreferenceError(
-                    f"the map cannot be put into {crs}: its control points are in a grid of the "
-                    "site; give them in that system"
-                )
+                raise GeoreferenceError(CodedText("crs-site-grid", crs=crs))
             east, north, up = map(float, record["crs"]["origin_m"])
             return SiteGrid((east, north, up))
         origin = record["georeference"]["origin"]
@@ -59,4 +57,4 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | SiteGrid | None:
             GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or record["crs"]["name"]
         )
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
-        raise StoreError(f"{path} cannot be read: {error!r}") from error
+        raise StoreError(CodedText("crs-unreadable", file=str(path), why=repr(error))) from error

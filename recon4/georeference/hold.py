@@ -19,6 +19,7 @@ import numpy as np
 from recon4.errors import StoreError
 from recon4.georeference.stage import LeveledMap
 from recon4.georeference.tuning import HOLD
+from recon4.locales.coded import at
 from recon4.model.figures import LevelFigures, MirrorFigures, MovedFigures
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
@@ -125,7 +126,7 @@ def _has_same_place(leveled: LeveledMap, undecided: Path) -> bool:
     try:
         before, after = (msgspec.convert(one, _Georeference) for one in (record, own))
     except msgspec.ValidationError as error:
-        raise StoreError(f"georeference.json: {error}") from error
+        raise StoreError(at("georeference.json", str(error))) from error
     return before.place == after.place
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import Array
 from recon4.georeference.tuning_control import SITE_GRIDS
+from recon4.locales.coded import CodedText
 from recon4.model.site_control import SITE_GRID
 
 _WKT = (
@@ -67,7 +68,7 @@ class SiteGrid:
         """
         p = np.asarray(xyz_m, dtype=np.float64).reshape(-1, 3)
         if not np.isfinite(p).all():
-            raise GeoreferenceError("a control point has a coordinate that is not a number")
+            raise GeoreferenceError(CodedText("control-not-finite"))
         middle = p.mean(axis=0)
         near = np.abs(p).max(axis=0) < SITE_GRIDS.small_m
         step = SITE_GRIDS.step_m

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from functools import reduce
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from recon4.georeference.crs import (
     to_enu,
 )
 from recon4.georeference.tuning_control import SURVEY_SYSTEMS
+from recon4.locales.coded import CodedText, text_of
 from recon4.units import FOOT_M
 
 _CODE = re.compile(r"EPSG:([0-9]+)")
@@ -43,8 +45,11 @@ def survey_system(crs: str, p_crs: Array, *, origin: GeodeticOrigin | None = Non
         if _is_there(plan, p_crs, origin):  # only the heights have no transformation
             raise
         found = [words for words, code, p in _readings(plan, p_crs) if _is_there(code, p, origin)]
-        better = f"; {' or '.join(found)} they are there: correct the survey or the system"
-        raise GeoreferenceError(f"{error}{better if found else ''}") from error
+        if not found:
+            raise
+        words = reduce(lambda one, other: CodedText("either-or", one=one, other=other), found)
+        text = CodedText("survey-reading", why=text_of(error), reading=words)
+        raise GeoreferenceError(text) from error
 
 
 def _placed(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> CrsTransform:
@@ -56,15 +61,19 @@ def _placed(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> CrsTransfo
             raise
         lat_deg, lon_deg = np.rad2deg([place.lat_rad, place.lon_rad])
         raise GeoreferenceError(
-            f"easting {p_crs[0]:.3f}, northing {p_crs[1]:.3f} in {crs} are latitude {lat_deg:.2f}°,"
-            f" longitude {lon_deg:.2f}°, where this system is not used"
+            CodedText(
+                "crs-not-used",
+                east_m=float(p_crs[0]),
+                north_m=float(p_crs[1]),
+                crs=crs,
+                lat_deg=float(lat_deg),
+                lon_deg=float(lon_deg),
+            )
         ) from error
     if origin is not None:
         off_m = float(np.linalg.norm(system.to_map(p_crs[None])))
         if off_m > SURVEY_SYSTEMS.far_m:
-            raise GeoreferenceError(
-                f"the coordinates in {crs} are {off_m / 1000:.0f} km from where GNSS has the map"
-            )
+            raise GeoreferenceError(CodedText("crs-gnss-far", crs=crs, off_m=off_m / 1000))
     return system
 
 
@@ -99,17 +108,17 @@ def _in_area(crs: str, place: GeodeticOrigin) -> bool:
 def _readings(crs: str, p_crs: Array) -> Iterator[tuple[str, str, Array]]:
     """Other readings of coordinates: words, system, easting, northing, height [m]."""
     exchanged = p_crs[[1, 0, 2]]
-    yield "with easting and northing exchanged", crs, exchanged
-    yield "as feet", crs, p_crs * FOOT_M
-    yield "as feet with easting and northing exchanged", crs, exchanged * FOOT_M
+    yield CodedText("reading-exchanged"), crs, exchanged
+    yield CodedText("reading-feet"), crs, p_crs * FOOT_M
+    yield CodedText("reading-feet-exchanged"), crs, exchanged * FOOT_M
     million = SURVEY_SYSTEMS.zone_m
     if p_crs[0] > million:
         without = p_crs - [p_crs[0] // million * million, 0.0, 0.0]
-        yield "without the number of the zone before the easting", crs, without
+        yield CodedText("reading-no-zone"), crs, without
     elif (zone_m := false_easting_m(crs) // million * million) > 0.0:
-        number = f"with the number of the zone, {zone_m / million:.0f}, before the easting"
+        number = CodedText("reading-zone", zone=round(zone_m / million))
         yield number, crs, p_crs + np.array([zone_m, 0.0, 0.0])
     code = _CODE.fullmatch(code_of(crs))
     for step in SURVEY_SYSTEMS.zones if code else ():
         other = f"EPSG:{int(code[1]) + step}" if code else crs
-        yield f"in {other}", other, p_crs
+        yield CodedText("reading-crs", crs=other), other, p_crs

@@ -8,6 +8,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.intensity.surfaces import Surfaces
 from recon4.intensity.tuning import INTENSITY_TABLE, IntensityTuning
+from recon4.locales.coded import CodedText
 from recon4.model.intensity_table import IntensityTable
 
 
@@ -81,7 +82,7 @@ def table_of_surfaces(
 
 def _require_points(total: Array) -> None:
     if total[0] == 0:
-        raise ConfigError("intensity cannot be normalized: there are no points to learn from")
+        raise ConfigError(CodedText("intensity-none"))
 
 
 def _moments(sums: Array) -> tuple[Array, Array]:

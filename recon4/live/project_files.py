@@ -10,6 +10,7 @@ from typing import Any
 from recon4.errors import StoreError
 from recon4.live.recorder.ports import check_sources
 from recon4.live.session import CaptureSession
+from recon4.locales.coded import CodedText
 from recon4.model.figures import FrameFigures
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.progress import Silent
@@ -41,9 +42,11 @@ def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:
     try:
         taken = is_project(project) and not _never_ran(session)
     except OSError as error:
-        raise StoreError(f"cannot use {project} as a project: {error.strerror}") from error
+        raise StoreError(
+            CodedText("project-unusable", folder=str(project), why=str(error.strerror))
+        ) from error
     if taken:
-        raise StoreError(f"project {project.name} exists already; choose another name")
+        raise StoreError(CodedText("project-exists-already", project=project.name))
     with Project.open(project) as opened:
         opened.describe(preset=session.preset, rig=rig.name)
         make_folders(session.capture.parent)

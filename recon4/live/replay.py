@@ -23,6 +23,7 @@ import numpy as np
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import loopback_address, stretched
 from recon4.live.tuning import REPLAY
+from recon4.locales.coded import CodedText
 from recon4.model.ports import PORTS
 from recon4.model.rig import Rig
 from recon4.progress import Progress
@@ -85,7 +86,7 @@ def replay(
     """
     first = next(datagrams_of(recording, rig), None)
     if first is None:
-        raise EmptyRecording(f"{recording.name}: no UDP datagram found")
+        raise EmptyRecording(CodedText("replay-none", recording=recording.name))
     first_ns = second_ns = first.t_ns
     began_ns = time.time_ns()
     shift_ns = (stretched(began_ns, speed) - first_ns) // 1000 * 1000
@@ -206,7 +207,7 @@ class _Senders:
             self._sockets[datagram.source].sendto(datagram.payload, (self._target, datagram.port))
         except OSError as error:
             what = error.strerror or str(error)
-            raise ConfigError(f"cannot send to {self._target}: {what}") from error
+            raise ConfigError(CodedText("replay-send", target=self._target, what=what)) from error
 
     def _open(self, source: str) -> socket.socket:
         udp = self._closing.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))

@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, unreadable
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.json_files import read_object
 from recon4.system.runtime_folder import runtime_folder
@@ -109,13 +110,17 @@ def load_session(project: Path) -> CaptureSession:
     try:
         session = CaptureSession(**{**facts, "project": project})
     except TypeError as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
+        raise StoreError(unreadable(str(path), error)) from error
     for name, kind in _TYPES.items():
         if type(getattr(session, name)) not in kind:
             raise StoreError(f"{path}: {name}: got {getattr(session, name)!r:.80}")
     if not (0.0 < session.speed < math.inf and 0 <= session.least_free_bytes < 1 << 63):
         raise StoreError(
-            f"{path}: expected speed > 0 and least_free_bytes >= 0, "
-            f"got {session.speed!r:.80} and {session.least_free_bytes!r:.80}"
+            CodedText(
+                "session-numbers",
+                file=str(path),
+                speed=repr(session.speed)[:80],
+                least_free_bytes=repr(session.least_free_bytes)[:80],
+            )
         )
     return session

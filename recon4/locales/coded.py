@@ -20,9 +20,10 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
 
-FILES = ("problems", "endings", "references", "recordings", "files")
+FILES = ("problems", "endings", "references", "recordings", "files", "formats", "results", "usage")
 """Files of the texts with a code: problems of requests, reasons why jobs ended, what is said of
-references, of recordings, and of files, settings and projects."""
+references, of recordings, of files, settings and projects, of formats, of results, and of wrong
+usage of commands."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
 COUNTS = ("counts",)
@@ -171,6 +172,16 @@ def text_of(error: BaseException) -> str:
     """The message of an error: a `CodedText` if it has a code, or is of a kind that has one."""
     text = coded(error)
     return text if text.code != UNCODED else str(error)
+
+
+def at(where: str, why: str) -> CodedText:
+    """What is wrong, behind the name of the file or place where it is."""
+    return CodedText("where-why", where=where, why=why)
+
+
+def unreadable(name: str, error: BaseException) -> CodedText:
+    """That a file cannot be read, and why."""
+    return CodedText("file-unreadable", name=name, why=text_of(error))
 
 
 def as_coded(text: object, english: str = "") -> CodedText:

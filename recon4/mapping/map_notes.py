@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, text_of
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 
@@ -78,4 +79,4 @@ def read_map_list(path: Path) -> dict[str, Any]:
     try:
         return read_json_object(path, LIMITS.tile_list_bytes, failure=StoreError)
     except StoreError as error:
-        raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error
+        raise StoreError(CodedText("map-list", file=str(path), why=text_of(error))) from error

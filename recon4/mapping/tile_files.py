@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.kernels.cell_table import CellIndex
 from recon4.kernels.structure_points import Structure
+from recon4.locales.coded import CodedText
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.class_corrections import ClassVolume, ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
@@ -157,7 +158,7 @@ class TileMaker:
         i, j, k = numbers
         tile = i, j, k
         if tile not in self.buckets.counts:
-            raise StoreError(f"no tile {tile}")
+            raise StoreError(CodedText("map-no-tile", tile=str(tile)))
         records = self.buckets.read(tile)
         is_large = len(records) >= MAP_BUILD.large
         means = TileMeans(None if is_large else self.scratch)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText, text_of
 from recon4.mapping.columns import PackedColumns, TileColumns
 from recon4.mapping.earlier_columns import EarlierColumns
 from recon4.mapping.map_notes import MapCrs, MapNotes, read_map_list
@@ -115,7 +116,9 @@ class Tile:
     def _read(self, fields: Sequence[str], stored: Callable[..., Columns]) -> Columns:
         unknown = sorted(set(fields) - set(self.fields))
         if unknown:
-            raise StoreError(f"the map has no field {unknown}; it has {list(self.fields)}")
+            raise StoreError(
+                CodedText("map-no-field", unknown=str(unknown), fields=str(list(self.fields)))
+            )
         derived = set(fields) - set(self.columns.fields)
         needed = (set(fields) - derived) | (set(_DERIVED_FROM) if derived else set())
         moved = RAW_OFFSET in self.columns.fields and bool(
@@ -125,7 +128,9 @@ class Tile:
         try:
             columns = stored(names, checked=self.checked)
         except Altered as error:
-            raise Altered(f"tile {self.ijk} of the map was changed: {error}") from error
+            raise Altered(
+                CodedText("map-tile-changed", ijk=str(self.ijk), why=text_of(error))
+            ) from error
         at = columns["xyz"] if "xyz" in columns else np.empty((0, 3), np.float32)
         measured = at + columns[RAW_OFFSET].astype(np.float32) if moved else at
         if derived:
@@ -219,7 +224,7 @@ class TileSet:
             first_ns, last_ns = (int(t_ns) for t_ns in facts["time_ns"] or (0, 0))
             notes = MapNotes.of(facts)
         except _MALFORMED as error:
-            raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
+            raise StoreError(CodedText("map-list", file=str(path), why=repr(error))) from error
         _check_rows(tiles, points, path.name)
         surface: Surface = "fitted" if RAW_OFFSET in columns.fields else "raw"
         return TileSet(tiles, columns, points, tile_m, first_ns, last_ns, notes, surface)

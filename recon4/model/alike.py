@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.cell_clusters import CellCluster, Clusters
 from recon4.model.class_corrections import Reclassified
 from recon4.model.classes import CLASSES
@@ -27,7 +28,7 @@ class PickedThing:
 
     def __post_init__(self) -> None:
         if not np.isfinite(self.place_m).all():
-            raise ConfigError(f"expected a place in the map, got {self.place_m}")
+            raise ConfigError(CodedText("place-expected", place_m=str(self.place_m)))
 
     @property
     def classes(self) -> tuple[int, ...]:

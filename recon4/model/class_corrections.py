@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.classes import CLASSES, PointClass
 from recon4.model.volumes import Volume
 
@@ -27,7 +28,7 @@ class Reclassified:
     def __post_init__(self) -> None:
         known = {int(one) for one in CLASSES}
         if self.to not in known - {int(PointClass.NEVER_CLASSIFIED)} or not {*self.only} <= known:
-            raise ConfigError(f"expected classes of points, got {self.to} and {self.only}")
+            raise ConfigError(CodedText("class-expected", to=self.to, only=str(self.only)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +54,7 @@ class ClassCorrection:
 
     def __post_init__(self) -> None:
         if not self.anchors or self.points <= 0:
-            raise ConfigError("a correction of classes changes at least one point")
+            raise ConfigError(CodedText("class-none-changed"))
 
 
 def class_named(name: str) -> PointClass:
@@ -67,7 +68,7 @@ def class_named(name: str) -> PointClass:
         if wanted in (facts.title, str(int(one))):
             return one
     known = ", ".join(facts.title for facts in CLASSES.values())
-    raise ConfigError(f"unknown class {name!r}; known: {known}")
+    raise ConfigError(CodedText("class-unknown", name=name, known=known))
 
 
 def titles_of(classes: Sequence[int]) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.tuning import SURVEY_COVARIANCES
 
 Covariance: TypeAlias = tuple[float, float, float, float, float, float]
@@ -23,7 +24,7 @@ def covariance_of(sd_m: tuple[float, float, float]) -> Covariance:
     """
     e, n, h = sd_m
     if min(sd_m) < 0.0:
-        raise ConfigError(f"expected standard deviations above 0, got {e:g}, {n:g}, {h:g} m")
+        raise ConfigError(CodedText("survey-deviations", e=e, n=n, h=h))
     return check_covariance((e * e, 0.0, 0.0, n * n, 0.0, h * h))
 
 
@@ -41,21 +42,19 @@ def check_covariance(values: Covariance) -> Covariance:
             unit is another one.
     """
     if not np.isfinite(values).all():
-        raise ConfigError("expected a covariance of finite numbers")
+        raise ConfigError(CodedText("survey-covariance-finite"))
     matrix = covariance_matrix(values)
     for axis, variance in zip("ENH", np.diag(matrix).tolist(), strict=True):
         least, most = SURVEY_COVARIANCES.least_m, SURVEY_COVARIANCES.most_m
         sd_m = math.sqrt(variance) if variance > 0.0 else variance
         if not least <= sd_m <= most:
             raise ConfigError(
-                f"the standard deviation {axis} is {sd_m:g} m: expected {least:g} to {most:g} m; "
-                "check its unit"
+                CodedText(
+                    "survey-deviation-range", axis=axis, sd_m=float(sd_m), least=least, most=most
+                )
             )
     sd = np.sqrt(np.diag(matrix))
     least_root = float(np.linalg.eigvalsh(matrix / np.outer(sd, sd))[0])
     if least_root < SURVEY_COVARIANCES.least_root:
-        raise ConfigError(
-            "the covariance is not positive definite: a correlation is 1 or more, or its numbers "
-            "are in another order"
-        )
+        raise ConfigError(CodedText("survey-covariance-definite"))
     return values

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import OutOfRange
 from recon4.geometry.se3 import SE3, interpolate
+from recon4.locales.coded import CodedText
 
 Times = NDArray[np.int64]
 
@@ -50,11 +51,16 @@ class Trajectory:
         """
         t = np.asarray(t_ns, dtype=np.int64)
         if len(self.t_ns) == 0:
-            raise OutOfRange("the trajectory is empty")
+            raise OutOfRange(CodedText("trajectory-empty"))
         if t.size and (t.min() < self.t_ns[0] - slack_ns or t.max() > self.t_ns[-1] + slack_ns):
             raise OutOfRange(
-                f"time {t.min() / 1e9:.3f} … {t.max() / 1e9:.3f} s is outside the trajectory, "
-                f"which covers {self.t_ns[0] / 1e9:.3f} … {self.t_ns[-1] / 1e9:.3f} s"
+                CodedText(
+                    "trajectory-outside",
+                    from_s=float(t.min() / 1e9),
+                    to_s=float(t.max() / 1e9),
+                    begin_s=float(self.t_ns[0] / 1e9),
+                    end_s=float(self.t_ns[-1] / 1e9),
+                )
             )
         if len(self.t_ns) == 1:
             return self.T_a_b[np.zeros(t.shape, dtype=np.intp)]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.cell_clusters import (
     Clusters,
     cluster_bounds,
@@ -71,13 +72,13 @@ class Prism(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="p
         _check_lengths("prism", (self.high_m - self.low_m,))
         if not 3 <= len(self.polygon_m) <= VOLUMES.most_corners:
             raise ConfigError(
-                f"prism: expected 3 to {VOLUMES.most_corners} corners, got {len(self.polygon_m)}"
+                CodedText(
+                    "prism-corners", most_corners=VOLUMES.most_corners, count=len(self.polygon_m)
+                )
             )
         polygon = Polygon(self.polygon_m)
         if not polygon.is_valid or polygon.area < VOLUMES.least_m2:
-            raise ConfigError(
-                f"prism: expected a polygon whose edges do not cross: {is_valid_reason(polygon)}"
-            )
+            raise ConfigError(CodedText("prism-crosses", polygon=str(is_valid_reason(polygon))))
 
 
 class Brush(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="brush"):
@@ -99,15 +100,15 @@ class Brush(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag="b
     def __post_init__(self) -> None:
         if not 1 <= len(self.path_m) <= VOLUMES.most_places:
             raise ConfigError(
-                f"brush: expected 1 to {VOLUMES.most_places} places, got {len(self.path_m)}"
+                CodedText("brush-places", most_places=VOLUMES.most_places, count=len(self.path_m))
             )
         normal = () if self.across is None else self.across
         _check("brush", (*(x for place in self.path_m for x in place), *normal))
         _check_lengths("brush", (self.radius_m, *(() if self.across is None else (self.thick_m,))))
         if self.across is None and self.thick_m != 0.0:
-            raise ConfigError("brush: only a stroke on a slice has a thickness")
+            raise ConfigError(CodedText("brush-thickness"))
         if self.across is not None and abs(float(np.linalg.norm(normal)) - 1.0) > VOLUMES.axes:
-            raise ConfigError(f"brush: expected a normal of length 1, got {self.across}")
+            raise ConfigError(CodedText("brush-normal", across=str(self.across)))
         low, high = bounds_of(self)
         _check_lengths("brush", tuple(map(float, high - low)))
 
@@ -245,16 +246,20 @@ def _axes(volume: Box | Sphere | Prism | Brush) -> Array:
 def _check(name: str, numbers: tuple[float, ...], *axes: Vector) -> None:
     every = np.array([*numbers, *(x for axis in axes for x in axis)])
     if not np.isfinite(every).all() or np.abs(every).max() > VOLUMES.farthest_m:
-        raise ConfigError(f"{name}: expected finite coordinates, got {every.tolist()}")
+        raise ConfigError(CodedText("volume-finite", name=name, every=str(every.tolist())))
     if axes and np.abs(np.array(axes) @ np.array(axes).T - np.eye(2)).max() > VOLUMES.axes:
-        raise ConfigError(f"{name}: expected u and v of length 1 at a right angle, got {axes}")
+        raise ConfigError(CodedText("volume-axes", name=name, axes=str(axes)))
 
 
 def _check_lengths(name: str, lengths_m: tuple[float, ...]) -> None:
     if not all(0.0 < length_m <= VOLUMES.longest_m for length_m in lengths_m):
         raise ConfigError(
-            f"{name}: expected a volume that is not empty, up to {VOLUMES.longest_m:.0f} m long, "
-            f"got {', '.join(f'{length_m:g} m' for length_m in lengths_m)}"
+            CodedText(
+                "volume-size",
+                name=name,
+                longest_m=VOLUMES.longest_m,
+                lengths_m=", ".join(f"{length_m:g} m" for length_m in lengths_m),
+            )
         )
 
 

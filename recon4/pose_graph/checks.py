@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.pose_graph import Flags, Relations
 from recon4.pose_graph.tuning_solve import GRAPH_CHECKS
 
@@ -23,10 +24,10 @@ def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:
         GraphError: Names the node or the edge and its defect.
     """
     if len(T_map_body) == 0:
-        raise GraphError("the graph has no node")
+        raise GraphError(CodedText("graph-no-node"))
     bad_nodes = ~_is_motion(T_map_body)
     if bad_nodes.any():
-        raise GraphError(f"pose of node {int(np.argmax(bad_nodes))} is not a finite rigid motion")
+        raise GraphError(CodedText("graph-pose", node=int(np.argmax(bad_nodes))))
     _check_ends(of, nodes=len(T_map_body))
     _refuse(of, ~_is_motion(of.T_i_j), "its transformation is not a finite rigid motion")
     finite = np.isfinite(of.information.reshape(len(of), 36).sum(1))
@@ -59,7 +60,9 @@ def _check_ends(of: Relations, *, nodes: int) -> None:
     if outside.any():
         row = int(np.argmax(outside))
         raise GraphError(
-            f"edge {row} joins nodes {of.i[row]} and {of.j[row]}; there are nodes 0 to {nodes - 1}"
+            CodedText(
+                "graph-edge-nodes", row=row, i=str(of.i[row]), j=str(of.j[row]), nodes=nodes - 1
+            )
         )
     _refuse(of, of.i == of.j, "it joins a node with itself")
 
@@ -68,7 +71,9 @@ def _refuse(of: Relations, bad: Flags, what: str) -> None:
     bad = bad & of.in_graph
     if bad.any():
         row = int(np.argmax(bad))
-        raise GraphError(f"edge {row} (nodes {of.i[row]} and {of.j[row]}): {what}")
+        raise GraphError(
+            CodedText("graph-edge", row=row, i=str(of.i[row]), j=str(of.j[row]), what=what)
+        )
 
 
 def _check_connected(of: Relations, *, nodes: int) -> None:
@@ -81,8 +86,9 @@ def _check_connected(of: Relations, *, nodes: int) -> None:
     if parts > 1:
         cut_off = np.flatnonzero(label != label[0])
         raise GraphError(
-            f"the graph is not connected: {len(cut_off)} of {nodes} nodes cannot be reached "
-            f"from node 0, the first is node {cut_off[0]}"
+            CodedText(
+                "graph-not-connected", count=len(cut_off), nodes=nodes, cut_off=str(cut_off[0])
+            )
         )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import ARM_M, SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.pose_graph import Relations
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.priors import Kernel, PosePriors, Priors, TargetPriors
@@ -40,7 +41,7 @@ class FactorProblem:
     ) -> FactorProblem:
         check_relations(T_map_body, of)
         if not len(fixed) and not priors:
-            raise GraphError("the gauge is free: expected a fixed node or a prior, got none")
+            raise GraphError(CodedText("graph-gauge"))
         best = float(of.information[of.in_graph].max(initial=1.0))
         always = [
             gtsam.PriorFactorPose3(int(node), _pose(T_map_body, node), _gauge(best))
@@ -90,7 +91,7 @@ class FactorProblem:
         found = _poses(values, self.nodes)
         # With a NaN inside, gtsam leaves the poses unchanged; only the error shows it.
         if not np.isfinite(optimizer.error()) or not np.isfinite(found.t).all():
-            raise GraphError("the optimizer met a number that is not finite")
+            raise GraphError(CodedText("graph-not-finite"))
         return found, int(optimizer.iterations())
 
     def prior_chi2(self, T_map_body: SE3) -> float:
@@ -147,7 +148,7 @@ def _stepped(optimizer: Any, tuning: SolveTuning) -> Any:
 
 def _check_prior(prior: Priors, *, nodes: int) -> None:
     if len(prior.node) and not 0 <= prior.node.min() <= prior.node.max() < nodes:
-        raise GraphError(f"a prior names a node outside 0 to {nodes - 1}")
+        raise GraphError(CodedText("graph-prior-node", nodes=nodes - 1))
     if isinstance(prior, PosePriors):
         numbers = [prior.T_map_body.R, prior.T_map_body.t, prior.information]
     elif isinstance(prior, TargetPriors):
@@ -155,9 +156,9 @@ def _check_prior(prior: Priors, *, nodes: int) -> None:
     else:
         numbers = [prior.p_map, prior.p_body, prior.sd_m]
         if np.any(prior.sd_m <= 0.0):
-            raise GraphError("a prior has a standard deviation that is not positive")
+            raise GraphError(CodedText("graph-prior-deviation"))
     if not all(np.isfinite(values).all() for values in numbers):
-        raise GraphError("a prior is not finite")
+        raise GraphError(CodedText("graph-prior-finite"))
 
 
 def _pose_factors(prior: PosePriors) -> list[Any]:

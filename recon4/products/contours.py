@@ -8,6 +8,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.products.terrain import Terrain
 from recon4.products.tuning import TERRAIN
 
@@ -39,7 +40,7 @@ def contours(terrain: Terrain, *, interval_m: float, up_m: float = 0.0) -> list[
     from shapely import LineString
 
     if not interval_m > 0.0:
-        raise ConfigError(f"contours: expected an interval above 0 m, got {interval_m}")
+        raise ConfigError(CodedText("contours-interval", interval_m=interval_m))
     if not terrain.seen.any():
         return []
     height = terrain.height_m.astype(np.float64) + up_m
@@ -47,8 +48,7 @@ def contours(terrain: Terrain, *, interval_m: float, up_m: float = 0.0) -> list[
     high = int(np.floor(np.nanmax(height) / interval_m))
     if high - low > TERRAIN.max_levels:
         raise ConfigError(
-            f"contours: expected at most {TERRAIN.max_levels} heights, got {high - low}: use a "
-            "larger interval"
+            CodedText("contours-many", max_levels=TERRAIN.max_levels, high=high - low)
         )
     x, y = terrain.centers_m()
     made = contour_generator(x, y, np.ma.masked_invalid(height), line_type=LineType.Separate)

@@ -12,6 +12,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.products.tuning import CURVES
 from recon4.slices.map_crs import MapFrame
 from recon4.store.atomic import atomic_file
@@ -89,7 +90,9 @@ def write_drawing(shapes: Sequence[DrawnShape], path: Path, notes: DrawingNotes)
     """
     write = {".dxf": _write_dxf, ".geojson": _write_geojson}.get(path.suffix.lower())
     if write is None:
-        raise ConfigError(f"a drawing is written as {' or '.join(DRAWINGS)}, got {path.name}")
+        raise ConfigError(
+            CodedText("drawing-formats", drawings=" or ".join(DRAWINGS), file=path.name)
+        )
     with atomic_file(path) as temporary:
         write(shapes, temporary, notes)
 

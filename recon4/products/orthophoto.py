@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.products.storeys import BuildingStorey
 from recon4.products.tuning import ORTHOPHOTOS
@@ -95,7 +96,7 @@ def _extent(tiles: TileSet, plane: SlicePlane, pixel_m: float) -> SliceWindow:
         low = np.minimum(low, part.uvd[:, :2].min(axis=0))
         high = np.maximum(high, part.uvd[:, :2].max(axis=0))
     if not np.isfinite(low).all():
-        raise ConfigError(f"orthophoto: the map has no points in {plane.name}")
+        raise ConfigError(CodedText("orthophoto-none", plane=plane.name))
     low, high = np.floor(low / pixel_m) * pixel_m, (np.floor(high / pixel_m) + 1.0) * pixel_m
     return SliceWindow(*low.tolist(), *high.tolist())
 
@@ -116,7 +117,7 @@ def _image(front: _NearestSurfaces, plane: SlicePlane, grid: RasterGrid) -> Orth
     shape = (grid.height, grid.width)
     seen = front.count > 0
     if not seen.any():
-        raise ConfigError(f"orthophoto: the map has no points along the line of {plane.name}")
+        raise ConfigError(CodedText("orthophoto-line-none", plane=plane.name))
     value = np.divide(front.total, front.count, out=front.total, where=seen)
     sample = value[seen][:: max(1, int(seen.sum()) // ORTHOPHOTOS.sample)]
     low, high = (float(x) for x in np.percentile(sample, ORTHOPHOTOS.percentiles))

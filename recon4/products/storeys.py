@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.products.tuning import STOREYS
 
@@ -213,9 +214,9 @@ def storey_named(storeys: tuple[BuildingStorey, ...], name: str) -> BuildingStor
         if storey.name == name:
             return storey
     if not storeys:
-        raise ConfigError("the map has no storeys: no floor below a ceiling was walked on")
+        raise ConfigError(CodedText("storeys-none"))
     names = ", ".join(f"{one.name} (floor at {one.floor_m:.2f} m)" for one in storeys)
-    raise ConfigError(f"no storey named {name}; there are: {names}")
+    raise ConfigError(CodedText("storey-unknown", name=name, names=names))
 
 
 def storey_heights(storeys: tuple[BuildingStorey, ...], name: str) -> tuple[float, float]:

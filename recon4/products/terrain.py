@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.model.classes import PointClass
 from recon4.products.tuning import TERRAIN
@@ -127,7 +128,7 @@ def spacing_m(tiles: TileSet, part: TerrainPart) -> float:
 
 def _window(tiles: TileSet) -> SliceWindow:
     if not len(tiles):
-        raise ConfigError("the map has no points, there is no terrain")
+        raise ConfigError(CodedText("terrain-none"))
     low, high = (np.asarray(corner)[:2] for corner in tiles.bounds_m)
     return SliceWindow(*low.tolist(), *high.tolist())
 

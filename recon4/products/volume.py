@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.products.terrain import Terrain
 from recon4.products.tuning import TERRAIN
 
@@ -60,7 +61,7 @@ def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> 
     inside, border, area = _cells_in(terrain, polygon)
     rows = inside & terrain.seen
     if not rows.any():
-        raise ConfigError("volume: nothing was seen inside of the polygon")
+        raise ConfigError(CodedText("heap-nothing"))
     x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
     plane, base_sd = (np.array([0.0, 0.0, base_m]), 0.0)
     map_sd = terrain.position_sd_m
@@ -94,10 +95,10 @@ def _cells_in(
 
     corners = np.asarray(polygon, dtype=np.float64)
     if corners.ndim != 2 or corners.shape[1:] != (2,) or len(corners) < 3:
-        raise ConfigError(f"volume: expected three corners or more, got {len(corners)}")
+        raise ConfigError(CodedText("heap-corners", count=len(corners)))
     shape = Polygon(corners)
     if not shape.is_valid or shape.area < terrain.grid.pixel_m**2:
-        raise ConfigError(f"volume: the polygon encloses no area: {is_valid_reason(shape)}")
+        raise ConfigError(CodedText("heap-no-area", shape=str(is_valid_reason(shape))))
     x, y = np.meshgrid(*terrain.centers_m())
     near = shape.exterior.buffer(TERRAIN.border_m)
     prepare(shape)
@@ -110,14 +111,13 @@ def _fitted_base(terrain: Terrain, border: NDArray[np.bool_]) -> tuple[Array, fl
     rows = border & terrain.seen
     if rows.sum() < TERRAIN.border_cells:
         raise ConfigError(
-            f"volume: expected {TERRAIN.border_cells} cells with ground along the border, got "
-            f"{int(rows.sum())}; give the height of the base"
+            CodedText("heap-border", border_cells=TERRAIN.border_cells, rows=int(rows.sum()))
         )
     x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
     A, z = np.column_stack([x, y, np.ones(len(x))]), terrain.height_m[rows].astype(np.float64)
     fitted, _, rank, _ = np.linalg.lstsq(A, z, rcond=None)
     if rank < 3:
-        raise ConfigError("volume: the ground along the border lies on a line")
+        raise ConfigError(CodedText("heap-border-line"))
     plane = np.asarray(fitted, np.float64)
     residual = z - A @ plane
     return plane, float(np.sqrt(residual @ residual / max(1, len(z) - 3) / len(z)))

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.products.drawing import DRAWINGS, DrawingNotes, DrawnShape, DrawnTitle, write_drawing
 from recon4.products.fitted_plans import FittedPlans
@@ -53,7 +54,7 @@ class ProductOptions:
         for name in ("depth_m", "pixel_m", "cell_m", "interval_m"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0.0):
-                raise ConfigError(f"{name}: expected a number above 0, got {value}")
+                raise ConfigError(CodedText("number-positive", name=name, value=str(value)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,7 +96,9 @@ def write_product(
         StoreError: If the file cannot be written.
     """
     if path.suffix.lower() not in ENDINGS[kind]:
-        raise ConfigError(f"a {kind} is written as {' '.join(ENDINGS[kind])}, got {path.name}")
+        raise ConfigError(
+            CodedText("product-endings", kind=kind, endings=" ".join(ENDINGS[kind]), file=path.name)
+        )
     if kind == "plan":
         return _write_plan(source, path, options)
     if kind == "orthophoto":
@@ -109,7 +112,7 @@ def _write_plan(source: ProductSource, path: Path, options: ProductOptions) -> s
     plans = source.plans.of(source.tiles, options.storey)
     shapes = [shape for plan in plans for shape in plan_shapes(plan)]
     if not any(plan.walls for plan in plans):
-        raise ConfigError("plan: no wall that reaches a ceiling was found")
+        raise ConfigError(CodedText("plan-no-wall"))
     _draw(shapes, path, source, titles=[plan_title(plan) for plan in plans])
     return "\n".join(plan.text for plan in plans)
 
@@ -139,10 +142,7 @@ def _write_terrain(source: ProductSource, path: Path, options: ProductOptions) -
     if path.suffix.lower() in DRAWINGS:
         lines = contours(made, interval_m=options.interval_m, up_m=up_m)
         if not lines:
-            raise ConfigError(
-                f"contours: the terrain crosses no multiple of {options.interval_m} m: use a "
-                "smaller interval"
-            )
+            raise ConfigError(CodedText("contours-none", interval_m=options.interval_m))
         _draw(list(contour_shapes(lines, up_m)), path, source)
         return f"{len(lines)} contours, {options.interval_m} m apart"
     _raster(made.raster(up_m), path, source, relief=made)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import at
 from recon4.model.clock_jump import ClockJump
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.events import Remarked
@@ -190,7 +191,7 @@ def ingest(
         receivers = _Receivers(writer, found, live.watch)
         written = _write_frames(recording, assembler, receivers, progress=progress)
         if not written.duration_ns:
-            raise EmptyRecording(f"{paths[0].name}: {report.why_no_points(recording.seen)}")
+            raise EmptyRecording(at(paths[0].name, report.why_no_points(recording.seen)))
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)

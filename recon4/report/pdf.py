@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import ConfigError, StoreError
+from recon4.locales.coded import CodedText
 from recon4.report.client import ClientReport
 
 INSTALL = "pip install 'recon4[pdf]'"
@@ -46,7 +47,7 @@ def pdf_of(report: ClientReport) -> bytes:
             pdf_standards=["a-2a", "ua-1"],  # archives; read aloud
         )
     except typst.TypstError as error:
-        raise StoreError(f"the report cannot be laid out: {error.message[:400]}") from error
+        raise StoreError(CodedText("pdf-layout", message=error.message[:400])) from error
     assert isinstance(made, bytes)
     return made
 
@@ -61,9 +62,7 @@ def require_pdf() -> None:
         import pyhanko  # noqa: F401
         import typst  # noqa: F401
     except ImportError as error:
-        raise ConfigError(
-            f"a PDF needs the extra packages typst and pyhanko: {INSTALL} ({error})"
-        ) from error
+        raise ConfigError(CodedText("pdf-packages", install=INSTALL, why=str(error))) from error
 
 
 @cache

@@ -8,6 +8,7 @@ import msgspec
 
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import Evaluation
+from recon4.locales.coded import CodedText
 from recon4.model.rig_origin import RigOrigin
 from recon4.report.facts import ReportFacts, StageTiming
 from recon4.report.tuning import PROJECT_FACTS
@@ -50,7 +51,7 @@ def project_facts(root: Path, evaluation: Evaluation | None = None) -> ReportFac
         StoreError: If there is no finished run, or a file is damaged.
     """
     if not (root / "summary.json").is_file():
-        raise StoreError(f"expected a project with a finished run, got {root}")
+        raise StoreError(CodedText("report-no-run", root=str(root)))
     record = read_object(root / "summary.json", max_bytes=PROJECT_FACTS.max_bytes)
     described = ProjectDescription.read(root)
     artifacts = read_artifacts(root)
@@ -71,7 +72,9 @@ def project_facts(root: Path, evaluation: Evaluation | None = None) -> ReportFac
             evaluation=evaluation,
         )
     except (KeyError, TypeError, msgspec.ValidationError) as error:
-        raise StoreError(f"{root.name}/summary.json cannot be read: {error!r}") from error
+        raise StoreError(
+            CodedText("file-unreadable", name=f"{root.name}/summary.json", why=repr(error))
+        ) from error
 
 
 def _timing(one: _Stage) -> StageTiming:

@@ -16,6 +16,7 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import unreadable
 from recon4.review.tuning import ANNOTATION_FILES
 from recon4.store.json_files import read_object
 from recon4.store.seal import check_sealed
@@ -88,7 +89,7 @@ def _entries(root: Path, name: str, kind: type[list[Entry]]) -> list[Entry]:
             raise ValueError(f"expected format {ANNOTATION_FILES.format}")
         return msgspec.convert(found.get("items"), kind)
     except ValueError as error:
-        raise StoreError(f"{name} cannot be read: {error}") from error
+        raise StoreError(unreadable(name, error)) from error
 
 
 def _measurements(view: SavedView) -> Iterator[Measured]:

@@ -17,7 +17,7 @@ from typing import Any, TypedDict
 import msgspec
 
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText, text_of
+from recon4.locales.coded import CodedText, text_of, unreadable
 from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.acknowledgments import signed_acknowledgments, write_into_report
 from recon4.review.approved import VERSIONS, Approval, approval_of, versions_without_row
@@ -266,7 +266,7 @@ def _conflicts(root: Path, summary: dict[str, Any]) -> int:
     try:
         return len(json.loads(path.read_text("utf-8"))["conflicts"])
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise StoreError(f"{path} cannot be read: {error}") from error
+        raise StoreError(unreadable(str(path), error)) from error
 
 
 def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:

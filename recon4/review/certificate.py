@@ -20,6 +20,7 @@ from cryptography.hazmat.primitives.serialization import (
 from cryptography.x509.oid import NameOID
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.signature import fingerprint, public_key_of
 from recon4.review.tuning import CERTIFICATES
 
@@ -63,7 +64,7 @@ def ed25519_key_in(certificate: bytes) -> str:
     try:
         key = x509.load_der_x509_certificate(certificate).public_key()
     except ValueError as error:
-        raise StoreError(f"the certificate cannot be read: {error}") from error
+        raise StoreError(CodedText("certificate-unreadable", why=str(error))) from error
     if not isinstance(key, Ed25519PublicKey):
         return ""
     return key.public_bytes(Encoding.Raw, PublicFormat.Raw).hex()

@@ -11,7 +11,7 @@ import msgspec
 from recon4.classes.corrections import correction_of, count_points, place_correction
 from recon4.classes.likeness import find_alike
 from recon4.errors import StoreError
-from recon4.locales.coded import StoredText
+from recon4.locales.coded import CodedText, StoredText
 from recon4.mapping.tiles import TileSet
 from recon4.model.alike import Alike, PickedThing
 from recon4.model.class_corrections import ClassCorrection, Reclassified, titles_of
@@ -61,7 +61,7 @@ def corrections_in_map(summary: Mapping[str, object] | None) -> tuple[str, ...]:
     try:
         found = msgspec.convert((summary or {}).get("corrections", ()), tuple[_InMap, ...])
     except msgspec.ValidationError as error:
-        raise StoreError(f"summary.json: its corrections cannot be read: {error}") from error
+        raise StoreError(CodedText("summary-corrections-unreadable", why=str(error))) from error
     return tuple(one.id for one in found)
 
 
@@ -125,10 +125,7 @@ def propose_alike(
 def _trajectory(artifacts: Mapping[str, Path]) -> Trajectory:
     missing = [name for name in ("map", "level") if name not in artifacts]
     if missing:
-        raise StoreError(
-            f"classes of points need the results of {', '.join(missing)}, which this project "
-            "lacks: process its recording to the end first"
-        )
+        raise StoreError(CodedText("corrections-need", missing=", ".join(missing)))
     return load_trajectory(artifacts["level"] / "trajectory.npz")
 
 

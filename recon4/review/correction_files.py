@@ -13,6 +13,7 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.model.alike import PickedThing
 from recon4.model.class_corrections import Reclassified, class_named
 from recon4.model.tuning import CLUSTERS
@@ -68,7 +69,9 @@ def read_corrections(path: Path) -> tuple[ListedCorrection, ...]:
     found = tuple(of(text, path.name))
     if not 1 <= len(found) <= CORRECTION_FILES.most:
         raise ConfigError(
-            f"{path.name}: expected 1 to {CORRECTION_FILES.most} corrections, got {len(found)}"
+            CodedText(
+                "corrections-count", file=path.name, most=CORRECTION_FILES.most, count=len(found)
+            )
         )
     return found
 
@@ -77,15 +80,15 @@ def _of_json(text: str, name: str) -> Iterable[ListedCorrection]:
     try:
         entries = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise ConfigError(f"{name} is no JSON: {error}") from error
+        raise ConfigError(CodedText("corrections-json", name=name, why=str(error))) from error
     if not isinstance(entries, list):
-        raise ConfigError(f"{name}: expected a list of corrections")
+        raise ConfigError(CodedText("corrections-list", name=name))
     for k, entry in enumerate(entries, start=1):
         where = f"{name}, correction {k}"
         try:
             one = msgspec.convert(entry, _Entry)
         except msgspec.ValidationError as error:
-            raise ConfigError(f"{where}: {error}") from error
+            raise ConfigError(at(where, str(error))) from error
         yield _listed(where, one.volume, one.to, only=one.only, why=one.why)
 
 
@@ -95,19 +98,23 @@ def _of_table(text: str, name: str) -> Iterable[ListedCorrection]:
     names = {*(rows.fieldnames or ())}
     if not {"shape", "to"} <= names or names - CORRECTION_FILES.columns:
         raise ConfigError(
-            f"{name}: expected the columns shape and to, and of "
-            f"{', '.join(sorted(CORRECTION_FILES.columns))}, got {', '.join(sorted(names))}"
+            CodedText(
+                "corrections-columns",
+                name=name,
+                columns=", ".join(sorted(CORRECTION_FILES.columns)),
+                names=", ".join(sorted(names)),
+            )
         )
     for row in rows:
         where = f"{name}, line {rows.line_num}"
         if None in row:
-            raise ConfigError(f"{where}: more cells than the header names")
+            raise ConfigError(CodedText("corrections-cells", where=where))
         cells = {key: (value or "").strip() for key, value in row.items()}
         only = tuple(one for one in cells.get("only", "").split("|") if one.strip())
         try:
             volume = _volume(cells)
         except ConfigError as error:
-            raise ConfigError(f"{where}: {error}") from error
+            raise ConfigError(at(where, text_of(error))) from error
         yield _listed(where, volume, cells["to"], only=only, why=cells.get("why", ""))
 
 
@@ -127,7 +134,7 @@ def _listed(
         note = check_note(why, what="why") if why else ""
         return ListedCorrection(where, what, note)
     except ConfigError as error:
-        raise ConfigError(f"{where}: {error}") from error
+        raise ConfigError(at(where, text_of(error))) from error
 
 
 def check_alike(value: float) -> float:
@@ -137,7 +144,9 @@ def check_alike(value: float) -> float:
         ConfigError: If it is none, or so large that no two things would be unlike.
     """
     if not 0.0 <= value <= CLUSTERS.most_different:
-        raise ConfigError(f"alike: expected 0 to {CLUSTERS.most_different:g}, got {value:g}")
+        raise ConfigError(
+            CodedText("corrections-alike", most_different=CLUSTERS.most_different, value=value)
+        )
     return value
 
 
@@ -163,7 +172,7 @@ def _volume(cells: Mapping[str, str]) -> Volume | _Like:
             x, y, z = (_number(cells, name) for name in ("x", "y", "z"))
             return _Like(place_m=(x, y, z), alike=_number(cells, "alike", usual=1.0))
         case other:
-            raise ConfigError(f"shape: expected box, sphere, prism, brush or like, got {other!r}")
+            raise ConfigError(CodedText("corrections-shape", other=other))
 
 
 def _places(cells: Mapping[str, str], name: str, form: str) -> list[list[float]]:
@@ -171,7 +180,7 @@ def _places(cells: Mapping[str, str], name: str, form: str) -> list[list[float]]
     text, many = cells.get(name, ""), len(form.split())
     places = [place.split() for place in text.replace("|", ",").split(",")]
     if any(len(numbers) != many for numbers in places):
-        raise ConfigError(f"{name}: expected places as '{form}, {form}', got {text[:60]!r}")
+        raise ConfigError(CodedText("corrections-places", name=name, form=form, text=text[:60]))
     return [[_float(one, name) for one in numbers] for numbers in places]
 
 
@@ -186,4 +195,4 @@ def _float(text: str, name: str) -> float:
     try:
         return float(text)
     except ValueError as error:
-        raise ConfigError(f"{name}: expected a number, got {text[:40]!r}") from error
+        raise ConfigError(CodedText("corrections-number", name=name, text=text[:40])) from error

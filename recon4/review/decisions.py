@@ -14,6 +14,7 @@ import msgspec
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.class_corrections import ClassCorrection
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import AUTOMATIC
@@ -134,33 +135,32 @@ class Decision:
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
-            raise ConfigError(f"a decision needs the name of a user, got {self.who!r}")
+            raise ConfigError(CodedText("decision-user", who=self.who))
         if (self.pair is None) == (self.kind in ABOUT_PAIRS):
-            raise ConfigError(
-                f"a decision to {self.kind} names {'a' if self.pair is None else 'no'} pair"
-            )
+            code = "decision-names-pair" if self.pair is None else "decision-names-no-pair"
+            raise ConfigError(CodedText(code, kind=self.kind))
         if self.pair is not None and not 0 <= self.pair[0] < self.pair[1]:
-            raise ConfigError(f"a pair is two multiframes, the earlier first, got {self.pair}")
+            raise ConfigError(CodedText("decision-pair", pair=str(self.pair)))
         if len(self.T_i_j) not in (0, 7) or not np.isfinite(self.T_i_j).all():
-            raise ConfigError("a pose is x y z and a quaternion x y z w, all finite")
+            raise ConfigError(CodedText("decision-pose"))
         if (self.measurement is None) == (self.kind in MEASURED):
-            raise ConfigError(f"a decision to {self.kind} with or without a measurement")
+            raise ConfigError(CodedText("decision-measurement", kind=str(self.kind)))
         acknowledges = self.kind is DecisionKind.ACKNOWLEDGE
         if acknowledges != (self.finding is not None) or (acknowledges and not self.why.strip()):
-            raise ConfigError("an acknowledgment needs a finding and a note, no other decision one")
+            raise ConfigError(CodedText("decision-acknowledgment"))
         if (self.kind is DecisionKind.CONTROL) != (self.control is not None):
-            raise ConfigError(f"a decision to {self.kind} with or without control points")
+            raise ConfigError(CodedText("decision-control", kind=str(self.kind)))
         self._check_correction()
 
     def _check_correction(self) -> None:
         if (self.kind is DecisionKind.CLASSIFY) != (self.correction is not None):
-            raise ConfigError(f"a decision to {self.kind} with or without a correction of classes")
+            raise ConfigError(CodedText("decision-correction", kind=str(self.kind)))
         if (self.kind is DecisionKind.WITHDRAW) != bool(self.withdraws):
-            raise ConfigError(f"a decision to {self.kind} with or without what is withdrawn")
+            raise ConfigError(CodedText("decision-withdrawn", kind=str(self.kind)))
         if self.assignee and self.kind is not DecisionKind.ASSIGN:
-            raise ConfigError(f"a decision to {self.kind} assigns nothing")
+            raise ConfigError(CodedText("decision-assigns", kind=str(self.kind)))
         if self.kind is DecisionKind.COMMENT and not self.why.strip():
-            raise ConfigError("a comment has a text")
+            raise ConfigError(CodedText("decision-comment"))
 
     def body(self) -> DecisionBody:
         """What the journal stores beside its columns."""
@@ -205,7 +205,7 @@ class Decision:
                 assignee=body.get("assignee", ""),
             )
         except (KeyError, TypeError, ValueError, msgspec.ValidationError) as error:
-            raise StoreError(f"the journal has a row that is no decision: {error}") from error
+            raise StoreError(CodedText("journal-no-decision", why=str(error))) from error
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -327,7 +327,7 @@ def not_undone(decisions: Iterable[Decision]) -> tuple[list[Decision], list[Deci
                 (done, undone) if decision.kind is DecisionKind.UNDO else (undone, done)
             )
             if not source:
-                raise StoreError(f"the journal is damaged: a row has nothing to {decision.kind}")
+                raise StoreError(CodedText("journal-nothing-to", kind=str(decision.kind)))
             target.append(source.pop())
         elif decision.kind not in CHANGE_NOTHING:
             done.append(decision)

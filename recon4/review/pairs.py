@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se2 import from_se3
 from recon4.geometry.se3 import SE3, Array, align_points
+from recon4.locales.coded import CodedText
 from recon4.mapping.undistort import place
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.pose_graph.node_views import NodeRangeImages
@@ -101,7 +102,7 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
         StoreError: If artifacts are missing or damaged.
     """
     if not 0 <= reach <= REVIEW_PAIRS.max_reach:
-        raise ConfigError(f"reach must be 0 to {REVIEW_PAIRS.max_reach} multiframes, got {reach}")
+        raise ConfigError(CodedText("pair-reach", max_reach=REVIEW_PAIRS.max_reach, reach=reach))
     nodes = nodes_of(source.verified, pair)
     points = keyframe_points if source.is_2d else _points
     clouds = [_thinned(points(source, node, reach)) for node in nodes]
@@ -206,11 +207,11 @@ def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
         ConfigError: If there are fewer than three, or they lie on a line.
     """
     if len(p_i) < 3 or len(p_i) != len(p_j):
-        raise ConfigError(f"three pairs of points are needed, got {min(len(p_i), len(p_j))}")
+        raise ConfigError(CodedText("pair-three", count=min(len(p_i), len(p_j))))
     for name, points in (("first", p_i), ("second", p_j)):
         spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if spread[1] < REVIEW_PAIRS.min_spread_m:
-            raise ConfigError(f"the points in the {name} place lie on a line; pick another one")
+            raise ConfigError(CodedText("pair-line", name=name))
     return numbers_of(align_points(p_i, p_j))
 
 
@@ -238,7 +239,7 @@ def nodes_of(graph: PoseGraph, pair: Pair) -> tuple[int, int]:
     rows = np.searchsorted(graph.frame_ids, pair)
     for frame, row in zip(pair, rows, strict=True):
         if row == len(graph) or graph.frame_ids[row] != frame:
-            raise ConfigError(f"multiframe {frame} is no node of the pose graph")
+            raise ConfigError(CodedText("pair-no-node", frame=frame))
     return int(rows[0]), int(rows[1])
 
 
@@ -298,10 +299,7 @@ def _lost(source: Source) -> NDArray[np.bool_]:
 def _checked(predicted: tuple[float, ...]) -> SE3:
     numbers = np.asarray(predicted, dtype=np.float64)
     if numbers.shape != (7,) or not np.isfinite(numbers).all() or not numbers[3:].any():
-        raise ConfigError(
-            "predicted pose: expected x y z and a quaternion x y z w, all finite, "
-            f"got {list(predicted)[:7]}"
-        )
+        raise ConfigError(CodedText("pair-predicted", predicted=str(list(predicted)[:7])))
     return pose_of(numbers.tolist())
 
 

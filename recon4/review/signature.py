@@ -18,6 +18,7 @@ from cryptography.hazmat.primitives.serialization import (
 )
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import make_folders, write_private
 
 ALGORITHM = "Ed25519"
@@ -94,9 +95,15 @@ def _load(path: Path) -> Ed25519PrivateKey:
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError) as error:
-        raise StoreError(f"signing key {path} cannot be read: {error}") from error
+        raise StoreError(
+            CodedText("signing-key-unreadable", file=str(path), why=str(error))
+        ) from error
     if not isinstance(key, Ed25519PrivateKey):
-        raise StoreError(f"signing key {path}: expected {ALGORITHM}, got {type(key).__name__}")
+        raise StoreError(
+            CodedText(
+                "signing-key-kind", file=str(path), algorithm=ALGORITHM, kind=type(key).__name__
+            )
+        )
     return key
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.pose_graph import Judgment, PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, load_history
@@ -45,7 +46,7 @@ class Source:
         """
         artifacts = read_artifacts(root)
         if "verification" not in artifacts:
-            raise StoreError(f"{root.name} has no verified graph yet: there is nothing to review")
+            raise StoreError(CodedText("review-no-graph", root=root.name))
         check_recipes(artifacts[name] for name in _MADE_WITH if name in artifacts)
         return Source(artifacts)
 
@@ -107,7 +108,7 @@ class Source:
 
     def _folder(self, stage: str) -> Path:
         if stage not in self.artifacts:
-            raise StoreError(f"expected an artifact of the stage {stage}, the project has none")
+            raise StoreError(CodedText("stage-missing", stage=stage))
         return self.artifacts[stage]
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.report.approval import approved_block, replace_block
 from recon4.review.tuning import STAMPS
 from recon4.store.atomic import atomic_file
@@ -73,7 +74,7 @@ def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
     """
     write = _WRITERS.get(target.suffix)
     if write is None:
-        raise StoreError(f"{target.name} cannot carry an approval")
+        raise StoreError(CodedText("stamp-target", target=target.name))
     with source.open("rb") as read, atomic_file(target) as temporary, temporary.open("wb") as file:
         write(read, file, stamp)
 
@@ -85,7 +86,7 @@ def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     """
     header = bytearray(source.read(_HEADER_BYTES))
     if len(header) < _HEADER_BYTES or header[:4] != b"LASF" or header[25] != 4:
-        raise StoreError("a LAZ file of version 1.4 was expected")
+        raise StoreError(CodedText("stamp-laz"))
     text = stamp.json_line().encode()
     record = _VLR.pack(0, VLR_USER, VLR_RECORD, len(text), b"approval") + text
     points_at, count = struct.unpack_from("<II", header, _POINTS_AT)
@@ -127,7 +128,7 @@ def _png(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     """A text chunk with the keyword ``recon4 approval`` after the header chunk."""
     header = source.read(_PNG_HEADER_BYTES)
     if len(header) < _PNG_HEADER_BYTES or header[:8] != b"\x89PNG\r\n\x1a\n":
-        raise StoreError("a PNG file was expected")
+        raise StoreError(CodedText("stamp-png"))
     body = b"tEXtrecon4 approval\0" + stamp.json_line().encode("ascii")
     target.write(header + struct.pack(">I", len(body) - 4) + body)
     target.write(struct.pack(">I", zlib.crc32(body)))
@@ -142,7 +143,7 @@ def _dxf(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
 
 def _json(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     if source.read(1) != b"{":
-        raise StoreError("a JSON object was expected")
+        raise StoreError(CodedText("stamp-json"))
     target.write(f'{{"approval": {stamp.json_line()}, '.encode("ascii"))
     shutil.copyfileobj(source, target, 1 << 20)
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.review.decisions import NOTHING_DECIDED, joined_key
 from recon4.review.tuning import SUMMARIES
 from recon4.store.earlier_names import SUMMARY, current_names
@@ -30,7 +31,7 @@ def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:
     try:
         return {str(one["stage"]): str(one["key"]) for one in summary.get("stages", [])}
     except (TypeError, KeyError) as error:
-        raise StoreError(f"summary.json: its list of stages cannot be read: {error!r}") from error
+        raise StoreError(CodedText("summary-stages-unreadable", why=repr(error))) from error
 
 
 def decisions_in_map(root: Path) -> str | None:

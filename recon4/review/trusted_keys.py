@@ -169,13 +169,10 @@ def add_key(trusted: TrustedKeys, name: str, public_key: str, *, by: str) -> Tru
     """
     public_key, name = public_key.strip().lower(), name.strip()
     if not _PUBLIC_KEY.fullmatch(public_key):
-        raise ConfigError(
-            "expected a public key of 64 hexadecimal digits, as recon4 keys list shows it on the "
-            f"signer's computer, got {visible(public_key, most=80)!r}"
-        )
+        raise ConfigError(CodedText("keys-public", public_key=visible(public_key, most=80)))
     if not name or len(name) > KEY_LIMITS.max_name_characters or visible(name) != name:
         raise ConfigError(
-            f"expected a name of 1 to {KEY_LIMITS.max_name_characters} visible characters"
+            CodedText("keys-name", max_name_characters=KEY_LIMITS.max_name_characters)
         )
     before = trusted.keys.get(public_key)
     own = before is not None and before.own
@@ -203,14 +200,11 @@ def remove_key(trusted: TrustedKeys, wanted: str, *, by: str) -> TrustedKey:
     ]
     if len(fitting) != 1:
         found = f"{len(fitting)} keys are" if fitting else "no key is"
-        raise ConfigError(f"{found} named {visible(wanted, most=80)!r}: give the fingerprint")
+        raise ConfigError(CodedText("keys-several", found=found, wanted=visible(wanted, most=80)))
     key = fitting[0]
     own = _own_key(trusted.folder) if trusted.server else None
     if own is not None and own.public_key == key.public_key:
-        raise ConfigError(
-            f"this server signs with the key {key.fingerprint}: make another first "
-            "(recon4 keys renew), then remove this one"
-        )
+        raise ConfigError(CodedText("keys-own", fingerprint=key.fingerprint))
     key = replace(key, removed=_now(), removed_by=by)
     _write(trusted.folder, key)
     return key
@@ -275,13 +269,13 @@ def _own_key(folder: Path) -> TrustedKey | None:
 def _read(path: Path) -> TrustedKey:
     record = read_object(path, max_bytes=KEY_LIMITS.max_key_file_bytes)
     if record.pop("format", None) != FORMATS.trusted_key:
-        raise StoreError(f"expected format {FORMATS.trusted_key}")
+        raise StoreError(CodedText("keys-format", trusted_key=FORMATS.trusted_key))
     try:
         key = msgspec.convert(record, TrustedKey)
     except msgspec.ValidationError as error:
         raise StoreError(str(error)) from error
     if not _PUBLIC_KEY.fullmatch(key.public_key) or path.stem != key.fingerprint:
-        raise StoreError("it is not the key that it is named after")
+        raise StoreError(CodedText("keys-other-name"))
     return key
 
 

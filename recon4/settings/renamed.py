@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 
+from recon4.locales.coded import CodedText
+
 EARLIER_PRESETS = {"staircase": "indoor"}
 """Earlier preset -> the one with the same settings."""
 RENAMED = {
@@ -42,7 +44,9 @@ class Retired:
         """What to say of another value than the fixed one; empty = nothing."""
         if given == self.value or (self.thesis is not None and given == self.thesis):
             return ""
-        return f"{path} is no setting anymore: fixed at {self.value}, not {given} ({self.text})"
+        return CodedText(
+            "setting-retired", setting=path, value=str(self.value), given=str(given), what=self.text
+        )
 
 
 @cache

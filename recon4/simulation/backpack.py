@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.raycast import Scene
+from recon4.locales.coded import CodedText
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Rig, load_rig
 from recon4.progress import Progress
@@ -91,7 +92,7 @@ def prepare_backpack(
     rig = rig or load_rig("wuerzburg")
     row = _profiler_row(rig)
     if seed < 0:
-        raise ConfigError(f"the seed must not be negative, got {seed}")
+        raise ConfigError(CodedText("simulate-seed", seed=seed))
     place, found = build_world(world), models or BackpackModels()
     if figure:
         place = along_figure(place, figure_named(figure))
@@ -100,7 +101,7 @@ def prepare_backpack(
     companions = Crowd(people).drawn(seed)[0]
     seconds = seconds or 60.0
     if not 5.0 <= seconds < 1e6:
-        raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
+        raise ConfigError(CodedText("simulate-seconds", seconds=seconds))
     return BackpackSetup(
         place,
         plan_walk(place, seconds=seconds, rng=np.random.default_rng([seed, 0])),
@@ -126,7 +127,7 @@ def _laser2d(rig: Rig, model: Laser2dModel, seed: int) -> SimulatedLaser2d | Non
 def _profiler_row(rig: Rig) -> int:
     row = rig.row_of("profiler")
     if row is None or any(sensor.kind == "lidar" for sensor in rig.sensors):
-        raise ConfigError(f"{rig.name}: expected a profiler, a 2-D laser and no other LiDAR")
+        raise ConfigError(CodedText("simulate-rig", rig=rig.name))
     return row
 
 
@@ -159,10 +160,10 @@ def simulate_backpack(
     values = degradations or {}
     wrong = sorted(NOT_PROFILER & set(values))
     if wrong:
-        raise ConfigError(f"{wrong[0]}: not possible on a rig with a profiler")
+        raise ConfigError(CodedText("simulate-not-profiler", wrong=wrong[0]))
     degradation = Degradation.drawn(values, lasers=[1] * len(setup.rig.sensors), seed=setup.seed)
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
-        raise StoreError(f"{out} exists already; give a new folder")
+        raise StoreError(CodedText("simulate-exists", out=str(out)))
     if out.exists():
         out.rmdir()
     if setup.laser2d is not None and UPSIDE_DOWN in values:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.simulation.companions import Companions
 from recon4.simulation.degradation import KINDS, PEOPLE, VEHICLES
 from recon4.simulation.vehicles import Vehicles
@@ -33,9 +34,13 @@ class Crowd:
         """
         most_people, most_vehicles = KINDS[PEOPLE].largest, KINDS[VEHICLES].largest
         if not 0 <= self.people <= most_people:
-            raise ConfigError(f"0 to {most_people:g} people can walk along, got {self.people}")
+            raise ConfigError(
+                CodedText("simulate-people", most_people=most_people, people=self.people)
+            )
         if not 0 <= self.vehicles <= most_vehicles:
-            raise ConfigError(f"0 to {most_vehicles:g} vehicles can move, got {self.vehicles}")
+            raise ConfigError(
+                CodedText("simulate-vehicles", most_vehicles=most_vehicles, vehicles=self.vehicles)
+            )
 
     def drawn(self, seed: int) -> tuple[Companions | None, Vehicles | None]:
         """The people and vehicles of a seed; None = there are none."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
@@ -126,11 +127,15 @@ def parse_degradations(words: Sequence[str]) -> dict[str, float]:
     for word in words:
         name, equals, text = word.partition("=")
         if name not in KINDS:
-            raise ConfigError(f"no degradation named {name!r:.80}; there are: {', '.join(KINDS)}")
+            raise ConfigError(
+                CodedText("simulate-degradation", name=name[:80], kinds=", ".join(KINDS))
+            )
         try:
             value = float(text) if equals else KINDS[name].usual
         except ValueError:
-            raise ConfigError(f"{name}: expected a number, got {text!r:.80}") from None
+            raise ConfigError(
+                CodedText("simulate-degradation-number", name=name, text=text[:80])
+            ) from None
         found[name] = value
     check_degradations(found)
     return found
@@ -144,10 +149,14 @@ def check_degradations(values: Mapping[str, float]) -> None:
     """
     for name, value in values.items():
         if name not in KINDS:
-            raise ConfigError(f"no degradation named {name!r:.80}; there are: {', '.join(KINDS)}")
+            raise ConfigError(
+                CodedText("simulate-degradation", name=name[:80], kinds=", ".join(KINDS))
+            )
         if not 0.0 < value <= KINDS[name].largest:
             largest = KINDS[name].largest
-            raise ConfigError(f"{name}: expected more than 0 and at most {largest}, got {value}")
+            raise ConfigError(
+                CodedText("simulate-degradation-range", name=name, largest=largest, value=value)
+            )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -186,7 +195,7 @@ class Degradation:
         axes /= np.linalg.norm(axes, axis=1, keepdims=True)
         count = int(values.get("dead-beams", 0))
         if count > min(lasers):
-            raise ConfigError(f"dead-beams: at most {min(lasers)} of a LiDAR here, got {count}")
+            raise ConfigError(CodedText("simulate-dead-beams", lasers=min(lasers), count=count))
         dead = [np.sort(rng.permutation(number)[:count]) for number in lasers]
         sd_m = values.get("beam-bias", 0.0)
         bias = [sd_m * rng.standard_normal(number) for number in lasers]

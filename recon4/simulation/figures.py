@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.simulation.world import Waypoint, World
 
 
@@ -85,7 +86,9 @@ def figure_named(name: str) -> Figure:
         ConfigError: If there is none of that name.
     """
     if name not in FIGURES:
-        raise ConfigError(f"no figure named {name!r:.80}; there are: {', '.join(FIGURES)}")
+        raise ConfigError(
+            CodedText("simulate-no-figure", name=name[:80], figures=", ".join(FIGURES))
+        )
     return FIGURES[name]
 
 
@@ -96,7 +99,7 @@ def along_figure(world: World, figure: Figure) -> World:
         ConfigError: If the world has no free floor of 4 m x 4 m.
     """
     if world.floor is None or min(world.floor[2:]) < FIT.min_half_m:
-        raise ConfigError(f"{world.name} has no free floor for a figure; the hall has one")
+        raise ConfigError(CodedText("simulate-figure-floor", world=world.name))
     x_m, y_m, half_x_m, half_y_m = world.floor
     dense = figure.curve(half_x_m, half_y_m, np.linspace(0.0, 1.0, 2001))
     length_m = float(np.linalg.norm(np.diff(dense, axis=0), axis=1).sum())

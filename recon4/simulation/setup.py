@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor, load_rig
@@ -98,9 +99,9 @@ def prepare(
             negative or the rig has a sensor that is not simulated.
     """
     if not 5.0 <= seconds < 1e6:
-        raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
+        raise ConfigError(CodedText("simulate-seconds", seconds=seconds))
     if seed < 0:
-        raise ConfigError(f"the seed must not be negative, got {seed}")
+        raise ConfigError(CodedText("simulate-seed", seed=seed))
     crowd.check()
     used, errors = _addressed(rig or load_rig("4recon")), models or Models()
     row = imu_row(used)
@@ -134,7 +135,7 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
     """
     mounts = load_rig("4recon")
     if not 1 <= len(models) <= len(mounts.sensors):
-        raise ConfigError(f"expected one or two LiDARs, got {len(models)}")
+        raise ConfigError(CodedText("simulate-lidars", count=len(models)))
     used: set[int] = set()
     sensors: list[Sensor] = []
     for model, mount in zip(models, mounts.sensors, strict=False):
@@ -164,7 +165,7 @@ def imu_row(rig: Rig) -> int | None:
     for row, sensor in enumerate(rig.sensors):
         if sensor.name == rig.imu_sensor:
             if family_of(sensor.model).imu(sensor.model) is None:
-                raise ConfigError(f"the IMU of a {sensor.model} is not simulated ({sensor.name})")
+                raise ConfigError(CodedText("simulate-imu", model=sensor.model, sensor=sensor.name))
             return row
         place = _place_of_imu(sensor)
         if place is not None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 from recon4.simulation.degradation import (
     BEAM_ANGLE,
@@ -122,12 +123,10 @@ def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
 def _check_possible(values: Mapping[str, float], setup: SimulationSetup) -> None:
     wrong = sorted(ONLY_PROFILER & set(values))
     if wrong:
-        raise ConfigError(f"{wrong[0]}: only possible on a rig with a profiler")
+        raise ConfigError(CodedText("simulate-only-profiler", wrong=wrong[0]))
     last = setup.rig.sensors[-1].model
     if WRONG_MODEL in values and family_of(last) is not VELODYNES:
-        raise ConfigError(
-            f"{WRONG_MODEL}: only possible if the last LiDAR is a Velodyne, got {last}"
-        )
+        raise ConfigError(CodedText("simulate-velodyne", wrong_model=WRONG_MODEL, last=last))
     cast = {
         PEOPLE: float(len(setup.surroundings.companions or ())),
         VEHICLES: float(len(setup.surroundings.vehicles or ())),
@@ -144,5 +143,5 @@ def _check_empty(out: Path) -> None:
     if not out.exists():
         return
     if not out.is_dir() or any(out.iterdir()):
-        raise StoreError(f"{out} exists already; give a new folder")
+        raise StoreError(CodedText("simulate-exists", out=str(out)))
     out.rmdir()

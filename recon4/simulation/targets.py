@@ -17,6 +17,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.mesh import MeshBuilder, joined
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.targets import TargetKind
 from recon4.simulation.materials import MATERIAL
 from recon4.simulation.setup import SimulationSetup
@@ -72,7 +73,7 @@ def with_targets(setup: SimulationSetup, count: int) -> SimulationSetup:
         ConfigError: If the count is negative, or there is no room for as many.
     """
     if count < 0:
-        raise ConfigError(f"targets: expected 0 or more, got {count}")
+        raise ConfigError(CodedText("simulate-targets-count", count=count))
     if not count:
         return setup
     rng = np.random.default_rng([setup.seed, 31])
@@ -84,7 +85,7 @@ def with_targets(setup: SimulationSetup, count: int) -> SimulationSetup:
         taken = [np.array(one.p_map) for one in targets]
         place = _place(kind, along, about=about, taken=taken)
         if place is None:
-            raise ConfigError(f"targets: there is room for {k} of {count} along this walk")
+            raise ConfigError(CodedText("simulate-targets-room", k=k, count=count))
         _build(builder, kind, place)
         x, y, z = np.round(place.middle, 6).tolist()
         radius = TARGETS.radius_m if kind is TargetKind.SPHERE else 0.0

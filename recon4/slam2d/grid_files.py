@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.slam2d.occupancy import OccupancyGrid
 from recon4.slam2d.tuning import Grid2dTuning
 from recon4.slam2d.tuning_graph import MAP_FILES_2D
@@ -142,5 +143,7 @@ def _read(folder: Path, name: str) -> TrinaryMap:
                 raise ValueError(f"an image of {image.width} x {image.height}, {image.mode}")
             gray = np.asarray(image)
     except (KeyError, ValueError, OSError, SyntaxError, Image.DecompressionBombError) as error:
-        raise StoreError(f"{folder.name}: the 2-D map cannot be read: {error}") from error
+        raise StoreError(
+            CodedText("map-2d-unreadable", folder=folder.name, why=str(error))
+        ) from error
     return TrinaryMap(gray, cell_m, origin_m)

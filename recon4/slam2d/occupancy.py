@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from recon4.errors import MapTooLarge
 from recon4.geometry.se3 import Array
 from recon4.kernels.occupancy2d import cast_scan, crossing_beams
+from recon4.locales.coded import CodedText
 from recon4.slam2d.tuning_graph import OCCUPANCY
 
 
@@ -62,9 +63,13 @@ class OccupancyGrid:
         shape = tuple(int(n) for n in last - first)
         if shape[0] * shape[1] > 1.01 * OCCUPANCY.max_cells:
             raise MapTooLarge(
-                f"the occupancy grid would be {shape[0] * self.cell_m:.0f} x "
-                f"{shape[1] * self.cell_m:.0f} m in cells of {self.cell_m:g} m: expected at most "
-                f"{OCCUPANCY.max_cells} cells. Is a position wrong? Larger cells need less"
+                CodedText(
+                    "grid-large",
+                    width_m=shape[0] * self.cell_m,
+                    height_m=shape[1] * self.cell_m,
+                    cell_m=self.cell_m,
+                    max_cells=OCCUPANCY.max_cells,
+                )
             )
         log_odds, seen = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
         if self.log_odds.size:

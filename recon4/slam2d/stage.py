@@ -11,6 +11,7 @@ from msgspec import to_builtins
 from recon4.errors import EmptyRecording
 from recon4.geometry.se2 import to_se3, transform, wrap
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.events import Remarked
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.laser_scans import LaserScans
@@ -110,7 +111,7 @@ def read_scans(folder: Path) -> LaserScans:
     """
     scans = load_laser_scans(folder)
     if scans is None:
-        raise EmptyRecording(f"{folder.name} has no scans of a 2-D laser")
+        raise EmptyRecording(CodedText("laser-no-scans", folder=folder.name))
     return scans
 
 
@@ -156,8 +157,12 @@ def build_graph(
     steps = load_record(odometry / "steps.npz", Steps2d)
     if not steps.keyframe.any():
         raise EmptyRecording(
-            f"none of the {len(found)} scans has enough returns between "
-            f"{settings.slam2d.min_range_m:g} and {settings.slam2d.max_range_m:g} m"
+            CodedText(
+                "laser-few-returns",
+                count=len(found),
+                min_range_m=settings.slam2d.min_range_m,
+                max_range_m=settings.slam2d.max_range_m,
+            )
         )
     keyframes = make_keyframes(
         found, steps, attitude=None, settings=tuned(Slam2dTuning, settings.slam2d)

@@ -14,7 +14,7 @@ from recon4.errors import ConfigError
 from recon4.evaluation.slices import DistanceTally, SliceError, merge_slices
 from recon4.evaluation.tuning import RELATIVE_ERROR
 from recon4.geometry.se3 import Array
-from recon4.locales.coded import said
+from recon4.locales.coded import CodedText, said
 from recon4.locales.languages import ENGLISH
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
@@ -190,7 +190,7 @@ def compare(
         ConfigError: Without slices.
     """
     if not planes:
-        raise ConfigError("comparison: expected one slice or more, got none")
+        raise ConfigError(CodedText("comparison-no-slice"))
     found = [_one(tiles, plane, reference) for plane in planes]
     rows = tuple(row for row, _ in found)
     measured = [row.mean_m for row in rows if row.points]
@@ -230,7 +230,7 @@ def usual_planes(
     """Eight slices spread evenly: four horizontal, two across x, two across y (V §3.2)."""
     low, high = tiles.bounds_m
     if not np.isfinite(low).all():
-        raise ConfigError("the map has no points")
+        raise ConfigError(CodedText("comparison-no-points"))
     x, y, z = ((low[a] + (np.arange(4) + 0.5) / 4.0 * (high - low)[a]) for a in range(3))
     planes = [SlicePlane.horizontal(float(h), thickness_m=thickness_m) for h in z]
     for k in (0, 2):

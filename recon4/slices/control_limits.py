@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import localized
 from recon4.locales.texts import Texts, texts
@@ -34,7 +35,7 @@ class ControlLimits:
             value = getattr(self, name)
             if value is not None and not 0.0 < value <= CONTROL_LIMITS.most_m:
                 raise ConfigError(
-                    f"{name}: expected more than 0 and at most {CONTROL_LIMITS.most_m:g} m"
+                    CodedText("limits-range", name=name, most_m=CONTROL_LIMITS.most_m)
                 )
 
     def text(self, say: Texts) -> str:
@@ -78,7 +79,7 @@ def parse_limits(text: str) -> ControlLimits:
         limits = [None if value is None else value / 100.0 for value in values]
         mean_2d, mean_up, max_2d, max_up, distances = limits
     except ValueError as error:
-        raise ConfigError(f"limits: expected five numbers in cm or -, got {text!r}") from error
+        raise ConfigError(CodedText("limits-numbers", text=text)) from error
     return ControlLimits(
         mean_horizontal_m=mean_2d,
         mean_height_m=mean_up,

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin, to_enu
+from recon4.locales.coded import CodedText
 from recon4.model.survey_covariance import Covariance
 from recon4.recording.tables.column_names import ROLES, Role, plain_word
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
@@ -52,8 +53,7 @@ def _projected(found: PointTable, crs: str) -> tuple[tuple[TablePoint, ...], str
     if len(rows) < len(found.points):
         bad = next(one for one in found.points if one not in rows)
         raise CorruptFile(
-            f"line {bad.line}: expected latitude and longitude in degrees, got "
-            f"{bad.xyz_m[1]:g}, {bad.xyz_m[0]:g}"
+            CodedText("control-degrees", line=bad.line, lat_deg=bad.xyz_m[1], lon_deg=bad.xyz_m[0])
         )
     if not rows:
         return (), ""
@@ -76,7 +76,9 @@ def with_covariances(
     """
     unknown = [one for one in covariances if one not in {point.id for point in points}]
     if unknown:
-        raise ConfigError(f"{name}: not in the survey: {', '.join(unknown[:10])}")
+        raise ConfigError(
+            CodedText("control-not-surveyed", name=name, unknown=", ".join(unknown[:10]))
+        )
     return tuple(
         replace(one, covariance_m2=covariances.get(one.id, one.covariance_m2)) for one in points
     )
@@ -102,10 +104,9 @@ def read_control(
         ConfigError: If the chosen columns name no place.
         GeoreferenceError: If the system is not known, or a grid of its geoid is missing.
     """
-    if len(data) > CONTROL_FILES.max_bytes:
-        raise CorruptFile(
-            f"{name}: expected at most {CONTROL_FILES.max_bytes} bytes, got {len(data)}"
-        )
+    limit = CONTROL_FILES.max_bytes
+    if len(data) > limit:
+        raise CorruptFile(CodedText("control-file-large", name=name, limit=limit, got=len(data)))
     found = read_point_table(data, name, choice=choice)
     rows, crs = _projected(found, crs)
     points: dict[str, ControlPoint] = {}
@@ -123,7 +124,8 @@ def read_control(
                 row.name, row.xyz_m, ROLES[role], row.radius_m, row.covariance_m2
             )
     if not points and not found.preview.question:
-        raise CorruptFile(f"{name}: no line of ID,X,Y,Z found; {skipped[0] if skipped else ''}")
+        first = skipped[0] if skipped else ""
+        raise CorruptFile(CodedText("control-no-line", name=name, first=first))
     skipped.sort(key=lambda text: int(text.partition(":")[0].removeprefix("line ")))
     more = len(skipped) - CONTROL_FILES.max_skipped
     return ControlPreview(

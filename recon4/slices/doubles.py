@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.kernels.doubles import COLUMNS, best_split, gather
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.progress import Progress, Silent
 from recon4.slices.double_places import DoubleReport, Patches, report
@@ -67,7 +68,7 @@ def find_double_walls(
     rule, progress = rule or DoubleRule(), progress or Silent()
     missing = {"normal", "t_ns", "frame_id"} - set(tiles.fields)
     if missing:
-        raise ConfigError(f"double walls: the map lacks the fields {sorted(missing)}")
+        raise ConfigError(CodedText("doubles-fields", missing=str(sorted(missing))))
     progress.start("double walls", len(tiles), "points")
     # Points moved onto a common surface would hide that it was measured at two places.
     tiles = tiles.as_measured()

@@ -16,6 +16,7 @@ from recon4.errors import ConfigError
 from recon4.export.points import OutputCrs
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION, STORED
 from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
@@ -79,7 +80,7 @@ def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
                 order = progressive(np.arange(len(part)))
                 writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})
         if not len(TileSet.open(out)):
-            raise ConfigError("the slice holds no points, there is nothing to export")
+            raise ConfigError(CodedText("slice-empty"))
         return export_laz(out, path, OutputCrs(frame.wkt or None, frame.to_crs))
 
 
@@ -166,9 +167,7 @@ def _drawn(chosen: SliceSelection, frame: MapFrame, *, flat: bool) -> DrawnPoint
     drawn = sum(map(len, cells))
     if drawn > SLICE_EXPORT.max_dxf_points:
         raise ConfigError(
-            f"DXF: expected at most {SLICE_EXPORT.max_dxf_points} points (one per cm² of each "
-            f"slice), got {drawn}: export a smaller part or fewer slices, use a thinner slice, or "
-            "export LAZ"
+            CodedText("dxf-many", max_dxf_points=SLICE_EXPORT.max_dxf_points, drawn=drawn)
         )
     return DrawnPoints(kept, drawn, points)
 

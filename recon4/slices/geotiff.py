@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from recon4.errors import GeoreferenceError
 from recon4.export.names import check_name
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.site_control import SITE_GRID
 from recon4.slices.map_crs import MapFrame, jacobian
 from recon4.slices.slice_image import RasterGrid, SliceImage
@@ -165,15 +166,12 @@ def _refuse_bent(grid: RasterGrid, frame: MapFrame, middle: Array) -> None:
     off = frame.to_crs(corners) - (place + (corners - middle) @ J.T)
     worst = float(np.linalg.norm(off[:, :2], axis=1).max())
     if worst > max(0.5 * grid.pixel_m, 0.005):
-        raise GeoreferenceError(
-            f"GeoTIFF: the image is too large, its corners would be off by {worst:.3f} m in "
-            f"{frame.crs}; export a smaller part"
-        )
+        raise GeoreferenceError(CodedText("geotiff-large", worst=worst, crs=frame.crs))
 
 
 def _epsg(frame: MapFrame) -> int:
     """Code of the horizontal system."""
     first = frame.crs.removeprefix("EPSG:").split("+")[0]
     if not first.isdigit():
-        raise GeoreferenceError(f"a GeoTIFF needs an EPSG code, the map is in {frame.crs}")
+        raise GeoreferenceError(CodedText("geotiff-epsg", crs=frame.crs))
     return int(first)

@@ -12,6 +12,7 @@ from recon4.export.points import ToCrs
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs_file import read_crs
 from recon4.georeference.geojson_crs import geojson_crs
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.slices.tuning import MAP_FRAMES
 
@@ -53,12 +54,12 @@ class MapFrame:
             GeoreferenceError: If the map is local, or the points are not near it.
         """
         if self.to_crs is None:
-            raise GeoreferenceError("the map is local: it is not georeferenced")
+            raise GeoreferenceError(CodedText("map-local"))
         J, origin = jacobian(self.to_crs, np.zeros(3))
         back = np.asarray(np.linalg.inv(J), dtype=np.float64)
         p_map: Array = (p_crs - origin) @ back.T
         if len(p_map) and not np.abs(p_map).max() < 1e6:
-            raise GeoreferenceError(f"these coordinates are not in {self.crs}: far from the map")
+            raise GeoreferenceError(CodedText("map-crs-far", crs=self.crs))
         for _ in range(MAP_FRAMES.rounds):
             off: Array = (p_crs - self.to_crs(p_map)) @ back.T
             p_map = p_map + off
@@ -95,14 +96,14 @@ def frame_of(artifacts: dict[str, Path], crs: str = "") -> MapFrame:
         StoreError: If there is no map.
     """
     if "map" not in artifacts:
-        raise StoreError("the project has no map yet")
+        raise StoreError(CodedText("map-missing"))
     level = artifacts.get("level")
     if level is not None and (level / "georeference.json").exists():
         place = read_crs(level, crs)
         if place is not None:
             return MapFrame(place.crs, place.wkt, place.to_crs)
     if crs:
-        raise GeoreferenceError(f"the map cannot be put into {crs}: its place is not known")
+        raise GeoreferenceError(CodedText("map-crs-unknown-place", crs=crs))
     own = TileSet.open(artifacts["map"]).crs
     if own is not None:
         shift = np.array(own.origin_m)

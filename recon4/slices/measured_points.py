@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.slices.tuning import MEASURED
 
 
@@ -58,5 +59,5 @@ def orthonormal(directions: Array | Sequence[Sequence[float]]) -> Array:
     _, size, Vt = np.linalg.svd(rows, full_matrices=False)
     found: Array = Vt[size > 1e-3]
     if not len(found):
-        raise ConfigError("a measured position: expected one to three directions, got none")
+        raise ConfigError(CodedText("measured-directions"))
     return found

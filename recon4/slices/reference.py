@@ -14,7 +14,7 @@ import numpy as np
 from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.reference_mesh import TriangleMesh, scene_of
 from recon4.geometry.se3 import SE3, Array
-from recon4.locales.coded import CodedText, StoredText
+from recon4.locales.coded import CodedText, StoredText, at
 from recon4.locales.languages import ENGLISH
 from recon4.mapping.tiles import TileSet
 from recon4.recording.tables.column_names import Meaning, Unit
@@ -243,7 +243,7 @@ def read_facts(folder: Path) -> ReferenceFacts:
     try:
         facts = msgspec.convert(_with_statements(record), ReferenceFacts)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{folder.name}/reference.json: {error}") from error
+        raise StoreError(at(f"{folder.name}/reference.json", str(error))) from error
     return replace(
         facts,
         name=visible(facts.name),
@@ -298,11 +298,17 @@ def _mesh(path: Path) -> TriangleMesh:
     fits = vertices.shape[1:] == (3,) and triangles.shape[1:] == (3,) and len(triangles) > 0
     if not fits or vertices.dtype.kind != "f" or triangles.dtype.kind not in "iu":
         raise StoreError(
-            f"{path.name}: expected vertices and triangles of three numbers each, "
-            f"got {vertices.dtype} {vertices.shape} and {triangles.dtype} {triangles.shape}"
+            CodedText(
+                "reference-mesh-shape",
+                file=path.name,
+                vertex_type=str(vertices.dtype),
+                vertex_shape=str(vertices.shape),
+                corner_type=str(triangles.dtype),
+                corner_shape=str(triangles.shape),
+            )
         )
     if triangles.min() < 0 or triangles.max() >= len(vertices):
-        raise StoreError(f"{path.name}: triangles name corners that do not exist")
+        raise StoreError(CodedText("reference-mesh-corners", file=path.name))
     return TriangleMesh(vertices.astype(np.float64), triangles.astype(np.int64))
 
 
@@ -310,13 +316,10 @@ def _matrix(value: list[list[float]], name: str) -> Array:
     try:
         matrix = np.array(value, dtype=np.float64)
     except (TypeError, ValueError, OverflowError) as error:
-        raise StoreError(f"{name}/reference.json: expected a 4x4 matrix: {error}") from error
+        raise StoreError(CodedText("reference-matrix", name=name, why=str(error))) from error
     turned = matrix[:3, :3] if matrix.shape == (4, 4) else np.zeros((3, 3))
     if not np.isfinite(matrix).all() or np.abs(turned @ turned.T - np.eye(3)).max() > 1e-3:
-        raise StoreError(
-            f"{name}/reference.json: expected T_map_reference as a 4x4 rigid motion, "
-            f"got {str(value)[:80]}"
-        )
+        raise StoreError(CodedText("reference-transform", name=name, value=str(value)[:80]))
     return matrix
 
 
@@ -330,7 +333,7 @@ def moved_plane(plane: SlicePlane, T_b_a: SE3) -> SlicePlane:
 def mesh_lines(mesh: TriangleMesh, plane: SlicePlane) -> Array:
     """Where the middle plane of a slice meets the triangles: segments in u, v [m], (S, 2, 2)."""
     if not len(mesh.triangles):
-        raise ConfigError("the mesh has no triangles")
+        raise ConfigError(CodedText("reference-no-triangles"))
     uvd = plane.to_plane(mesh.vertices_m)
     corner = uvd[mesh.triangles]
     d = corner[:, :, 2]

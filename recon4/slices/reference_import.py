@@ -88,7 +88,7 @@ def import_reference(
         GeoreferenceError: If its CRS cannot be transformed to that of the map.
     """
     if not path.is_file():
-        raise UnknownFormat(f"{path.name}: expected one file, got a folder or nothing")
+        raise UnknownFormat(CodedText("reference-one-file", file=path.name))
     with atomic_folder(out) as folder:
         mesh = is_mesh(path)
         found = (_mesh if mesh else _cloud)(path, folder, read_as, place=place)
@@ -256,8 +256,12 @@ def _refuse_scattered(ijk: NDArray[np.int64], order: NDArray[np.intp], before: i
     count = max(before, int(np.count_nonzero(changes)) + 1)
     if count > REFERENCE_IMPORT.max_tiles:
         raise CorruptFile(
-            f"expected points in at most {REFERENCE_IMPORT.max_tiles} cubes of "
-            f"{REFERENCE_IMPORT.tile_m:g} m, got {count} or more: are the coordinates in meters?"
+            CodedText(
+                "reference-cubes",
+                max_tiles=REFERENCE_IMPORT.max_tiles,
+                tile_m=REFERENCE_IMPORT.tile_m,
+                count=count,
+            )
         )
 
 

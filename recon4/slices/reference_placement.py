@@ -55,7 +55,7 @@ def place_file(
         ConfigError: If the coordinates cannot be used with this map, with the reason.
     """
     if asked == "crs" and own.to_crs is None:
-        raise ConfigError("the map is local: a reference in a CRS cannot be aligned with it")
+        raise ConfigError(CodedText("reference-local"))
     units, notes = _units_of(stated, unit)
     if asked == "map" or own.to_crs is None:
         return _in_map_frame(stated, own, units, notes=notes)
@@ -101,8 +101,7 @@ def _in_map_frame(
         kind = "degrees" if stated.geographic else "earth-centered coordinates"
         reason = "the map is local" if own.to_crs is None else "the map's frame was chosen"
         raise ConfigError(
-            f"its coordinates are {kind} ({stated.name}), and {reason}: "
-            "expected meters of a map projection; convert the file, or choose its own CRS"
+            CodedText("reference-no-projection", kind=kind, stated=stated.name, reason=reason)
         )
     if stated.crs is not None:
         why = "note-local" if own.to_crs is None else "note-frame-chosen"
@@ -151,9 +150,11 @@ def _check_geocentric(p: Array, stated: StatedCrs) -> None:
     distance = np.linalg.norm(p, axis=1)
     if len(p) and not (low < distance.min() and distance.max() < high):
         raise ConfigError(
-            f"it states earth-centered coordinates ({stated.name}), but they are "
-            f"{distance.min() / 1000:.0f} km from the center of the Earth: choose the map's frame "
-            "or the map's CRS"
+            CodedText(
+                "reference-earth-centered",
+                stated=stated.name,
+                distance=float(distance.min() / 1000),
+            )
         )
 
 
@@ -223,12 +224,11 @@ def _transformer(source: Any, goal: Any, own: MapFrame, *, name: str) -> Any:
                 source, goal, always_xy=True, area_of_interest=here, allow_ballpark=False
             )
     except ProjError as error:
-        raise GeoreferenceError(f"{name} cannot be transformed to {own.crs}: {error}") from error
-    if not group.transformers:
         raise GeoreferenceError(
-            f"{name} cannot be transformed to {own.crs}: PROJ knows no operation for this place, "
-            "or its grid is not installed"
-        )
+            CodedText("reference-transform-failed", name=name, crs=own.crs, why=str(error))
+        ) from error
+    if not group.transformers:
+        raise GeoreferenceError(CodedText("reference-no-operation", name=name, crs=own.crs))
     return group.transformers[0]
 
 
@@ -268,7 +268,4 @@ def _ask_unit(size: Array, own: Array) -> None:
             " × ".join(f"{v:.0f}" if v > 100.0 else f"{v:.1f}" for v in sizes[::-1])
             for sizes in (own, size)
         )
-        raise ConfigError(
-            f"read in meters it measures {there} m, the map {here} m. It states no unit: "
-            "choose one, for example millimeters (command: --unit mm), or meters"
-        )
+        raise ConfigError(CodedText("reference-units", there=there, here=here))

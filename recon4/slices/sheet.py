@@ -11,6 +11,7 @@ import numpy as np
 
 import recon4
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.usability import Usability
 from recon4.slices.colors import LABELS, UNITS, ColorBy, Span, table
 from recon4.slices.points import SliceWindow
@@ -73,13 +74,13 @@ def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayo
         ConfigError: If it does not fit at 1 : 10 000, or the scale is not a usual one.
     """
     if scale and scale not in SHEETS.scales:
-        raise ConfigError(f"scale: expected one of {list(SHEETS.scales)}, got {scale}")
+        raise ConfigError(CodedText("sheet-scale", scales=str(list(SHEETS.scales)), scale=scale))
     across_mm, up_mm = _field_mm(size)
     width_m, height_m = window.right - window.left, window.top - window.bottom
     least = max(width_m * 1000.0 / across_mm, height_m * 1000.0 / up_mm)
     chosen = scale or next((s for s in SHEETS.scales if s >= least * (1.0 - 1e-9)), 0)
     if not chosen:
-        raise ConfigError(f"a window {width_m:.0f} m wide does not fit on {size} at 1 : 10 000")
+        raise ConfigError(CodedText("sheet-window", width_m=width_m, size=size))
     half_u, half_v = across_mm * chosen / 2000.0, up_mm * chosen / 2000.0
     u, v = (window.left + window.right) / 2.0, (window.bottom + window.top) / 2.0
     return SheetLayout(size, chosen, SliceWindow(u - half_u, v - half_v, u + half_u, v + half_v))
@@ -96,7 +97,7 @@ def write_sheet(
     """
     kind = path.suffix.lower().lstrip(".")
     if kind not in {"png", "svg", "pdf"}:
-        raise ConfigError(f"sheet: expected a .png, .svg or .pdf file, got {path.name}")
+        raise ConfigError(CodedText("sheet-file", file=path.name))
     import matplotlib
     from matplotlib.figure import Figure
 

@@ -30,6 +30,7 @@ from recon4.georeference.control_stage import (
     system_of,
 )
 from recon4.georeference.crs_file import read_crs
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
 from recon4.model.plain import to_plain
@@ -58,7 +59,7 @@ class ControlAccuracy:
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
             if not 0.0 < getattr(self, name) <= 10.0:
-                raise ConfigError(f"{name}: expected more than 0 and at most 10 m")
+                raise ConfigError(CodedText("site-range", name=name))
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,8 +112,7 @@ def site_control(
     absent = [name for name, one in found.items() if not len(one.t_ns)]
     if absent:
         raise GeoreferenceError(
-            f"not in the map: {', '.join(absent[:10])}; no scan has points within 25 cm of where "
-            f"{'they were' if len(absent) > 1 else 'it was'} picked"
+            CodedText("control-absent", names=", ".join(absent[:10]), count=len(absent))
         )
     targets = tuple(_seen(one, found[one.id], accuracy) for one in known)
     return SiteControl(targets=targets, crs=crs)
@@ -184,7 +184,7 @@ def require_agreement(trial: ControlTrial) -> None:
     """
     if found := forbidding(trial):
         texts = " ".join(one.text for one in found)
-        raise GeoreferenceError(f"the map is not put on these points: {texts}")
+        raise GeoreferenceError(CodedText("site-not-put", texts=texts))
 
 
 def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.kernels.slices import first_of_pixels, splat
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.slices.colors import ColorBy, Ground, Span, paint, usual_span
 from recon4.slices.points import SliceWindow, TilePart, points_in
@@ -40,17 +41,19 @@ class RasterGrid:
 
     def __post_init__(self) -> None:
         if not self.pixel_m > 0.0 or not np.isfinite(self.pixel_m):
-            raise ConfigError(f"pixel size: expected a positive number, got {self.pixel_m} m")
+            raise ConfigError(CodedText("slice-pixel", pixel_m=self.pixel_m))
         w = self.window
         corners = np.array([w.left, w.bottom, w.right, w.top])
         if not (np.isfinite(corners).all() and w.right > w.left and w.top > w.bottom):
-            raise ConfigError(
-                f"window: expected left < right and bottom < top, got {corners.tolist()}"
-            )
+            raise ConfigError(CodedText("slice-window", corners=str(corners.tolist())))
         if self.width * self.height > SLICE_IMAGES.max_pixels:
             raise ConfigError(
-                f"slice image: expected at most {SLICE_IMAGES.max_pixels // 10**6} million pixels, "
-                f"got {self.width} x {self.height}; use larger pixels or a smaller window"
+                CodedText(
+                    "slice-pixels",
+                    max_pixels=SLICE_IMAGES.max_pixels // 10**6,
+                    width=self.width,
+                    height=self.height,
+                )
             )
 
     @property
@@ -167,10 +170,12 @@ def png(rgba: NDArray[np.uint8]) -> bytes:
 
 def _fields(tiles: TileSet, color: ColorBy, reference: Reference | None) -> list[str]:
     if color == "distance" and reference is None:
-        raise ConfigError("color distance: needs a reference; add one first")
+        raise ConfigError(CodedText("slice-color-distance"))
     field = _FIELD.get(color)
     if field is not None and field not in tiles.fields:
-        raise ConfigError(f"this map has no {color} intensities; it has {list(tiles.fields)}")
+        raise ConfigError(
+            CodedText("slice-no-intensity", color=color, fields=str(list(tiles.fields)))
+        )
     return [field] if field else []
 
 

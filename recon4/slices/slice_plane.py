@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.slices.tuning_files import SLICE_PLANES
 
 Kind = Literal["horizontal", "vertical", "free"]
@@ -62,11 +63,14 @@ class SlicePlane:
     def __post_init__(self) -> None:
         numbers = np.array([*self.origin_m, *self.u, *self.v, self.thickness_m])
         if not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e8:
-            raise ConfigError(f"a slice needs finite coordinates, got {numbers.tolist()}")
+            raise ConfigError(CodedText("slice-finite", numbers=str(numbers.tolist())))
         if not 0.0 < self.thickness_m <= SLICE_PLANES.max_thickness_m:
             raise ConfigError(
-                f"the thickness must be 0 to {SLICE_PLANES.max_thickness_m:.0f} m, "
-                f"got {self.thickness_m}"
+                CodedText(
+                    "slice-thickness",
+                    max_thickness_m=SLICE_PLANES.max_thickness_m,
+                    thickness_m=self.thickness_m,
+                )
             )
 
     @staticmethod
@@ -93,7 +97,7 @@ class SlicePlane:
         along = np.array(b_m, dtype=np.float64) - a_m
         length_m = float(np.linalg.norm(along))
         if not length_m >= 0.001:
-            raise ConfigError("the two points of a vertical slice must be 1 mm apart or more")
+            raise ConfigError(CodedText("slice-line-short"))
         u = (*(along / length_m).tolist(), 0.0)
         origin = (float(a_m[0]), float(a_m[1]), 0.0)
         return SlicePlane("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
@@ -109,7 +113,7 @@ class SlicePlane:
         """
         length = float(np.linalg.norm(normal))
         if not (np.isfinite(length) and length > 1e-9):
-            raise ConfigError(f"a plane needs a normal with a direction, got {normal}")
+            raise ConfigError(CodedText("slice-normal", normal=str(normal)))
         n = np.array(normal) / length
         up = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
         u = np.cross(up, n)
@@ -153,9 +157,11 @@ class SlicePlane:
             ConfigError: If there are none or too many, or they do not move.
         """
         if not 1 <= count <= SLICE_PLANES.max_slices:
-            raise ConfigError(f"1 to {SLICE_PLANES.max_slices} slices at a time, got {count}")
+            raise ConfigError(
+                CodedText("slice-count", max_slices=SLICE_PLANES.max_slices, count=count)
+            )
         if count > 1 and not 0.001 <= abs(spacing_m) <= 1000.0:
-            raise ConfigError(f"slices need 1 mm to 1 km between them, got {spacing_m} m")
+            raise ConfigError(CodedText("slice-spacing", spacing_m=spacing_m))
         return tuple(self.moved(k * spacing_m) for k in range(count))
 
     @property

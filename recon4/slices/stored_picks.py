@@ -8,6 +8,7 @@ import msgspec
 import numpy as np
 
 from recon4.errors import StoreError
+from recon4.locales.coded import unreadable
 from recon4.slices.measured_points import MeasuredPosition, orthonormal
 from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
@@ -39,7 +40,7 @@ def stored_picks(project: Path, key: str) -> dict[str, MeasuredPosition]:
     try:
         stored = msgspec.convert(read_object(path, max_bytes=LIMITS.findings_bytes), StoredPicks)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{path.name} cannot be read: {error}") from error
+        raise StoreError(unreadable(path.name, error)) from error
     return {
         name: MeasuredPosition(np.array(at), orthonormal(stored.along[name]))
         for name, at in stored.picks.items()

@@ -18,6 +18,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from recon4.errors import NoSpace, StoreError
+from recon4.locales.coded import CodedText
 
 _TEMPORARY = re.compile(r"\.tmp-[0-9a-f]{12}-.+")
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
@@ -43,7 +44,9 @@ def atomic_file(path: Path) -> Iterator[Path]:
         fsync(path.parent)
     except OSError as error:
         raise_if_full(error, path)
-        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
+        raise StoreError(
+            CodedText("cannot-write", name=str(path), why=error.strerror or str(error))
+        ) from error
     except Exception as error:
         raise_if_full(error, path)
         raise
@@ -193,7 +196,9 @@ def _make_temporary(folder: Path, path: Path) -> None:
         folder.mkdir()
     except OSError as error:
         raise_if_full(error, path)
-        raise StoreError(f"cannot write {path.parent}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("cannot-write", name=str(path.parent), why=str(error.strerror))
+        ) from error
 
 
 def _fsync_tree(folder: Path) -> None:

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, NoSpace, StoreError
+from recon4.locales.coded import CodedText, unreadable
 from recon4.model.beams import beam_change
 from recon4.model.hidden_points import FORCES_REVERSED, MOVING_POINTS, HiddenPoints
 from recon4.model.multiframe import Multiframe
@@ -359,10 +360,8 @@ def _check_points(folder: Path, index: NDArray[np.void]) -> None:
     good = (np.diff(ends) > 0) & (np.abs(index["step"]) < 128)
     if not good.all():
         row = int(np.argmin(good))
-        raise StoreError(
-            f"{folder.name}/index.npy: row {row}: expected bytes from {ends[row]} on, "
-            f"got {index[row]}"
-        )
+        where = f"{folder.name}/index.npy: row {row}"
+        raise StoreError(f"{where}: expected bytes from {ends[row]} on, got {index[row]}")
     path = folder / POINTS
     found = path.stat().st_size if path.is_file() else -1
     if found != ends[-1]:
@@ -376,9 +375,9 @@ def _read_report(path: Path) -> dict[str, object]:
     try:
         return read_json_object(path, LIMITS.json_bytes, failure=StoreError)
     except StoreError as error:
-        if not path.exists():
-            return {}
-        raise StoreError(f"{path.name} cannot be read: {error}") from error
+        if path.exists():
+            raise StoreError(unreadable(path.name, error)) from error
+        return {}
 
 
 @contextmanager
@@ -388,7 +387,8 @@ def storing(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         kind = NoSpace if error.errno in _NO_SPACE else StoreError
-        raise kind(f"cannot write {folder}: {error.strerror or error}") from error
+        why = error.strerror or str(error)
+        raise kind(CodedText("cannot-write", name=str(folder), why=why)) from error
 
 
 def _close_quietly(file: BinaryIO) -> None:

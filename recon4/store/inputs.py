@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import RecordingError
+from recon4.locales.coded import CodedText
 from recon4.progress import Progress
 from recon4.store.hashing import files_below, hash_file, hash_json
 from recon4.store.ledger import Ledger
@@ -43,14 +44,16 @@ def _hash_of(path: Path, ledger: Ledger, progress: Progress) -> str:
             return hash_json({n: _hash_file(path / n, ledger, progress) for n in names})
         return _hash_file(path, ledger, progress)
     except OSError as error:
-        raise RecordingError(f"cannot read {path}: {error.strerror}") from error
+        raise RecordingError(
+            CodedText("cannot-read", file=str(path), why=str(error.strerror))
+        ) from error
 
 
 def _check_text(*names: str) -> None:
     """Names stand in reports and in JSON, which are UTF-8 text."""
     wrong = next((name for name in names if is_unnameable(name)), None)
     if wrong is not None:
-        raise RecordingError(f"{visible(wrong)}: the name is no UTF-8 text: rename it")
+        raise RecordingError(CodedText("name-no-utf8", wrong=visible(wrong)))
 
 
 def _hash_file(path: Path, ledger: Ledger, progress: Progress) -> str:

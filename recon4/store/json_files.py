@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.untrusted.bounded import parse_json, read_bytes_limited
 from recon4.untrusted.limits import LIMITS
 
@@ -40,5 +41,5 @@ def parse_object(data: bytes | str, what: str) -> dict[str, Any]:
     """
     found = parse_json(data, f"{what} cannot be read", failure=StoreError, finite=True)
     if not isinstance(found, dict):
-        raise StoreError(f"{what} cannot be read: expected an object, got {type(found).__name__}")
+        raise StoreError(CodedText("json-not-object", what=what, kind=type(found).__name__))
     return found

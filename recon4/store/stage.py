@@ -12,6 +12,7 @@ from typing import Any, Concatenate, Generic, TypedDict, TypeVar
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, unreadable
 from recon4.model.events import ArtifactDamaged, StageChanged
 from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
@@ -189,8 +190,7 @@ class StageRunner:
         done = self._finished(artifact) if key else None
         if done is None:
             raise StoreError(
-                f"{self._project.root.name} has no finished stage {stage.name} to go on from: "
-                "process its recording again"
+                CodedText("stage-none-before", root=self._project.root.name, stage=stage.name)
             )
         return self._took(stage, artifact, done, reused=True)
 
@@ -304,7 +304,7 @@ def read_manifest(folder: Path) -> Manifest:
             "files": found["files"],
         }
     except KeyError as error:
-        raise StoreError(f"{path} cannot be read: it lacks {error}") from error
+        raise StoreError(CodedText("stage-figures-lack", file=str(path), why=str(error))) from error
 
 
 def read_figures(folder: Path, kind: type[OfStage]) -> OfStage:
@@ -321,7 +321,7 @@ def read_figures(folder: Path, kind: type[OfStage]) -> OfStage:
         return msgspec.convert(read_manifest(folder)["figures"], kind)
     except msgspec.ValidationError as error:
         raise StoreError(
-            f"{folder / 'manifest.json'}: its figures make no sense: {error}"
+            CodedText("stage-figures", folder=str(folder / "manifest.json"), why=str(error))
         ) from error
 
 
@@ -361,7 +361,7 @@ def _finished_stage(artifact: Artifact) -> FinishedStage:
     try:
         return msgspec.convert(artifact.manifest()["done"], FinishedStage)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{artifact.folder / 'manifest.json'} cannot be read: {error}") from error
+        raise StoreError(unreadable(str(artifact.folder / "manifest.json"), error)) from error
 
 
 def _recipe(

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.tried_hypotheses import TriedHypothesis
 from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
@@ -33,4 +34,4 @@ def read_tried(folder: Path) -> tuple[TriedHypothesis, ...]:
     try:
         return msgspec.convert(read_object(path).get("tried"), tuple[TriedHypothesis, ...])
     except msgspec.ValidationError as error:
-        raise StoreError(f"{path} is damaged: {error}") from error
+        raise StoreError(CodedText("file-damaged", file=str(path), why=str(error))) from error

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import recon4
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.sandbox import Barrier, available_barriers
 from recon4.sandbox.private_cache import cache_in_use, planted
 from recon4.system.tuning import NEEDS
@@ -51,7 +52,7 @@ def examine(folder: Path) -> list[Check]:
         ConfigError: If there is no such folder.
     """
     if not folder.is_dir():
-        raise ConfigError(f"no folder {folder}: give the one that holds the projects")
+        raise ConfigError(CodedText("doctor-no-folder", folder=str(folder)))
     checks = [
         Check("recon4", recon4.__version__, ok=True),
         Check("Python", platform.python_version(), ok=True),

@@ -12,6 +12,7 @@ import tempfile
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.system.tuning import RUNTIME_FOLDERS
 
 _SHARED_TEMPORARY = Path(tempfile.gettempdir())
@@ -32,7 +33,7 @@ def runtime_folder() -> Path:
             return private_folder(path)
         except (OSError, StoreError) as error:
             problems.append(str(error))
-    raise StoreError(f"no place for sockets: {'; '.join(problems)}")
+    raise StoreError(CodedText("sockets-no-place", problems="; ".join(problems)))
 
 
 def private_folder(path: Path) -> Path:
@@ -47,8 +48,13 @@ def private_folder(path: Path) -> Path:
     mode = stat.S_IMODE(found.st_mode)
     if not stat.S_ISDIR(found.st_mode) or found.st_uid != os.getuid() or mode & 0o077:
         raise StoreError(
-            f"{path}: expected a folder of user {os.getuid()} with mode 0700, "
-            f"got {stat.filemode(found.st_mode)} of user {found.st_uid}: remove it"
+            CodedText(
+                "sockets-folder",
+                file=str(path),
+                user=os.getuid(),
+                mode=stat.filemode(found.st_mode),
+                owner=found.st_uid,
+            )
         )
     return path
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import unicodedata
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.untrusted.limits import LIMITS
 
 _HIDDEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
@@ -51,12 +52,16 @@ def is_unnameable(path: object) -> bool:
 
 def _check(text: str, what: str, most: int, *, allowed: str) -> str:
     if len(text) > most:
-        raise ConfigError(f"{what} has at most {most} characters, got {len(text)}")
+        raise ConfigError(CodedText("name-long", what=what, most=most, got=len(text)))
     hidden = [one for one in text if _hidden(one) and one not in allowed]
     if hidden:
         raise ConfigError(
-            f"{what} may not have invisible characters, got U+{ord(hidden[0]):04X} at "
-            f"place {text.index(hidden[0]) + 1}"
+            CodedText(
+                "name-invisible",
+                what=what,
+                character=f"U+{ord(hidden[0]):04X}",
+                place=text.index(hidden[0]) + 1,
+            )
         )
     return text
 

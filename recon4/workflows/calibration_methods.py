@@ -33,6 +33,7 @@ from recon4.errors import CalibrationError, ConfigError
 from recon4.findings.witnesses.rig import agreement, rig_findings
 from recon4.findings.wording import text_of, whole_text
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.pipeline import calibrate_recording, track_lines
@@ -97,9 +98,11 @@ def check_choice(choice: CalibrationChoice) -> None:
     """
     method = choice.method
     if method not in _METHODS:
-        raise ConfigError(f"no method named {method!r:.80}; there are: {', '.join(_METHODS)}")
+        raise ConfigError(
+            CodedText("calibrate-method", method=method[:80], methods=", ".join(_METHODS))
+        )
     if choice.beams and method != "joint":
-        raise ConfigError(f"single beams: expected the method joint, got {method!r:.80}")
+        raise ConfigError(CodedText("calibrate-beams", method=method[:80]))
 
 
 def calibrate_by(
@@ -122,10 +125,7 @@ def calibrate_by(
     check_choice(choice)
     method, rig = choice.method, sources.rig
     if method in _OF_LIDARS and rig is not None and rig.row_of("profiler") is not None:
-        raise ConfigError(
-            f"{method}: expected a rig with LiDARs, got {rig.name!r:.80} with a profiler; "
-            "use entropy or pairs"
-        )
+        raise ConfigError(CodedText("calibrate-lidars", method=method, rig=rig.name[:80]))
     task = _Task(sources, folder, choice.sensors, choice.beams, progress)
     return _METHODS[method](task)
 
@@ -191,14 +191,21 @@ def _maps(task: _Task) -> MethodResult:
         found = align_maps(walk, walk.frames.rig, row, reference=reference, settings=reads)
         if found is None:
             raise CalibrationError(
-                f"the maps of {rig.sensors[reference].name!r} and {rig.sensors[row].name!r} "
-                "do not register: walk through a larger room"
+                CodedText(
+                    "calibrate-maps",
+                    sensor=rig.sensors[reference].name,
+                    other=rig.sensors[row].name,
+                )
             )
         if not found.agrees:
             raise CalibrationError(
-                f"maps: expected several windows of the walk to agree on the mount of "
-                f"{rig.sensors[row].name!r}, got {found.windows} that differ by "
-                f"{np.rad2deg(found.scatter_rad):.1f}° and {100 * found.scatter_m:.0f} cm"
+                CodedText(
+                    "calibrate-windows",
+                    sensors=rig.sensors[row].name,
+                    windows=found.windows,
+                    scatter_deg=float(np.rad2deg(found.scatter_rad)),
+                    scatter_cm=100 * found.scatter_m,
+                )
             )
         rig = with_mount(rig, row, found.T_body_sensor)
         report_lines.append(
@@ -235,7 +242,7 @@ def _entropy(task: _Task) -> MethodResult:
     few = tuned(CalibrationTuning, chosen.calibration)
     windows = walk.windows(few.audit_windows, few.audit_window_s)
     if not windows or not len(parameters):
-        raise CalibrationError("entropy: expected two LiDARs and some seconds of walk")
+        raise CalibrationError(CodedText("calibrate-entropy"))
     task.progress.start("calibration", settings.evaluations, "evaluations")
     found = calibrate_by_entropy(
         windows, rig, parameters, settings=settings, progress=task.progress.advance
@@ -253,9 +260,7 @@ def _gravity(task: _Task) -> MethodResult:
         walk, _ = _walk(task)
         rig, pairs = walk.frames.rig, find_inclinations(walk.frames, walk.frames.rig)
     if len(pairs) < 2:
-        raise CalibrationError(
-            f"gravity: expected the backpack at rest at two inclinations or more, got {len(pairs)}"
-        )
+        raise CalibrationError(CodedText("calibrate-gravity", count=len(pairs)))
     found = align_gravity(pairs.normal_body, pairs.force_imu)
     report_lines = [
         f"inclination {k + 1}: residual {np.rad2deg(residual):.2f}°"
@@ -274,7 +279,7 @@ def _pairs(task: _Task) -> MethodResult:
     names = {sensor.name: row for row, sensor in enumerate(rig.sensors)}
     name = task.sensors or next(iter(names))
     if name not in names:
-        raise ConfigError(f"expected a sensor of the rig ({', '.join(names)}), got {name!r:.80}")
+        raise ConfigError(CodedText("calibrate-sensor", names=", ".join(names), name=name[:80]))
     found = average_pairs(pairs)
     if found.contradictory:
         # Poses of two worlds: only their motions compare.
@@ -309,13 +314,12 @@ def _trajectories(task: _Task) -> MethodResult:
     rig, files = task.sources.rig, task.sources.recordings
     assert rig is not None
     if len(files) != 2:
-        raise ConfigError(f"expected the trajectories of two sensors (TUM), got {len(files)} files")
+        raise ConfigError(CodedText("calibrate-trajectories", count=len(files)))
     rows = {sensor.name: row for row, sensor in enumerate(rig.sensors)}
     names = task.sensors.split(",") if task.sensors else list(rows)[:2]
     if len(names) != 2 or not set(names) <= set(rows):
         raise ConfigError(
-            f"expected the two sensors of the trajectories, of {', '.join(rows)} (command: "
-            f"--sensors A,B), got {task.sensors!r:.80}"
+            CodedText("calibrate-sensors", rows=", ".join(rows), sensors=task.sensors)
         )
     first, second = (rig.sensors[rows[name]] for name in names)
     of_first, of_second = (read_tum(file) for file in files)
@@ -372,7 +376,7 @@ def _recorded(folder: Path) -> RecordedWalk:
 def _reference(rig: Rig, settings: Settings) -> int:
     reference = reference_of(rig, settings.calibration)
     if reference is None:
-        raise CalibrationError("expected a rig with a LiDAR that is enabled, got none")
+        raise CalibrationError(CodedText("calibrate-no-lidar"))
     return reference
 
 

@@ -6,6 +6,7 @@ from collections.abc import Container
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.rig import format_rig, load_rig
 from recon4.progress import Progress
 from recon4.recording.lasers.laser2d import is_laser2d
@@ -47,8 +48,9 @@ def check_planar(sources: Sources) -> None:
     unused = [name for name, value in given.items() if value is not None]
     if unused:
         raise ConfigError(
-            f"{sources.recordings[0].name} is a recording of a 2-D laser: it is processed without "
-            f"{' and '.join(unused)}"
+            CodedText(
+                "laser-unused", recordings=sources.recordings[0].name, unused=" and ".join(unused)
+            )
         )
 
 

@@ -17,7 +17,7 @@ FILES = sorted(path.stem for path in (ROOT / ENGLISH).glob("*.ftl"))
 TRANSLATED = [(language, file) for language in languages()[1:] for file in FILES]
 CODE = [REPOSITORY / room for room in ("recon4", "app", "web")]
 MADE = re.compile(
-    r"(count|headline|word|unobserved|remark|why|state|dance|clock|about|field|approve-reason)-"
+    r"(command|heading|typer|usage|count|headline|word|unobserved|remark|why|state|dance|clock|about|field|approve-reason)-"
     r"|(scans|lines)-damaged$"
     r"|[A-Z][A-Z0-9-]+$"
 )

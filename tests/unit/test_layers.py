@@ -34,13 +34,13 @@ MAY_IMPORT = {
     "recon4/units.py": set(),
     "recon4/locales": {"recon4.errors", "recon4.locales"},
     "recon4/untrusted": {"recon4.errors", "recon4.locales", "recon4.untrusted"},
-    "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
+    "recon4/system": {"recon4.errors", "recon4.locales", "recon4.sandbox", "recon4.system"},
     "recon4/system/compile_kernels.py": {"recon4.kernels.signatures", "recon4.progress"}
     | {"recon4.sandbox", "recon4.store.locks", "recon4.system"},
     "recon4/archive": STAGE | {"recon4.archive", "recon4.review"},
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.locales", "recon4.settings"},
-    "recon4/executors": {"recon4.errors", "recon4.executors"},
+    "recon4/executors": {"recon4.errors", "recon4.executors", "recon4.locales"},
     "recon4/executors/chosen.py": {"recon4.errors", "recon4.executors", "recon4.locales"}
     | {"recon4.store.atomic", "recon4.store.json_files"},
     "recon4/orders": {"recon4.errors", "recon4.orders", "recon4.executors.executor"}
@@ -168,7 +168,7 @@ MAY_IMPORT = {
     | {f"recon4.{room}" for room in ("review", "simulation", "slices", "pose_graph.files")}
     | {"recon4.pipeline", "recon4.export.map_files", "recon4.cli.kernel_cache"},
     "recon4/cli/main.py": {"recon4", "recon4_app.cli"},
-    "app/recon4_app/cli/users.py": {"recon4.errors", "recon4_app"}
+    "app/recon4_app/cli/users.py": {"recon4.errors", "recon4.locales", "recon4_app"}
     | {"recon4.cli.terminal", "recon4.archive.verify"},
     "app": {"recon4_app", "recon4"},
 }

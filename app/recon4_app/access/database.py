@@ -128,7 +128,9 @@ def open_database(path: Path) -> sa.Engine:
             migrate(connection, Path(__file__).parent)
     except (sa.exc.DatabaseError, CommandError) as error:
         engine.dispose()
-        raise StoreError(f"{path} cannot be used: {getattr(error, 'orig', error)}") from error
+        raise StoreError(
+            CodedText("access-unusable", file=str(path), why=str(getattr(error, "orig", error)))
+        ) from error
     except NoRoom as error:
         engine.dispose()
         raise StoreError(str(error)) from error

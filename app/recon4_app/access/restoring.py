@@ -66,12 +66,5 @@ def check_access(state: Path, *, advice: bool = True) -> None:
         return
     path = state / ACCESS_FILE
     if copies.newest_intact() is not None:
-        raise StoreError(
-            f"{path} is damaged ({damage}): start the server, which puts back its newest copy"
-        )
-    raise StoreError(
-        f"{path} is damaged ({damage}) and there is no intact copy of it, so it is not known who "
-        "may sign in: the server does not start. Put the file back from a backup that was made "
-        "with --with-keys; or, to begin without people, move it and "
-        f"backups/{path.stem}-*.sqlite away: the next start shows the link for a first admin"
-    )
+        raise StoreError(CodedText("access-damaged", file=str(path), damage=damage))
+    raise StoreError(CodedText("access-lost", file=str(path), damage=damage, stem=path.stem))

@@ -22,7 +22,7 @@ from typing import Generic, TypeVar
 from pydantic import TypeAdapter
 
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, unreadable
 from recon4.store.atomic import atomic_file, make_folders, write_json
 from recon4.store.json_files import read_object
 from recon4.store.seal import changing, check_sealed
@@ -58,12 +58,17 @@ class ListFile(Generic[Item]):
         found = read_object(root / self.name, max_bytes=ANNOTATIONS.max_file_bytes)
         if found.get("format") != ANNOTATIONS.format:
             raise StoreError(
-                f"{self.name}: expected format {ANNOTATIONS.format}, got {found.get('format')!r}"
+                CodedText(
+                    "notes-format",
+                    name=self.name,
+                    format=ANNOTATIONS.format,
+                    found=repr(found.get("format")),
+                )
             )
         try:
             return self.adapter.validate_python(found.get("items"))
         except ValueError as error:
-            raise StoreError(f"{self.name} cannot be read: {error}") from error
+            raise StoreError(unreadable(self.name, error)) from error
 
     @contextmanager
     def changed(
@@ -220,7 +225,7 @@ def read_photo(root: Path, note: MapNote) -> bytes:
     try:
         data = (root / name).read_bytes()
     except OSError as error:
-        raise StoreError(f"{name} cannot be read: {error}") from error
+        raise StoreError(unreadable(name, error)) from error
     if hashlib.sha256(data).hexdigest() != note.photo:
         raise StoreError(CodedText("note-file-changed", file=name))
     return data

@@ -17,6 +17,7 @@ import msgspec
 from mcp.server.mcpserver.exceptions import ToolError
 
 from recon4.errors import ConfigError, Recon4Error
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import atomic_file
 from recon4_app.assistant.records import Downloaded, SignedIn, WatchedJob
 from recon4_app.assistant.tuning import ASSISTANT
@@ -51,14 +52,12 @@ class ServerClient:
         """
         parts = urlsplit(url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
-            raise ConfigError(
-                f"expected the address of a server, as http://127.0.0.1:8000/, got {url!r}"
-            )
+            raise ConfigError(CodedText("assistant-address", url=url))
         if parts.password is not None:
-            raise ConfigError("a password does not belong into an address, which others can see")
+            raise ConfigError(CodedText("assistant-password"))
         self._name, self._password = unquote(parts.username or ""), password
         if self._name and parts.scheme == "http" and not _is_this_computer(parts.hostname):
-            raise ConfigError(f"{url} has no TLS: the password would cross the network readably")
+            raise ConfigError(CodedText("assistant-tls", url=url))
         place = parts.netloc.rpartition("@")[2]
         self._url = f"{parts.scheme}://{place}{parts.path.rstrip('/')}/"
         self._http = httpx2.AsyncClient(
@@ -223,7 +222,9 @@ def _trust(certificate: Path | None) -> ssl.SSLContext:
     try:
         return ssl.create_default_context(cafile=certificate)
     except OSError as error:
-        raise ConfigError(f"{certificate} is no certificate in PEM: {error}") from error
+        raise ConfigError(
+            CodedText("assistant-certificate", certificate=str(certificate), why=str(error))
+        ) from error
 
 
 def _is_this_computer(host: str) -> bool:

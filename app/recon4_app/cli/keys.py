@@ -15,6 +15,7 @@ import typer
 
 from recon4.cli.terminal import write
 from recon4.errors import ConfigError, StoreError
+from recon4.locales.coded import CodedText
 from recon4_app.cli.users import this_user
 
 if TYPE_CHECKING:
@@ -104,7 +105,7 @@ def _trusted(root: Path | None) -> TrustedKeys:
     if root is None:
         return read_keys(personal_folder(), server=False)
     if not (root / STATE).is_dir():
-        raise ConfigError(f"no server ran on {root}: it has no folder {STATE}")
+        raise ConfigError(CodedText("keys-no-server", root=str(root), state=STATE))
     return read_keys(root / STATE, server=True)
 
 
@@ -132,4 +133,6 @@ def _written(change: _Change) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise StoreError(f"cannot write {change.trusted.folder}: {error.strerror}") from error
+        raise StoreError(
+            CodedText("cannot-write", name=str(change.trusted.folder), why=str(error.strerror))
+        ) from error

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.system.stopping import StopSignals
 
 assistant = typer.Typer()
@@ -44,16 +45,14 @@ def mcp(
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0].startswith("recon4"):
             raise
-        raise ConfigError(
-            f"recon4 mcp needs the package {error.name}: pip install 'recon4[mcp]'"
-        ) from error
+        raise ConfigError(CodedText("mcp-package", why=str(error.name))) from error
 
     password = os.environ.get(PASSWORD, "")
     client = ServerClient(url, password=password, certificate=certificate)
     if client.needs_password and not password:
-        raise typer.BadParameter(f"the password of the account is expected in {PASSWORD}")
+        raise typer.BadParameter(CodedText("mcp-password", password=PASSWORD))
     if downloads is not None and not downloads.is_dir():
-        raise typer.BadParameter(f"no folder {downloads} for downloads")
+        raise typer.BadParameter(CodedText("mcp-downloads", downloads=str(downloads)))
     stop = context.find_object(StopSignals)
     assert stop is not None
     stop.request(lambda: os._exit(stop.exit_code))  # its standard input may stay open

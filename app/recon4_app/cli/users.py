@@ -17,6 +17,7 @@ import typer
 
 from recon4.cli.terminal import write
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 
 if TYPE_CHECKING:
     from recon4_app.access.audit import AuditLog
@@ -123,7 +124,7 @@ def _log_of(root: Path) -> AuditLog:
 
     state = ServerSettings(root=root).state
     if not (state / ACCESS_FILE).exists():
-        raise StoreError(f"{root} has no audit log: no server ran there")
+        raise StoreError(CodedText("users-no-log", root=str(root)))
     check_access(state)
     return AuditLog(open_to_read(state / ACCESS_FILE))
 
@@ -156,7 +157,7 @@ def _role(text: str) -> Role:
 
     roles = [one.value for one in ASSIGNABLE]
     if text not in roles:
-        raise typer.BadParameter(f"no role {text!r}; one of {', '.join(roles)}")
+        raise typer.BadParameter(CodedText("users-role", text=text, roles=", ".join(roles)))
     return Role(text)
 
 
@@ -166,7 +167,7 @@ def _password() -> str:
         return sys.stdin.readline().rstrip("\n")
     first = getpass.getpass("Password: ")
     if first != getpass.getpass("Once more: "):
-        raise typer.BadParameter("the two passwords differ")
+        raise typer.BadParameter(CodedText("users-passwords"))
     return first
 
 

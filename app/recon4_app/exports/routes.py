@@ -16,7 +16,7 @@ from starlette.concurrency import run_in_threadpool
 from recon4.delivery.kinds import KINDS, ExportEstimate
 from recon4.errors import StoreError
 from recon4.export.options import ExportOptions
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, at
 from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
@@ -211,7 +211,7 @@ def _read_choices(path: Path) -> ExportChoices:
         record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
         return _CHOICES.validate_python(record)
     except ValidationError as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, str(error))) from error
 
 
 _CHOICES: TypeAdapter[ExportChoices] = TypeAdapter(ExportChoices)

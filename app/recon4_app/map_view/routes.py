@@ -14,7 +14,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.errors import StoreError
 from recon4.live.session import CaptureSession
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, at
 from recon4.review.evidence import Evidence
 from recon4.untrusted.bounded import read_json_object
 from recon4_app.access.people import Permission, Who, needs
@@ -259,4 +259,4 @@ def _read_index(path: Path) -> MapIndex:
         record = read_json_object(path, MAP_CHUNKS.max_index_bytes, failure=StoreError)
         return MapIndex.model_validate(record)
     except ValidationError as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, str(error))) from error

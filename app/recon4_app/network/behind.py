@@ -16,6 +16,7 @@ from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 _SECURE = {"http": "https", "ws": "wss"}
 _PREFIX = re.compile(r"(/(?!\.\.?(/|$))[A-Za-z0-9._-]+)*")
@@ -63,18 +64,12 @@ def public_address(url: str) -> PublicAddress:
         parts = urlsplit(url)
         _ = parts.port
     except ValueError as error:
-        raise ConfigError(f"--behind: {url!r:.200} is no address: {error}") from None
+        raise ConfigError(CodedText("behind-invalid", url=url[:200], why=str(error))) from None
     if parts.scheme != "https" or not parts.hostname or parts.username or parts.query:
-        raise ConfigError(
-            f"--behind must be the address that browsers use, as https://maps.example.org/ or "
-            f"https://example.org/recon4/, got {url!r:.200}"
-        )
+        raise ConfigError(CodedText("behind-address", url=url[:200]))
     prefix = parts.path.removesuffix("/")
     if not _PREFIX.fullmatch(prefix) or parts.fragment:
-        raise ConfigError(
-            f"--behind: the path may have letters A-Z, digits, '.', '_' and '-' between single "
-            f"slashes, as https://{parts.hostname}/recon4/, got {url!r:.200}"
-        )
+        raise ConfigError(CodedText("behind-path", hostname=parts.hostname, url=url[:200]))
     url = f"https://{parts.netloc.lower()}{prefix}/"
     return PublicAddress(url, parts.hostname.lower(), prefix)
 

@@ -15,6 +15,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import write_private, write_text
 
 log = logging.getLogger(__name__)
@@ -46,8 +47,7 @@ class Certificate:
             context.load_cert_chain(self.chain, self.key, password=_no_password)
         except (OSError, ssl.SSLError) as error:
             raise ConfigError(
-                f"{self.chain} and {self.key} are not a certificate and its key "
-                f"(PEM, without password): {error}"
+                CodedText("tls-no-pair", chain=str(self.chain), key=str(self.key), why=str(error))
             ) from error
         return context
 
@@ -69,7 +69,7 @@ def own_certificate(chain: Path, key: Path) -> Certificate:
     """
     for path in (chain, key):
         if not path.is_file():
-            raise ConfigError(f"no file {path}: give --tls-cert and --tls-key as PEM files")
+            raise ConfigError(CodedText("tls-no-file", file=str(path)))
     found = Certificate(chain, key, own=True)
     found.context()
     return found

@@ -16,6 +16,7 @@ import uvicorn
 from fastapi import FastAPI
 
 from recon4.errors import ConfigError, StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.atomic import make_folders
 from recon4.store.locks import trying_lock
 from recon4_app.access.middleware.origin import Hosts
@@ -163,10 +164,7 @@ def own_files(settings: ServerSettings) -> Iterator[ServerSettings]:
         stack.enter_context(private_files(settings.login))
         if not os.access(settings.root, os.W_OK):
             if settings.login:
-                raise ConfigError(
-                    f"{settings.root} cannot be written, so nobody can sign in and nothing can be "
-                    "logged: serve a copy of it, or serve it without --lan and --behind"
-                )
+                raise ConfigError(CodedText("server-read-only", root=str(settings.root)))
             folder = stack.enter_context(TemporaryDirectory(prefix="recon4-state-"))
             settings = replace(settings, state_folder=Path(folder))
         stack.enter_context(only_one(settings))
@@ -183,7 +181,7 @@ def only_one(settings: ServerSettings) -> Iterator[None]:
     make_state(settings)
     with trying_lock(settings.state / "server.lock") as lock:
         if lock is None:
-            raise StoreError(f"another server runs on {settings.root}; use that one")
+            raise StoreError(CodedText("server-other", root=str(settings.root)))
         yield
 
 
@@ -198,8 +196,7 @@ def make_state(settings: ServerSettings) -> None:
         settings.state.chmod(0o700)
     except OSError as error:
         raise StoreError(
-            f"{settings.state} cannot be used: {error.strerror}; it is for the user who runs the "
-            "server"
+            CodedText("server-state", state=str(settings.state), why=str(error.strerror))
         ) from error
 
 
@@ -229,7 +226,7 @@ def listening(settings: ServerSettings) -> Iterator[socket.socket]:
             listener.bind((settings.host, settings.port))
         except OSError as error:
             raise StoreError(
-                f"port {settings.port} is in use ({error.strerror}); choose another with --port"
+                CodedText("server-port", port=settings.port, why=str(error.strerror))
             ) from error
         yield listener
 

@@ -169,7 +169,7 @@ def _parsed(kind: type[_Model], path: Path) -> _Model:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
         raise StoreError(
-            f"{path.name} of this project makes no sense: {place}: {first['msg']}"
+            CodedText("calibration-unreadable", file=path.name, place=place, first=first["msg"])
         ) from error
 
 

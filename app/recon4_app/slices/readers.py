@@ -8,6 +8,7 @@ import msgspec
 from pydantic import ValidationError
 
 from recon4.errors import StoreError
+from recon4.locales.coded import at, unreadable
 from recon4.slices.double_places import DoubleReport
 from recon4.slices.targets.named import TargetList
 from recon4.untrusted.bounded import read_json_object
@@ -26,7 +27,7 @@ def read_window(path: Path) -> WindowSpec:
             read_json_object(path, READERS.max_bytes, failure=StoreError)
         )
     except ValidationError as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, str(error))) from error
 
 
 def read_double_walls(path: Path) -> DoubleReport:
@@ -39,7 +40,7 @@ def read_double_walls(path: Path) -> DoubleReport:
         record = read_json_object(path, READERS.max_bytes, failure=StoreError)
         return msgspec.convert(record, DoubleReport)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{path.name} cannot be read: {error}") from error
+        raise StoreError(unreadable(path.name, error)) from error
 
 
 def read_targets(path: Path) -> TargetList:
@@ -52,4 +53,4 @@ def read_targets(path: Path) -> TargetList:
         record = read_json_object(path, READERS.max_bytes, failure=StoreError)
         return msgspec.convert(record, TargetList)
     except msgspec.ValidationError as error:
-        raise StoreError(f"{path.name} cannot be read: {error}") from error
+        raise StoreError(unreadable(path.name, error)) from error

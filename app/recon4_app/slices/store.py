@@ -17,7 +17,7 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.comparison.common_frame import earlier_map_rows
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, unreadable
 from recon4.locales.languages import ENGLISH
 from recon4.review.approval_state import ApprovalState, approval_state
 from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
@@ -266,7 +266,7 @@ class Slices:
             text = read_text_limited(path, SLICE_STORE.max_control_bytes, failure=StoreError)
             state = ControlState.model_validate_json(text)
         except (StoreError, ValueError) as error:
-            raise StoreError(f"{path.name} cannot be read: {error}") from error
+            raise StoreError(unreadable(path.name, error)) from error
         return state.model_copy(update={"version": state.version or 0})
 
     def keep_control(self, project_id: str, state: ControlState) -> ControlState:

@@ -31,7 +31,7 @@ router = APIRouter(
     dependencies=[Depends(needs(Permission.LOOK))],
     responses=problems(404, 422),
 )
-ORDER = [Depends(at_most(60, within_s=3600.0, what="searches for targets"))]
+ORDER = [Depends(at_most(60, within_s=3600.0, what="target-searches"))]
 REFUSALS = problems(403, 429)
 
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from recon4.live.recorder.capture_file import Datagram
 from recon4.live.recorder.device_opener import DeviceOpener
 from recon4.live.recorder.tuning import SERIAL_LINE
+from recon4.locales.coded import CodedText
 
 
 class SerialLine:
@@ -61,7 +62,7 @@ class SerialLine:
                 continue
             data = os.read(line, SERIAL_LINE.at_once)
             if not data:
-                raise OSError("the device is gone")
+                raise OSError(CodedText("serial-gone"))
             *whole, rest = (rest + data).split(b"\n")
             for sentence in [*whole, *([rest] if len(rest) > SERIAL_LINE.longest else [])]:
                 if sentence.strip():

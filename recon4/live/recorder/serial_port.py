@@ -63,7 +63,7 @@ def open_line(path: str, baud: int) -> int:
         with serial.Serial(path, baud) as line:
             return os.dup(line.fileno())
     except ValueError as error:
-        raise OSError(f"{baud} baud: {error}") from error
+        raise OSError(CodedText("serial-baud", baud=baud, why=str(error))) from error
 
 
 @contextmanager
@@ -94,8 +94,7 @@ def _check_driver(device: int, path: str) -> None:
     kind = driver_kind(device, DRIVERS.read_text("utf-8", "replace"))
     if kind != "serial":
         raise ConfigError(
-            f"gnss: serial: {path} is no serial line but {kind or 'another device'}: "
-            "it is not opened"
+            CodedText("serial-no-line", path=path, kind=kind or CodedText("serial-other-device"))
         )
     if device in _consoles():
         raise ConfigError(CodedText("serial-console", path=str(path)))

@@ -20,10 +20,12 @@ text-utf16 = { $file }: erwartet wird Text in UTF-8, erhalten: UTF-16; als UTF-8
 
 ## Einstellungen
 
+where-why = { $where }: { $why }
 and-further = { $first }; { $further }
 setting-form = erwartet wird gruppe.feld=wert, erhalten: { $got }
 setting-group-unknown = keine Gruppe von Einstellungen { $group }; bekannt: { $known }
 setting-renamed = die Einstellung { $setting } heißt jetzt { $name }
+setting-retired = { $setting } ist keine Einstellung mehr: fest auf { $value }, nicht { $given } ({ $what })
 setting-unknown = keine Einstellung { $setting }; bekannt in { $group }: { $known }
 setting-choice = { $setting } muss eines sein von { $choices }, erhalten: { $got }
 setting-true-false = { $setting } muss true oder false sein, erhalten: { $got }
@@ -180,3 +182,10 @@ bag-no-lidar = { $file }: keine Daten eines LiDARs; Topics: { $topics }; { $why 
 columns-needed = { $name } hat Listen von { $columns }: sie werden als Punkte eines LiDARs gelesen, wenn sie x, y, z und dazu time, ring oder intensity heißen, oder wenn eine Rig-Datei die Spalten nennt: fields = { $fields } (oder range, azimuth, elevation) in ihrem [[sensor]]
 cloud-unknown = { $file }: erwartet wird eine Datei in einem dieser Formate: { $formats }
 recordings-of-times = { $number } Aufzeichnungen verschiedener Zeiten, mehr als { $hours } Stunden auseinander: { $walks }; die eines Gangs angeben
+name-long = { NAMED($what, of: "word-what") } hat höchstens { $most } Zeichen, erhalten: { $got }
+name-invisible = { NAMED($what, of: "word-what") } darf keine unsichtbaren Zeichen haben, erhalten: { $character } an Stelle { $place }
+word-what-a-name = ein Name
+word-what-a-note = eine Notiz
+word-what-the-id-of-a-point = der Name eines Punkts
+word-what-the-name-of-a-file = der Name einer Datei
+word-what-why = der Grund

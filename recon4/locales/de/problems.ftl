@@ -378,6 +378,7 @@ word-trash-recording = eine Aufzeichnung
 word-started-jobs = Aufträge
 word-started-exports = Exporte
 word-started-comparisons = Vergleiche
+word-started-target-searches = Suchen nach Zielmarken
 word-streams-assistant-calls = Aufrufe von Assistenten
 word-streams-viewers = Betrachter
 word-streams-event-streams = Ereignisströme

@@ -20,10 +20,12 @@ text-utf16 = { $file }: expected UTF-8 text, got UTF-16; save it as UTF-8
 
 ## Settings
 
+where-why = { $where }: { $why }
 and-further = { $first }; { $further }
 setting-form = expected group.field=value, got { $got }
 setting-group-unknown = no setting group { $group }; known: { $known }
 setting-renamed = the setting { $setting } is now called { $name }
+setting-retired = { $setting } is no setting anymore: fixed at { $value }, not { $given } ({ $what })
 setting-unknown = no setting { $setting }; known in { $group }: { $known }
 setting-choice = { $setting } must be one of { $choices }, got { $got }
 setting-true-false = { $setting } must be true or false, got { $got }
@@ -180,3 +182,10 @@ bag-no-lidar = { $file }: no LiDAR data; topics: { $topics }; { $why }
 columns-needed = { $name } has lists of { $columns }: it is read as points of a LiDAR if they are named x, y, z, and a time, ring or intensity, or if a rig file says which columns they are: fields = { $fields } (or range, azimuth, elevation) in its [[sensor]]
 cloud-unknown = { $file }: expected a file of one of these formats: { $formats }
 recordings-of-times = { $number } recordings of different times, more than { $hours } hours apart: { $walks }; give those of one walk
+name-long = { NAMED($what, of: "word-what") } has at most { $most } characters, got { $got }
+name-invisible = { NAMED($what, of: "word-what") } may not have invisible characters, got { $character } at place { $place }
+word-what-a-name = a name
+word-what-a-note = a note
+word-what-the-id-of-a-point = the id of a point
+word-what-the-name-of-a-file = the name of a file
+word-what-why = why

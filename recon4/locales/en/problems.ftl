@@ -390,6 +390,7 @@ word-trash-recording = recording
 word-started-jobs = jobs
 word-started-exports = exports
 word-started-comparisons = comparisons
+word-started-target-searches = searches for targets
 word-streams-assistant-calls = calls of assistants
 word-streams-viewers = viewers
 word-streams-event-streams = event streams

@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
@@ -267,8 +268,12 @@ def require_topic(topic: str, there: Sequence[str], setting: str) -> None:
     """
     if topic not in there:
         raise ConfigError(
-            f"{setting}: {topic!r:.200} is not in the recording, which has "
-            f"{', '.join(there) or 'no topic of this kind'}"
+            CodedText(
+                "topic-not-there",
+                setting=setting,
+                topic=topic[:200],
+                there=", ".join(there) or CodedText("no-such-topic"),
+            )
         )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.clocks.names import known_offset_s, looks_like
@@ -28,10 +29,7 @@ def require_forward(topic: str, head: Sequence[tuple[int, int]]) -> None:
     """
     steps = np.diff([stamp for stamp, _ in head])
     if len(steps) >= STAMPS.ahead and np.all(steps < 0):
-        raise UnknownFormat(
-            f"{topic}: the recording runs backward: each stamp is earlier than the one before. "
-            "Give the original recording, or a copy in the order of its stamps"
-        )
+        raise UnknownFormat(CodedText("stamps-backward", topic=topic))
 
 
 class StampJumps:

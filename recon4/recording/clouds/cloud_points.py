@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, UnknownFormat
 from recon4.geometry.distinct import distinct
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
@@ -67,8 +68,12 @@ class CloudDecoder:
         fields = sensor.fields
         if fields is not None and fields.has_lengths and settings.points_unit_m != 1.0:
             raise ConfigError(
-                f"{sensor.name}: the fields say the unit of the points ({fields.text()[:200]}): "
-                f"expected no ingest.points_unit_m, got {settings.points_unit_m:g}"
+                CodedText(
+                    "points-unit-known",
+                    sensor=sensor.name,
+                    fields=fields.text()[:200],
+                    points_unit_m=settings.points_unit_m,
+                )
             )
         self._row, self._report = sensor_row, report
         self._name, self._model = sensor.name, sensor.model
@@ -296,7 +301,7 @@ def model_of_points(table: Table) -> str:
 def _xyz(table: Table, name: str) -> NDArray[np.float32]:
     missing = [key for key in ("x", "y", "z") if key not in table]
     if missing:
-        raise UnknownFormat(f"{name}: a cloud needs x, y and z; it has {sorted(table)}")
+        raise UnknownFormat(CodedText("cloud-axes-missing", name=name, table=str(sorted(table))))
     with np.errstate(over="ignore", invalid="ignore"):
         return np.column_stack([table[k] for k in ("x", "y", "z")]).astype(np.float32)
 

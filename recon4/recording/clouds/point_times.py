@@ -103,7 +103,9 @@ class PointClock:
             CorruptFile: If the field is not numeric.
         """
         if values.dtype.kind not in "fiu":
-            raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
+            raise CorruptFile(
+                CodedText("time-field-type", name=self._name, dtype=str(values.dtype))
+            )
         try:
             numbers = _numbers(values)
             is_known = key == NS_TIME

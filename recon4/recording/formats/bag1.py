@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.bag_clock import chunks_going_on
 from recon4.recording.formats.chunks import (
     BagIndex,
@@ -92,27 +93,38 @@ def _indexed(file: RecordFile) -> BagIndex:
     file.seek(0)
     magic = file.take(min(len(_MAGIC), file.left), "version")
     if magic != _MAGIC:
-        raise CorruptFile(f"{file.name}: expected {_MAGIC!r}, got {magic!r}")
+        raise CorruptFile(
+            CodedText("bag-magic", file=file.name, expected=repr(_MAGIC), got=repr(magic))
+        )
     header = _header(file, _HEADER)
     index_at = _uint(header, b"index_pos", 8, file=file)
     connections = _uint(header, b"conn_count", 4, file=file)
     chunks = _uint(header, b"chunk_count", 4, file=file)
     if header.get(b"encryptor"):
-        raise CorruptFile(f"{file.name}: it is encrypted")
+        raise CorruptFile(CodedText("bag-encrypted", file=file.name))
     if not index_at:
-        raise CorruptFile(f"{file.name}: it has no index, the recorder did not finish")
+        raise CorruptFile(CodedText("bag-no-index", file=file.name))
     if connections > MAX_TOPICS:
-        raise CorruptFile(f"{file.name}: expected at most {MAX_TOPICS} topics, got {connections}")
+        raise CorruptFile(
+            CodedText(
+                "bag-topics-many", file=file.name, max_topics=MAX_TOPICS, connections=connections
+            )
+        )
     file.seek(index_at)
     if chunks > file.left // _CHUNK_INFO_BYTES:
         raise CorruptFile(
-            f"{file.name}: expected at most {file.left // _CHUNK_INFO_BYTES} chunks in an index "
-            f"of {file.left} bytes, got {chunks}"
+            CodedText(
+                "bag-chunks-many",
+                file=file.name,
+                most=file.left // _CHUNK_INFO_BYTES,
+                size=file.left,
+                chunks=chunks,
+            )
         )
     topics = dict(_connection(file) for _ in range(connections))
     infos = [_chunk_info(file) for _ in range(chunks)]
     if len({info.offset for info in infos}) < len(infos):
-        raise CorruptFile(f"{file.name}: the index of the file lists a chunk more than once")
+        raise CorruptFile(CodedText("bag-chunk-twice", file=file.name))
     found = [_chunk_at(file, info, index_at) for info in infos]
     require_apart(found, file.name, index_at)
     _count(topics, found)
@@ -130,7 +142,7 @@ def _connection(file: RecordFile) -> tuple[int, Topic]:
     header = _header(file, _CONNECTION)
     about = _fields(file.take(file.uint(4, "connection"), "connection"))
     if about is None:
-        raise CorruptFile(f"{file.name}: the connection before byte {file.at} has no fields")
+        raise CorruptFile(CodedText("bag-connection-empty", file=file.name, at=file.at))
     return _uint(header, b"conn", 4, file=file), _topic(header, about)
 
 
@@ -158,7 +170,7 @@ def _chunk_info(file: RecordFile) -> _Info:
     header = _header(file, _CHUNK_INFO)
     data = file.take(file.uint(4, "chunk info"), "chunk info")
     if len(data) % 8 or len(data) // 8 != _uint(header, b"count", 4, file=file):
-        raise CorruptFile(f"{file.name}: the chunk info before byte {file.at} is damaged")
+        raise CorruptFile(CodedText("bag-chunk-info-damaged", file=file.name, at=file.at))
     numbers = struct.unpack(f"<{len(data) // 4}I", data)
     counts = dict(zip(numbers[::2], numbers[1::2], strict=True))
     first, last = (_time(header, name, file) for name in (b"start_time", b"end_time"))
@@ -171,8 +183,13 @@ def _chunk_at(file: RecordFile, info: _Info, index_at: int) -> ChunkRef:
     length = file.uint(4, "chunk")
     if length > index_at - file.at:
         raise CorruptFile(
-            f"{file.name}: chunk at byte {file.at}: expected at most {index_at - file.at} bytes "
-            f"before the index, got {length}"
+            CodedText(
+                "bag-chunk-long",
+                file=file.name,
+                at=file.at,
+                index_at=index_at - file.at,
+                length=length,
+            )
         )
     return ChunkRef(
         file.at,
@@ -262,7 +279,9 @@ def _header(file: RecordFile, op: int | None = None) -> Fields:
     if not header or (op is not None and _op(header) != op):
         kind = "one that is damaged" if not header else f"one of kind {_op(header)}"
         expected = "a record" if op is None else f"a record of kind {op}"
-        raise CorruptFile(f"{file.name}: expected {expected} at byte {at}, got {kind}")
+        raise CorruptFile(
+            CodedText("bag-record-kind", file=file.name, expected=expected, at=at, kind=kind)
+        )
     return header
 
 
@@ -292,8 +311,14 @@ def _uint(header: Fields, name: bytes, size: int, *, file: RecordFile) -> int:
     value = header.get(name, b"")
     if len(value) != size:
         raise CorruptFile(
-            f"{file.name}: record header before byte {file.at}: expected {size} bytes of "
-            f"{name.decode()}, got {len(value)}"
+            CodedText(
+                "bag-record-header",
+                file=file.name,
+                at=file.at,
+                size=size,
+                name=name.decode(),
+                count=len(value),
+            )
         )
     return int.from_bytes(value, "little")
 

@@ -8,6 +8,7 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText, unreadable
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
@@ -48,10 +49,15 @@ def read_metadata(folder: Path) -> BagMetadata:
         with path.open("rb") as file:
             text = file.read(MAX_METADATA_BYTES + 1)
     except OSError as error:
-        raise CorruptFile(f"{METADATA} cannot be read: {error.strerror or error}") from error
+        raise CorruptFile(unreadable(METADATA, error)) from error
     if len(text) > MAX_METADATA_BYTES:
         raise CorruptFile(
-            f"{METADATA}: expected at most {MAX_METADATA_BYTES} bytes, got {path.stat().st_size}"
+            CodedText(
+                "bag-metadata-large",
+                metadata=METADATA,
+                max_metadata_bytes=MAX_METADATA_BYTES,
+                size=path.stat().st_size,
+            )
         )
     return _metadata(folder, _load(text))
 
@@ -68,7 +74,9 @@ def storage_files(folder: Path, error: CorruptFile) -> tuple[Path, ...]:
     """
     files = sorted((f for f in folder.iterdir() if f.suffix in STORAGE_SUFFIXES), key=natural)
     if not files:
-        raise CorruptFile(f"{folder.name}: no readable rosbag2: {error}") from error
+        raise CorruptFile(
+            CodedText("bag-folder-unreadable", folder=folder.name, why=str(error))
+        ) from error
     return tuple(files)
 
 
@@ -136,7 +144,7 @@ def _load(text: bytes) -> Any:
         return _build(YAML(typ="safe", pure=True).parse(text.decode("utf-8")))
     except (YAMLError, ValueError, TypeError, AttributeError, IndexError) as error:
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise CorruptFile(f"{METADATA}: no readable YAML: {reason[:200]}") from error
+        raise CorruptFile(CodedText("bag-yaml", metadata=METADATA, reason=reason[:200])) from error
 
 
 def _build(events: Iterator[Any]) -> Any:
@@ -149,12 +157,22 @@ def _build(events: Iterator[Any]) -> Any:
         line = event.start_mark.line + 1
         if isinstance(event, AliasEvent):
             raise CorruptFile(
-                f"{METADATA}, line {line}: expected no reference, got *{event.anchor}"
+                CodedText(
+                    "bag-yaml-reference",
+                    metadata=METADATA,
+                    line=str(line),
+                    anchor=str(event.anchor),
+                )
             )
         if len(open_) > _MAX_DEPTH or number > _MAX_EVENTS:
             raise CorruptFile(
-                f"{METADATA}, line {line}: nested deeper than {_MAX_DEPTH} levels or more than "
-                f"{_MAX_EVENTS} values"
+                CodedText(
+                    "bag-yaml-deep",
+                    metadata=METADATA,
+                    line=str(line),
+                    max_depth=_MAX_DEPTH,
+                    max_events=_MAX_EVENTS,
+                )
             )
         if isinstance(event, CollectionStartEvent):
             open_.append([])
@@ -176,17 +194,28 @@ def _metadata(folder: Path, document: Any) -> BagMetadata:
         mode = str(about.get("compression_mode") or "").lower()
         compression = str(about.get("compression_format") or "")
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        raise CorruptFile(f"{METADATA}: no description of a rosbag2: {error!r}") from error
+        raise CorruptFile(
+            CodedText("bag-description", metadata=METADATA, why=repr(error))
+        ) from error
     mode = "" if mode == "none" else mode
     if version > _NEWEST_VERSION or mode not in {"", "file", "message"}:
         raise CorruptFile(
-            f"{METADATA}: expected version {_NEWEST_VERSION} or less and compression mode file, "
-            f"message or none, got version {version}, mode {mode[:40]!r}"
+            CodedText(
+                "bag-version",
+                metadata=METADATA,
+                newest_version=_NEWEST_VERSION,
+                version=version,
+                mode=mode[:40],
+            )
         )
     if mode and compression != "zstd":
-        raise CorruptFile(f"{METADATA}: expected compression zstd, got {compression[:40]!r}")
+        raise CorruptFile(
+            CodedText("bag-compression", metadata=METADATA, compression=compression[:40])
+        )
     if not names or len(names) > _MAX_FILES:
-        raise CorruptFile(f"{METADATA}: expected 1 to {_MAX_FILES} files, got {len(names)}")
+        raise CorruptFile(
+            CodedText("bag-files-count", metadata=METADATA, max_files=_MAX_FILES, count=len(names))
+        )
     # Only the last part of a path is used: a description cannot point outside of its folder.
     files = tuple(folder / PurePath(str(name)).name for name in names)
     return BagMetadata(files, mode, messages)

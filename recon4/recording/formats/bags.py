@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
@@ -327,7 +328,7 @@ class Bag:
         count = source.index.message_count
         if not count:
             self.report.outcome = "nothing"
-            raise CorruptFile(f"{name}: damaged or cut off, not one message is left")
+            raise CorruptFile(CodedText("bag-nothing-left", name=name))
         self.report.outcome = "lossy"
         self.report.count("files_cut")
         self.report.count("messages_salvaged", count)
@@ -355,7 +356,7 @@ class Bag:
         )
         if not filled:
             names = ", ".join(path.name for path in self.paths)
-            raise EmptyRecording(f"{names}: a bag without messages")
+            raise EmptyRecording(CodedText("bag-empty", names=names))
         self.t_first_ns = min(index.start_time for index in filled)
         self.t_last_ns = max(index.end_time for index in filled) - 1
         turn_round(self._sources, {t.name for t in self.topics if t.type in _HEADED}, self.report)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.bags.tuning import BIN_FILES
 from recon4.recording.formats.cloud_headers import CloudLayout, Field
 
@@ -42,10 +43,7 @@ def bin_layout(head: bytes, size: int, name: str) -> CloudLayout:
     """
     fitting = [n for n in BIN_FILES.widths if size % (4 * n) == 0]
     if not fitting:
-        raise CorruptFile(
-            f"{name}: a KITTI BIN file has 16 bytes a point (x y z intensity as float32), or 20 or "
-            f"24 (also ring, time), got {size} bytes, {size % 16} too many for 16"
-        )
+        raise CorruptFile(CodedText("kitti-bin-size", name=name, size=size, excess=size % 16))
     values = _numbers(head)
     likeness = {n: _likeness(values, n) for n in fitting}
     width = max(fitting, key=lambda n: likeness[n] + (n == _USUAL) * BIN_FILES.clearer)

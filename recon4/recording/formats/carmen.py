@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.text_logs import first_lines, log_lines
 from recon4.recording.report import ImportReport
@@ -117,12 +118,17 @@ def read_carmen(path: Path, report: ImportReport) -> CarmenScans:
         values += len(line.ranges)
         if len(lines) > _MAX_SCANS or values > _MAX_VALUES:
             raise CorruptFile(
-                f"{path.name}: expected at most {_MAX_SCANS} scans and {_MAX_VALUES} ranges"
+                CodedText(
+                    "carmen-many", file=path.name, max_scans=_MAX_SCANS, max_values=_MAX_VALUES
+                )
             )
     if not lines:
         raise EmptyRecording(
-            f"{path.name}: no scan of a laser; expected lines that begin with "
-            f"{', '.join(name.decode() for name in MESSAGES)}"
+            CodedText(
+                "carmen-none",
+                file=path.name,
+                messages=", ".join(name.decode() for name in MESSAGES),
+            )
         )
     return _collected(_of_one_message(_of_one_laser(lines, report), path.name, report))
 

@@ -16,6 +16,7 @@ from zlib import crc32
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.limits import (
     MAX_CHUNK_BYTES,
@@ -230,12 +231,12 @@ def load_chunk(
         raw = decompress(chunk.compression, data, expected=chunk.size, where=where)
     if chunk.crc and not chunk.partial and crc32(raw) != chunk.crc:
         raise CorruptFile(
-            f"{where}: expected checksum {chunk.crc:08x}, got {crc32(raw):08x}: its bytes changed"
+            CodedText("mcap-checksum", where=where, crc=f"{chunk.crc:08x}", raw=f"{crc32(raw):08x}")
         )
     messages = ChunkMessages(raw)
     at = read(messages, where)
     if at < len(raw) and not chunk.partial:
-        raise CorruptFile(f"{where}: expected records up to its end at {len(raw)}, got {at} bytes")
+        raise CorruptFile(CodedText("chunk-records-end", where=where, count=len(raw), at=at))
     return messages
 
 
@@ -348,7 +349,13 @@ def require_apart(chunks: Sequence[ChunkRef], name: str, end: int) -> None:
     for chunk in sorted(chunks, key=lambda chunk: chunk.offset):
         if chunk.offset < at or chunk.offset + chunk.length > end:
             raise CorruptFile(
-                f"{name}: the index of the file lists a chunk at byte {chunk.offset}: expected "
-                f"one between {at} and {end}, got {chunk.length} bytes"
+                CodedText(
+                    "chunk-index",
+                    name=name,
+                    offset=chunk.offset,
+                    at=at,
+                    end=end,
+                    length=chunk.length,
+                )
             )
         at = chunk.offset + chunk.length

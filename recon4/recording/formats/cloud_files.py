@@ -90,8 +90,13 @@ def _read_rows(path: Path) -> Table:
         size = layout.rows * layout.row_bytes
         if size > MAX_FRAME_BYTES:
             raise CorruptFile(
-                f"{path.name}: expected at most {MAX_FRAME_BYTES} bytes of points in one frame, "
-                f"got {layout.rows} points of {layout.row_bytes} bytes"
+                CodedText(
+                    "cloud-frame-large",
+                    file=path.name,
+                    max_frame_bytes=MAX_FRAME_BYTES,
+                    rows=layout.rows,
+                    row_bytes=layout.row_bytes,
+                )
             )
         parts = list(_chunks(file, layout, path.name))
     if len(parts) == 1:
@@ -189,8 +194,14 @@ def _check_size(file: BinaryIO, layout: CloudLayout, name: str) -> None:
     # The last line of a text may have no end.
     if left + (layout.encoding == "ascii") < needed:
         raise CorruptFile(
-            f"{name}: cut: {layout.rows} points of {layout.row_bytes} bytes need {needed} bytes "
-            f"behind the header, got {left}"
+            CodedText(
+                "cloud-cut",
+                name=name,
+                rows=layout.rows,
+                row_bytes=layout.row_bytes,
+                needed=needed,
+                left=left,
+            )
         )
 
 
@@ -222,7 +233,7 @@ def _ascii(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Table]:
     while True:
         lines = _some_lines(file, layout.rows - done, name)
         if not lines and done < layout.rows:
-            raise CorruptFile(f"{name}: cut: {layout.rows} points promised, got {done} lines")
+            raise CorruptFile(CodedText("cloud-lines-cut", name=name, rows=layout.rows, done=done))
         yield _columns(lines, layout, f"{name}: behind point {done}")
         done += len(lines)
         if done == layout.rows:
@@ -238,9 +249,7 @@ def _some_lines(file: BinaryIO, most: int, name: str) -> list[str]:
         if not line:
             break
         if len(line) > LIMITS.line_bytes:
-            raise CorruptFile(
-                f"{name}: expected lines of at most {LIMITS.line_bytes} bytes, got a longer one"
-            )
+            raise CorruptFile(CodedText("cloud-line-long", name=name, line_bytes=LIMITS.line_bytes))
         size += len(line)
         # Files of old Macs end their lines with \r alone.
         lines += [part for part in line.decode("latin1").splitlines() if part.strip()]
@@ -255,9 +264,11 @@ def _columns(lines: list[str], layout: CloudLayout, where: str) -> Table:
             text = io.StringIO("\n".join(lines))
             values = np.loadtxt(text, np.float64, ndmin=2, comments=None)
         except ValueError as error:
-            raise CorruptFile(f"{where}: not a table of numbers: {error}") from error
+            raise CorruptFile(CodedText("cloud-no-numbers", where=where, why=str(error))) from error
     if values.shape != (len(lines), width):
-        raise CorruptFile(f"{where}: {width} numbers a line expected, got {values.shape[1]}")
+        raise CorruptFile(
+            CodedText("cloud-line-width", where=where, width=width, shape=values.shape[1])
+        )
     starts = np.cumsum([0] + [field.count for field in layout.fields])
     fields = layout.fields
     return {
@@ -278,7 +289,11 @@ def _cast(values: NDArray[np.float64], dtype: str, where: str) -> NDArray[Any]:
         fits &= np.abs(values) < 2.0**63
     if not np.all(fits):
         bad = values[~fits][0]
-        raise CorruptFile(f"{where}: expected {limits.min} to {limits.max}, got {bad:g}")
+        raise CorruptFile(
+            CodedText(
+                "cloud-value-range", where=where, min=limits.min, max=limits.max, bad=float(bad)
+            )
+        )
     return values.astype(kind)
 
 
@@ -289,18 +304,29 @@ def _compressed(file: BinaryIO, layout: CloudLayout, name: str) -> Iterator[Tabl
     packed, unpacked = (int(v) for v in np.frombuffer(_read(file, 8, name), "<u4", 2))
     if unpacked != expected or unpacked > packed * _LZF_MOST:
         raise CorruptFile(
-            f"{name}: {layout.rows} points are {expected} bytes, "
-            f"the compressed block of {packed} bytes says {unpacked}"
+            CodedText(
+                "cloud-unpacked-size",
+                name=name,
+                rows=layout.rows,
+                expected=expected,
+                packed=packed,
+                unpacked=unpacked,
+            )
         )
     if max(unpacked, packed) > MAX_FRAME_BYTES + (MAX_FRAME_BYTES >> 4):
         raise CorruptFile(
-            f"{name}: expected a compressed block of at most {MAX_FRAME_BYTES} bytes, "
-            f"got {packed} bytes that unpack to {unpacked}"
+            CodedText(
+                "cloud-block-large",
+                name=name,
+                max_frame_bytes=MAX_FRAME_BYTES,
+                packed=packed,
+                unpacked=unpacked,
+            )
         )
     out = np.zeros(unpacked, np.uint8)
     body = np.frombuffer(_read(file, packed, name), np.uint8)
     if lzf_decompress(body, out) != unpacked:
-        raise CorruptFile(f"{name}: the compressed block is damaged")
+        raise CorruptFile(CodedText("cloud-block-damaged", name=name))
     starts = np.cumsum([0] + [layout.rows * field.row_bytes for field in layout.fields])
     table = {}
     for column, k in layout.named().items():
@@ -318,10 +344,10 @@ def _read(file: BinaryIO, count: int, name: str) -> bytes:
     """Read exactly ``count`` bytes; the file is known to be large enough, or ``count`` is small."""
     left = _size(file) - file.tell()
     if left < count:
-        raise CorruptFile(f"{name}: cut: {count} bytes promised, got {left}")
+        raise CorruptFile(CodedText("cloud-promised", name=name, count=count, left=left))
     data = file.read(count)
     if len(data) < count:
-        raise CorruptFile(f"{name}: cut: {count} bytes promised, got {len(data)}")
+        raise CorruptFile(CodedText("cloud-promised-got", name=name, expected=count, got=len(data)))
     return data
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 
 HEADER_BYTES = 64 * 1024
 """Largest size of a header."""
@@ -105,13 +106,11 @@ def pcd_layout(head: bytes, name: str) -> CloudLayout:
         rows = whole(words.get("POINTS", [str(grid)])[0])
         encoding = words["DATA"][0]
     except (KeyError, ValueError, IndexError) as error:
-        raise CorruptFile(f"{name}: the PCD header makes no sense: {error!r}") from error
+        raise CorruptFile(CodedText("pcd-header", name=name, why=repr(error))) from error
     if rows != grid:
-        raise CorruptFile(f"{name}: PCD header: WIDTH x HEIGHT is {grid}, POINTS is {rows}")
+        raise CorruptFile(CodedText("pcd-size", name=name, grid=grid, rows=rows))
     if encoding not in ("ascii", "binary", "binary_compressed"):
-        raise CorruptFile(
-            f"{name}: PCD DATA: expected ascii, binary or binary_compressed, got {encoding[:40]!r}"
-        )
+        raise CorruptFile(CodedText("pcd-data", name=name, encoding=encoding[:40]))
     return _checked(CloudLayout(fields, rows, encoding, at), name)
 
 
@@ -122,10 +121,10 @@ def _pcd_words(head: bytes, name: str) -> tuple[dict[str, list[str]], int]:
     while "DATA" not in words:
         end = head.find(b"\n", at)
         if end < 0:
-            raise CorruptFile(f"{name}: the PCD header ends before its DATA line")
+            raise CorruptFile(CodedText("pcd-no-data", name=name))
         line = head[at:end].decode("latin1").split("#")[0].split()
         if line and line[0] in words:
-            raise CorruptFile(f"{name}: PCD header: expected one line {line[0][:40]}, got two")
+            raise CorruptFile(CodedText("pcd-line-twice", name=name, line=line[0][:40]))
         if line:
             words[line[0]] = line[1:]
         at = end + 1
@@ -141,7 +140,7 @@ def ply_layout(head: bytes, name: str) -> CloudLayout:
     end = head.find(b"end_header")
     line_end = head.find(b"\n", end)
     if end < 0 or line_end < 0:
-        raise CorruptFile(f"{name}: the PLY header does not end")
+        raise CorruptFile(CodedText("ply-endless", name=name))
     fields: list[Field] = []
     counts: dict[str, int] = {}
     element, encoding = "", ""
@@ -154,9 +153,9 @@ def ply_layout(head: bytes, name: str) -> CloudLayout:
             elif words[0] == "property" and element == "vertex":
                 fields.append(_ply_field(words, encoding, name))
     except (KeyError, ValueError, IndexError) as error:
-        raise CorruptFile(f"{name}: the PLY header makes no sense: {error!r}") from error
+        raise CorruptFile(CodedText("ply-header", name=name, why=repr(error))) from error
     if "vertex" not in counts or not fields or encoding not in _PLY_ORDER:
-        raise CorruptFile(f"{name}: a PLY header needs a format and an element vertex")
+        raise CorruptFile(CodedText("ply-vertex-missing", name=name))
     kind = "ascii" if encoding == "ascii" else "binary"
     return _checked(CloudLayout(tuple(fields), counts["vertex"], kind, line_end + 1), name)
 
@@ -164,19 +163,16 @@ def ply_layout(head: bytes, name: str) -> CloudLayout:
 def _ply_element(words: list[str], counts: dict[str, int], name: str) -> str:
     element = words[1]
     if not counts and element != "vertex":
-        raise CorruptFile(f"{name}: the first PLY element must be vertex: {element[:40]!r}")
+        raise CorruptFile(CodedText("ply-vertex-first", name=name, element=element[:40]))
     if element in counts:
-        raise CorruptFile(f"{name}: PLY header: expected one element {element[:40]}, got two")
+        raise CorruptFile(CodedText("ply-element-twice", name=name, element=element[:40]))
     counts[element] = whole(words[2])
     return element
 
 
 def _ply_field(words: list[str], encoding: str, name: str) -> Field:
     if words[1] == "list":
-        raise CorruptFile(
-            f"{name}: PLY header: expected vertices with single values, "
-            f"got the list {words[-1][:40]!r}"
-        )
+        raise CorruptFile(CodedText("ply-vertex-list", name=name, words=words[-1][:40]))
     # CloudCompare writes each scalar field as scalar_NAME.
     key = words[2].lower().removeprefix("scalar_") or words[2].lower()
     return Field(key, _PLY_ORDER[encoding] + _PLY_TYPES[words[1]])
@@ -195,12 +191,22 @@ def whole(text: str) -> int:
 
 def _checked(layout: CloudLayout, name: str) -> CloudLayout:
     if not 1 <= len(layout.fields) <= MAX_FIELDS:
-        raise CorruptFile(f"{name}: expected 1 to {MAX_FIELDS} fields, got {len(layout.fields)}")
+        raise CorruptFile(
+            CodedText(
+                "cloud-fields-count", name=name, max_fields=MAX_FIELDS, count=len(layout.fields)
+            )
+        )
     counts = [field.count for field in layout.fields]
     if min(counts) < 1 or max(counts) > _MAX_COUNT or layout.row_bytes > MAX_ROW_BYTES:
         raise CorruptFile(
-            f"{name}: expected 1 to {_MAX_COUNT} values a field and at most "
-            f"{MAX_ROW_BYTES} bytes a point, got {max(counts)} and {layout.row_bytes}"
+            CodedText(
+                "cloud-values-count",
+                name=name,
+                max_count=_MAX_COUNT,
+                max_row_bytes=MAX_ROW_BYTES,
+                counts=max(counts),
+                row_bytes=layout.row_bytes,
+            )
         )
     return layout
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.cloud_files import Table
 from recon4.recording.formats.limits import clean_name
 from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
@@ -60,12 +61,20 @@ def cloud_table(cloud: Any) -> Table:
     row_step = step * width if is_packed else int(cloud.row_step)
     if step <= 0 or row_step < step * width or len(data) < row_step * height:
         raise CorruptFile(
-            f"a cloud of {width} x {height} points of {step} bytes in rows of {row_step} "
-            f"does not fit into {len(data)} bytes"
+            CodedText(
+                "message-cloud-size",
+                width=width,
+                height=height,
+                step=step,
+                row_step=row_step,
+                count=len(data),
+            )
         )
     if width * height > MAX_CLOUD_POINTS:
         raise CorruptFile(
-            f"a cloud of {width} x {height} points: expected at most {MAX_CLOUD_POINTS}"
+            CodedText(
+                "message-cloud-large", width=width, height=height, max_cloud_points=MAX_CLOUD_POINTS
+            )
         )
     require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
     dtype = _point_dtype(known, step, order)
@@ -88,4 +97,4 @@ def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.vo
             }
         )
     except ValueError as error:
-        raise CorruptFile(f"the fields of a cloud do not fit into {step} bytes: {error}") from error
+        raise CorruptFile(CodedText("message-cloud-fields", step=step, why=str(error))) from error

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.recording.clocks.stamps import strays
 from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.report import ImportReport
@@ -68,7 +69,9 @@ def estimate_rows(path: Path) -> int:
             archive = stack.enter_context(_archive(file, path.name))
             return _column(archive, TIME, stack=stack, where=path.name).rows
         except DAMAGED as error:
-            raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
+            raise CorruptFile(
+                CodedText("columns-unreadable", file=path.name, why=str(error))
+            ) from error
 
 
 def read_columns(
@@ -96,8 +99,9 @@ def read_columns(
     names = column_names(path)
     missing = [name for name in required if name not in names]
     if missing:
+        lacks, needs = ", ".join(missing), ", ".join(required)
         raise UnknownFormat(
-            f"{path.name}: missing columns {', '.join(missing)}; expected {', '.join(required)}"
+            CodedText("columns-missing", file=path.name, missing=lacks, required=needs)
         )
     wanted = [name for name in (*required, *optional) if name in names]
     absent = [name for name in optional if name not in names]
@@ -116,7 +120,7 @@ def read_columns(
         report.count("rows", count)
         yield dict(block) | {name: np.full(count, np.nan) for name in absent}
     if not rows:
-        raise EmptyRecording(f"{path.name}: no rows under the names of the columns")
+        raise EmptyRecording(CodedText("columns-no-rows", file=path.name))
 
 
 # -- NPZ
@@ -140,7 +144,9 @@ def _archive(file: BinaryIO, name: str) -> zipfile.ZipFile:
     """
     size = file.seek(0, 2)
     if size > _MAX_NPZ_BYTES:
-        raise CorruptFile(f"{name}: expected at most {_MAX_NPZ_BYTES} bytes, got {size}")
+        raise CorruptFile(
+            CodedText("npz-large", name=name, max_npz_bytes=_MAX_NPZ_BYTES, size=size)
+        )
     file.seek(max(0, size - (1 << 16) - _END_BYTES))
     tail = file.read()
     at = tail.rfind(b"PK\x05\x06")
@@ -163,12 +169,16 @@ def _npz_blocks(path: Path, wanted: Sequence[str]) -> Iterator[Columns]:
             columns = [_column(archive, name, stack=stack, where=path.name) for name in wanted]
             lengths = {column.name: column.rows for column in columns}
             if len(set(lengths.values())) > 1:
-                raise CorruptFile(f"{path.name}: expected columns of one length, got {lengths}")
+                raise CorruptFile(
+                    CodedText("columns-lengths", file=path.name, lengths=str(lengths))
+                )
             for start in range(0, columns[0].rows, _BLOCK_ROWS):
                 count = min(_BLOCK_ROWS, columns[0].rows - start)
                 yield {column.name: _values(column, count, path.name) for column in columns}
         except DAMAGED as error:
-            raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
+            raise CorruptFile(
+                CodedText("columns-unreadable", file=path.name, why=str(error))
+            ) from error
 
 
 def _check_sizes(archive: zipfile.ZipFile, wanted: Sequence[str], path: Path) -> None:
@@ -176,8 +186,13 @@ def _check_sizes(archive: zipfile.ZipFile, wanted: Sequence[str], path: Path) ->
     most = max(LIMITS.free_bytes, LIMITS.expansion * path.stat().st_size)
     if size > most:
         raise CorruptFile(
-            f"{path.name}: expected columns of at most {most} bytes, {LIMITS.expansion} times the "
-            f"file, got {size}"
+            CodedText(
+                "columns-expansion",
+                file=path.name,
+                most=most,
+                expansion=LIMITS.expansion,
+                size=size,
+            )
         )
 
 
@@ -186,16 +201,27 @@ def _column(archive: zipfile.ZipFile, name: str, *, stack: ExitStack, where: str
     file = stack.enter_context(archive.open(info))
     version = np.lib.format.read_magic(file)
     if version not in ARRAY_HEADERS:
-        raise CorruptFile(f"{where}: {name}: expected an array of version 1 or 2, got {version}")
+        raise CorruptFile(CodedText("array-version", where=where, name=name, version=str(version)))
     shape, _, dtype = ARRAY_HEADERS[version](file, max_header_size=_MAX_HEADER_BYTES)
     kinds = "iu" if name == TIME else "iuf"
     if dtype.kind not in kinds or dtype.itemsize > 8 or len(shape) != 1 or shape[0] < 0:
         what = "whole numbers" if name == TIME else "numbers"
-        raise CorruptFile(f"{where}: {name}: expected {what} of one row, got {dtype} of {shape}")
+        raise CorruptFile(
+            CodedText(
+                "array-shape", where=where, name=name, what=what, dtype=str(dtype), shape=str(shape)
+            )
+        )
     if shape[0] * dtype.itemsize > info.file_size:
         raise CorruptFile(
-            f"{where}: {name}: {shape[0]} values of {dtype} need {shape[0] * dtype.itemsize} "
-            f"bytes, got {info.file_size}"
+            CodedText(
+                "array-size",
+                where=where,
+                name=name,
+                count=shape[0],
+                dtype=str(dtype),
+                needed=shape[0] * dtype.itemsize,
+                got=info.file_size,
+            )
         )
     return _Column(name, file, dtype, int(shape[0]))
 
@@ -203,12 +229,14 @@ def _column(archive: zipfile.ZipFile, name: str, *, stack: ExitStack, where: str
 def _values(column: _Column, count: int, where: str) -> NDArray[Any]:
     data = column.file.read(count * column.dtype.itemsize)
     if len(data) != count * column.dtype.itemsize:
-        raise CorruptFile(f"{where}: {column.name}: ends before its {column.rows} values")
+        raise CorruptFile(CodedText("array-cut", where=where, column=column.name, rows=column.rows))
     values = np.frombuffer(data, column.dtype)
     if column.name != TIME:
         return values.astype(np.float64)
     if np.any(values < 0) or np.any(values > np.iinfo(np.int64).max):
-        raise CorruptFile(f"{where}: {TIME} must be 0 to 2^63, got {values.min()}")
+        raise CorruptFile(
+            CodedText("column-time-range", where=where, time=TIME, values=str(values.min()))
+        )
     return values.astype(np.int64)
 
 
@@ -229,7 +257,7 @@ def _csv_blocks(path: Path, wanted: Sequence[str], report: ImportReport) -> Iter
     header = csv_header(path)
     twice = sorted({name for name in wanted if header.count(name) > 1})
     if twice:
-        raise UnknownFormat(f"{path.name}: line 1: expected each column once, got {twice} twice")
+        raise UnknownFormat(CodedText("column-twice", file=path.name, twice=str(twice)))
     numbered = ((k, line) for k, line in enumerate(lines, start=2) if line.strip(" \t\r\n;,"))
     at = {name: header.index(name) for name in wanted}
     rows = 0
@@ -267,7 +295,9 @@ class _CsvBlock:
         for number, row in zip(self.numbers, self.cells, strict=True):
             if len(row) != self.width:
                 raise CorruptFile(
-                    f"{self.name}: line {number}: expected {self.width} cells, got {len(row)}"
+                    CodedText(
+                        "row-cells", name=self.name, number=number, width=self.width, count=len(row)
+                    )
                 )
         return {name: self._column(name, place) for name, place in at.items()}
 

@@ -40,8 +40,13 @@ class DamagedLines:
         total = sound + self.number
         if self.number > MAX_RATIO * total:
             raise CorruptFile(
-                f"{self.first} ({self.number} of {total} lines are damaged; "
-                f"up to {100 * MAX_RATIO:.0f} % are dropped)"
+                CodedText(
+                    "lines-damaged-many",
+                    first=self.first,
+                    number=self.number,
+                    total=total,
+                    max_ratio=100 * MAX_RATIO,
+                )
             )
 
     def finish(self, sound: int) -> None:

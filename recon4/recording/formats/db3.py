@@ -159,8 +159,13 @@ class Db3:
         for number, name, kind in self._execute("SELECT id, name, type FROM topics NOT INDEXED"):
             if not isinstance(number, int) or len(found) >= MAX_TOPICS or number in found:
                 raise CorruptFile(
-                    f"{self._name}: table topics: expected at most {MAX_TOPICS} topics, each with "
-                    f"a number of its own, got {number!r} after {len(found)}"
+                    CodedText(
+                        "db3-topics",
+                        name=self._name,
+                        max_topics=MAX_TOPICS,
+                        number=repr(number),
+                        count=len(found),
+                    )
                 )
             text = texts.get(str(kind), "")
             found[number] = Topic(clean_name(str(name)), clean_name(str(kind)), definition=text)
@@ -259,7 +264,7 @@ def _reading(name: str) -> Iterator[None]:
     try:
         yield
     except (apsw.Error, MemoryError, OSError, ValueError) as error:  # ValueError: no UTF-8
-        raise CorruptFile(f"{name}: no readable SQLite database: {error}") from error
+        raise CorruptFile(CodedText("db3-unreadable", name=name, why=str(error))) from error
 
 
 def _authorize(action: int, table: str | None, *_: str | None) -> int:
@@ -294,15 +299,17 @@ def _root(database: apsw.Connection, table: str, name: str) -> int:
     if len(found) != 1 or found[0][0] != "table" or not found[0][1]:
         kinds = ", ".join(f"a {kind}" for kind, _ in found) or "nothing"
         kinds = kinds if kinds != "a table" else "a virtual table"
-        raise CorruptFile(f"{name}: expected a table {table}, got {kinds} of that name")
+        raise CorruptFile(CodedText("db3-table", name=name, table=table, kinds=kinds))
     query = "SELECT name, hidden FROM pragma_table_xinfo(?)"
     hidden = dict(database.execute(query, (table,)))
     for column in _COLUMNS[table]:
         if hidden.get(column) != 0:
             got = "none" if column not in hidden else "one that is computed"
-            raise CorruptFile(f"{name}: expected a column {column} in {table}, got {got}")
+            raise CorruptFile(
+                CodedText("db3-column", name=name, column=column, table=table, got=got)
+            )
     if {"rowid", "oid", "_rowid_"} & {str(column).lower() for column in hidden}:
-        raise CorruptFile(f"{name}: table {table} hides the numbers of its rows")
+        raise CorruptFile(CodedText("db3-table-hides", name=name, table=table))
     return int(found[0][1])
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.e57_xml import check_e57_xml
 
 _FORMS = ("cartesian", ("X", "Y", "Z")), ("spherical", ("Range", "Azimuth", "Elevation"))
@@ -64,7 +65,7 @@ class E57Points:
         while count := reader.read():
             got += count
             if got > scan.point_count:
-                raise CorruptFile(f"{self._name}: scan {number} has more points than promised")
+                raise CorruptFile(CodedText("e57-more-points", name=self._name, number=number))
             points = np.column_stack([data[axis][:count] for axis in axes]).astype(np.float64)
             if invalid in fields:
                 points = points[data[invalid][:count] == 0]
@@ -77,8 +78,12 @@ class E57Points:
             if set(axes) <= set(scan.point_fields):
                 return form, axes
         raise CorruptFile(
-            f"{self._name}: scan {number}: expected Cartesian or spherical coordinates, "
-            f"got {sorted(scan.point_fields)[:20]}"
+            CodedText(
+                "e57-coordinates",
+                name=self._name,
+                number=number,
+                point_fields=str(sorted(scan.point_fields)[:20]),
+            )
         )
 
     def _placed(self, points: Array, scan: Any, form: str) -> Array:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText, text_of
 
 _HEADER = struct.Struct("<8sIIQQQQ")
 _PAGE, _DATA = 1024, 1020
@@ -40,9 +41,9 @@ def check_e57_xml(path: Path) -> None:
     try:
         _check(_xml_section(path))
     except _Refused as error:
-        raise CorruptFile(f"{path.name}: XML section: {error}") from None
+        raise CorruptFile(CodedText("e57-xml", file=path.name, why=text_of(error))) from None
     except expat.ExpatError as error:
-        raise CorruptFile(f"{path.name}: the XML section is not sound XML: {error}") from None
+        raise CorruptFile(CodedText("e57-xml-unsound", file=path.name, why=str(error))) from None
 
 
 def e57_coordinate_metadata(path: Path) -> str:
@@ -81,25 +82,27 @@ def _xml_section(path: Path) -> bytes:
     with path.open("rb") as file:
         head = file.read(_HEADER.size)
         if len(head) < _HEADER.size:
-            raise _Refused(f"expected a header of {_HEADER.size} bytes, got {len(head)}")
+            raise _Refused(CodedText("e57-header-cut", size=_HEADER.size, count=len(head)))
         _, _, _, _, offset, length, page_size = _HEADER.unpack(head)
         if page_size != _PAGE:
-            raise _Refused(f"expected pages of {_PAGE} bytes, got {page_size}")
+            raise _Refused(CodedText("e57-page-size", page=_PAGE, page_size=str(page_size)))
         if length > MAX_XML_BYTES:
-            raise _Refused(f"{length} bytes, at most {MAX_XML_BYTES}")
+            raise _Refused(
+                CodedText("e57-xml-large", length=str(length), max_xml_bytes=MAX_XML_BYTES)
+            )
         first, within = divmod(offset, _PAGE)
         if within > _DATA:
-            raise _Refused(f"it begins in a checksum, at byte {offset}")
+            raise _Refused(CodedText("e57-xml-begin", offset=str(offset)))
         count = -(-(within + length) // _DATA)
         if (first + count) * _PAGE > size:
-            raise _Refused(f"it ends at byte {(first + count) * _PAGE} of {size}")
+            raise _Refused(CodedText("e57-xml-end", first=str((first + count) * _PAGE), size=size))
         file.seek(first * _PAGE)
         pages = np.frombuffer(file.read(count * _PAGE), np.uint8).reshape(-1, _PAGE)
     data = np.ascontiguousarray(pages[:, :_DATA])
     expected = np.ascontiguousarray(pages[:, _DATA:]).view(">u4").ravel()
     wrong = np.flatnonzero(_checksums(data) != expected)
     if len(wrong):
-        raise _Refused(f"wrong checksum of page {first + wrong[0]}, and {len(wrong) - 1} others")
+        raise _Refused(CodedText("e57-checksum", first=str(first + wrong[0]), count=len(wrong) - 1))
     return data.tobytes()[within : within + length]
 
 
@@ -123,14 +126,16 @@ class _Counts:
         self.depth += 1
         self.elements += 1
         if self.depth > MAX_DEPTH:
-            raise _Refused(f"elements nested deeper than {MAX_DEPTH}")
+            raise _Refused(CodedText("xml-deep", max_depth=MAX_DEPTH))
         if self.elements > MAX_ELEMENTS:
-            raise _Refused(f"more than {MAX_ELEMENTS} elements")
+            raise _Refused(CodedText("xml-elements", max_elements=MAX_ELEMENTS))
         if len(attributes) > MAX_ATTRIBUTES:
-            raise _Refused(f"<{name[:80]}> has more than {MAX_ATTRIBUTES} attributes")
+            raise _Refused(
+                CodedText("xml-attributes", name=name[:80], max_attributes=MAX_ATTRIBUTES)
+            )
         for attribute in attributes:
             if attribute.startswith(_SCHEMA_NAMESPACE):
-                raise _Refused("it names a schema, which a reader would fetch")
+                raise _Refused(CodedText("xml-schema"))
 
     def end(self, name: str) -> None:
         self.depth -= 1
@@ -146,7 +151,7 @@ def _check(xml: bytes) -> None:
     try:
         xml.decode("utf-8")
     except UnicodeDecodeError as error:
-        raise _Refused(f"expected UTF-8: {error.reason} at byte {error.start}") from None
+        raise _Refused(CodedText("xml-utf8", reason=error.reason, start=error.start)) from None
     counts = _Counts()
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.XmlDeclHandler = _only_utf8
@@ -158,12 +163,12 @@ def _check(xml: bytes) -> None:
 
 def _only_utf8(version: str, encoding: str | None, standalone: int) -> None:
     if encoding is not None and encoding.lower() not in ("utf-8", "us-ascii"):
-        raise _Refused(f"expected the encoding UTF-8, got {encoding[:40]!r}")
+        raise _Refused(CodedText("xml-encoding", encoding=encoding[:40]))
 
 
 def _refuse_doctype(name: str, system: str | None, public: str | None, internal: int) -> None:
-    raise _Refused("it has a document type (DOCTYPE), which a reader would fetch")
+    raise _Refused(CodedText("xml-doctype"))
 
 
 def _refuse_instruction(target: str, data: str) -> None:
-    raise _Refused(f"it has a processing instruction ({target[:40]!r})")
+    raise _Refused(CodedText("xml-instruction", target=target[:40]))

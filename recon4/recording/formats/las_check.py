@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import BinaryIO
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 
 _POINT_BYTES = {0: 20, 1: 28, 2: 26, 3: 34, 4: 57, 5: 63, 6: 30, 7: 36, 8: 38, 9: 59, 10: 67}
 """Point format -> bytes of a point without extra bytes."""
@@ -66,12 +67,18 @@ def check_las(file: BinaryIO, name: str) -> LasHeader:
         needed = header.points * header.point_bytes
         if needed > size - header.data_at:
             raise CorruptFile(
-                f"{name}: cut: {header.points} points of {header.point_bytes} bytes need {needed} "
-                f"bytes, got {size - header.data_at}"
+                CodedText(
+                    "las-points-cut",
+                    name=name,
+                    points=header.points,
+                    point_bytes=header.point_bytes,
+                    needed=needed,
+                    size=size - header.data_at,
+                )
             )
         return header
     if laz is None:
-        raise CorruptFile(f"{name}: expected a LASzip record in a compressed file, got none")
+        raise CorruptFile(CodedText("laz-no-record", name=name))
     if header.points:
         _check_chunks(file, header, _compression(laz, header, name), name=name)
     return header
@@ -79,11 +86,11 @@ def check_las(file: BinaryIO, name: str) -> LasHeader:
 
 def _header(head: bytes, size: int, name: str) -> LasHeader:
     if len(head) < 227:
-        raise CorruptFile(f"{name}: cut: a LAS header has 227 bytes or more, got {len(head)}")
+        raise CorruptFile(CodedText("las-cut", name=name, count=len(head)))
     major, minor = head[24], head[25]
     least = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}.get(minor)
     if major != 1 or least is None:
-        raise CorruptFile(f"{name}: expected LAS 1.0 to 1.4, got {major}.{minor}")
+        raise CorruptFile(CodedText("las-version", name=name, major=major, minor=minor))
     header_bytes, data_at = struct.unpack_from("<HI", head, 94)
     point_id, point_bytes = struct.unpack_from("<BH", head, 104)
     points = struct.unpack_from("<Q", head, 247)[0] if minor == 4 and len(head) >= 255 else 0
@@ -91,17 +98,29 @@ def _header(head: bytes, size: int, name: str) -> LasHeader:
     if minor < 4:
         points = legacy
     elif legacy not in (0, points):
-        raise CorruptFile(f"{name}: the LAS header has {points} points and {legacy} legacy points")
+        raise CorruptFile(
+            CodedText("las-points-twice", name=name, points=str(points), legacy=str(legacy))
+        )
     if not least <= header_bytes <= data_at <= size:
         raise CorruptFile(
-            f"{name}: expected a header of at least {least} bytes, then points, then the end at "
-            f"{size}; got a header of {header_bytes} bytes and points at {data_at}"
+            CodedText(
+                "las-layout",
+                name=name,
+                least=least,
+                size=size,
+                header_bytes=str(header_bytes),
+                data_at=str(data_at),
+            )
         )
     point_format = point_id & 0x3F
     if point_bytes < _POINT_BYTES.get(point_format, 1 << 16):
         raise CorruptFile(
-            f"{name}: expected a point format 0 to 10 and its length, "
-            f"got format {point_format} of {point_bytes} bytes"
+            CodedText(
+                "las-point-format",
+                name=name,
+                point_format=str(point_format),
+                point_bytes=str(point_bytes),
+            )
         )
     return LasHeader(points, point_format, point_bytes, data_at, bool(point_id & 0x80))
 
@@ -113,16 +132,20 @@ def _records(file: BinaryIO, head: bytes, header: LasHeader, *, name: str) -> by
     for number in range(count[0]):
         if at + _VLR_HEAD > header.data_at:
             raise CorruptFile(
-                f"{name}: {count[0]} variable length records promised, "
-                f"got {number} before the points"
+                CodedText("las-records-cut", name=name, count=str(count[0]), number=number)
             )
         record = _read(file, at, _VLR_HEAD)
         user, record_id, length = struct.unpack_from("<16sHH", record, 2)
         at += _VLR_HEAD + length
         if at > header.data_at:
             raise CorruptFile(
-                f"{name}: variable length record {number} has {length} bytes and reaches into "
-                f"the points by {at - header.data_at}"
+                CodedText(
+                    "las-record-long",
+                    name=name,
+                    number=number,
+                    length=str(length),
+                    at=str(at - header.data_at),
+                )
             )
         if (user.rstrip(b"\0"), record_id) == _LAZ_RECORD:
             found = _read(file, at - length, length)
@@ -131,26 +154,35 @@ def _records(file: BinaryIO, head: bytes, header: LasHeader, *, name: str) -> by
 
 def _compression(laz: bytes, header: LasHeader, name: str) -> _Compression:
     if len(laz) < 34:
-        raise CorruptFile(f"{name}: a LASzip record has 34 bytes or more, got {len(laz)}")
+        raise CorruptFile(CodedText("laz-record-short", name=name, count=len(laz)))
     compressor, coder = struct.unpack_from("<HH", laz, 0)
     chunk_points, count = struct.unpack_from("<I", laz, 12)[0], struct.unpack_from("<H", laz, 32)[0]
     if compressor not in (2, 3) or coder != 0:
         raise CorruptFile(
-            f"{name}: expected LASzip's compressor 2 or 3 and coder 0, got {compressor}, {coder}"
+            CodedText("laz-compressor", name=name, compressor=str(compressor), coder=str(coder))
         )
     if not 1 <= count <= _MAX_ITEMS or len(laz) < 34 + 6 * count:
         raise CorruptFile(
-            f"{name}: expected 1 to {_MAX_ITEMS} LASzip items, got {count} in {len(laz)} bytes"
+            CodedText("laz-items", name=name, max_items=_MAX_ITEMS, items=str(count), size=len(laz))
         )
     items = [struct.unpack_from("<HHH", laz, 34 + 6 * k) for k in range(count)]
     if sum(size for _, size, _ in items) != header.point_bytes:
         raise CorruptFile(
-            f"{name}: points have {header.point_bytes} bytes, "
-            f"the LASzip items {sum(size for _, size, _ in items)}"
+            CodedText(
+                "laz-items-size",
+                name=name,
+                point_bytes=header.point_bytes,
+                items=str(sum((size for _, size, _ in items))),
+            )
         )
     if chunk_points != _VARIABLE and not 1 <= chunk_points <= _MAX_CHUNK_POINTS:
         raise CorruptFile(
-            f"{name}: expected chunks of 1 to {_MAX_CHUNK_POINTS} points, got {chunk_points}"
+            CodedText(
+                "laz-chunk-points",
+                name=name,
+                max_chunk_points=_MAX_CHUNK_POINTS,
+                chunk_points=str(chunk_points),
+            )
         )
     return _Compression(compressor == 3, chunk_points, _layer_count(items, compressor, name))
 
@@ -160,7 +192,7 @@ def _layer_count(items: list[tuple[int, int, int]], compressor: int, name: str) 
         return 0
     unknown = [kind for kind, _, _ in items if kind not in _LAYERS and kind != _EXTRA_BYTES_14]
     if unknown:
-        raise CorruptFile(f"{name}: expected LASzip items 10 to 14 in layers, got {unknown}")
+        raise CorruptFile(CodedText("laz-layers", name=name, unknown=str(unknown)))
     return sum(size if kind == _EXTRA_BYTES_14 else _LAYERS[kind] for kind, size, _ in items)
 
 
@@ -168,13 +200,15 @@ def _check_chunks(file: BinaryIO, header: LasHeader, laz: _Compression, *, name:
     size = os.fstat(file.fileno()).st_size
     first = header.data_at + 8
     if size < first + 8:
-        raise CorruptFile(f"{name}: cut: {header.points} points promised, got no chunk")
+        raise CorruptFile(CodedText("laz-no-chunk", name=name, points=header.points))
     table_at = struct.unpack("<q", _read(file, header.data_at, 8))[0]
     if table_at == -1:  # written to a stream: the pointer comes last
         table_at = struct.unpack("<q", _read(file, size - 8, 8))[0]
     if not first <= table_at <= size - 8:
         raise CorruptFile(
-            f"{name}: expected the chunk table between {first} and {size - 8}, got {table_at}"
+            CodedText(
+                "laz-table-place", name=name, first=first, size=size - 8, table_at=str(table_at)
+            )
         )
     version, chunks = struct.unpack("<II", _read(file, table_at, 8))
     expected = -(-header.points // laz.chunk_points)
@@ -183,12 +217,21 @@ def _check_chunks(file: BinaryIO, header: LasHeader, laz: _Compression, *, name:
         fits = 1 <= chunks <= (table_at - first) // header.point_bytes + 1
     if version != 0 or not fits:
         raise CorruptFile(
-            f"{name}: expected a chunk table of version 0 with the chunks of {header.points} "
-            f"points, got version {version} with {chunks} chunks"
+            CodedText(
+                "laz-table",
+                name=name,
+                points=header.points,
+                version=str(version),
+                chunks=str(chunks),
+            )
         )
     # A chunk starts with one whole point, so that fewer bytes cannot be that many chunks.
     if chunks * header.point_bytes > table_at - first:
-        raise CorruptFile(f"{name}: {chunks} chunks promised in {table_at - first} bytes")
+        raise CorruptFile(
+            CodedText(
+                "laz-chunks-many", name=name, chunks=str(chunks), table_at=str(table_at - first)
+            )
+        )
     if laz.layered:
         _check_layers(file, header, laz, table=(chunks, table_at), name=name)
 
@@ -202,23 +245,24 @@ def _check_layers(
     head_bytes = header.point_bytes + 4 + 4 * laz.layers
     for chunk in range(chunks):
         if at + head_bytes > table_at:
-            raise CorruptFile(f"{name}: cut: {chunks} chunks promised, got {chunk}")
+            raise CorruptFile(CodedText("laz-chunks-cut", name=name, chunks=chunks, chunk=chunk))
         head = _read(file, at, head_bytes)
         count, *layers = struct.unpack_from(f"<{1 + laz.layers}I", head, header.point_bytes)
         at += head_bytes + sum(layers)
         points += count
         if at > table_at:
             raise CorruptFile(
-                f"{name}: the layers of chunk {chunk} reach beyond the chunks by {at - table_at} "
-                "bytes"
+                CodedText("laz-layers-long", name=name, chunk=chunk, at=str(at - table_at))
             )
     if points != header.points:
-        raise CorruptFile(f"{name}: {header.points} points promised, got {points} in the chunks")
+        raise CorruptFile(
+            CodedText("laz-points-differ", name=name, promised=header.points, got=points)
+        )
 
 
 def _read(file: BinaryIO, at: int, count: int) -> bytes:
     file.seek(at)
     data = file.read(count)
     if len(data) < count:
-        raise CorruptFile(f"cut: {count} bytes expected at {at}, got {len(data)}")
+        raise CorruptFile(CodedText("las-bytes-cut", expected=count, at=at, got=len(data)))
     return data

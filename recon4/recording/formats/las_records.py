@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import CorruptFile, Recon4Error, RecordingError
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.las_check import LasHeader, check_las
 from recon4.untrusted.bounded import open_regular
 
@@ -62,7 +63,7 @@ def las_points(path: Path, *, most: int | None = None) -> Iterator[Any]:
             if got >= wanted:
                 break
     if got < wanted:
-        raise CorruptFile(f"{path.name}: cut: {promised} points promised, got {got}")
+        raise CorruptFile(CodedText("points-cut", file=path.name, promised=promised, got=got))
 
 
 @contextmanager
@@ -86,7 +87,9 @@ def refuse_many(points: int, name: str) -> None:
         RecordingError: If there are more than `MAX_POINTS`.
     """
     if points > MAX_POINTS:
-        raise RecordingError(f"{name}: expected at most {MAX_POINTS} points, got {points}")
+        raise RecordingError(
+            CodedText("las-points-many", name=name, max_points=MAX_POINTS, points=points)
+        )
 
 
 def refuse_promise(path: Path, promised: int) -> None:
@@ -101,6 +104,5 @@ def refuse_promise(path: Path, promised: int) -> None:
     most = max(FREE_POINTS, MAX_POINTS_A_BYTE * size)
     if promised > most:
         raise CorruptFile(
-            f"{path.name}: expected at most {most} points in {size} compressed bytes, "
-            f"got {promised}"
+            CodedText("laz-expansion", file=path.name, most=most, size=size, promised=promised)
         )

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText
 
 MAX_CHUNK_BYTES = 128 << 20
 """A chunk of a bag, compressed or not; recorders write less than 5 MB."""
@@ -47,8 +48,9 @@ class Budget:
         self._spent += size
         if self._spent > self._most:
             raise CorruptFile(
-                f"{where}: expected {self._compressed} compressed bytes to become at most "
-                f"{self._most} in all, got more"
+                CodedText(
+                    "unpacked-large-all", where=where, compressed=self._compressed, most=self._most
+                )
             )
 
 
@@ -70,7 +72,7 @@ class RecordFile:
         self.budget = Budget(self.size)
         if not self.size:
             self._file.close()
-            raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+            raise EmptyRecording(CodedText("file-empty", name=path.name))
 
     def __enter__(self) -> Self:
         return self
@@ -96,7 +98,7 @@ class RecordFile:
         """
         if not 0 <= offset <= self.size:
             raise CorruptFile(
-                f"{self.name}: expected an offset of at most {self.size} bytes, got {offset}"
+                CodedText("offset-beyond", name=self.name, size=self.size, offset=offset)
             )
         self._file.seek(offset)
 
@@ -113,8 +115,14 @@ class RecordFile:
         """
         if length > min(most, self.left):
             raise CorruptFile(
-                f"{self.name}: {what} at byte {self.at}: expected at most "
-                f"{min(most, self.left)} bytes, got a length of {length}"
+                CodedText(
+                    "length-beyond",
+                    name=self.name,
+                    what=what,
+                    at=self.at,
+                    most=min(most, self.left),
+                    length=length,
+                )
             )
         return self._file.read(length)
 
@@ -143,7 +151,7 @@ def decompress(how: str, data: bytes, *, expected: int, where: str) -> bytes:
     found = decompress_partly(how, data, most=expected + 1, where=where)
     if len(found) != expected:
         more = "more" if len(found) > expected else f"{len(found)}"
-        raise CorruptFile(f"{where}: expected {expected} bytes when decompressed, got {more}")
+        raise CorruptFile(CodedText("unpacked-size", where=where, expected=expected, more=more))
     return found
 
 
@@ -156,8 +164,7 @@ def check_ratio(compressed: int, size: int, where: str) -> None:
     most = min(MAX_CHUNK_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * compressed))
     if size > most:
         raise CorruptFile(
-            f"{where}: expected {compressed} compressed bytes to become at most {most}, "
-            f"got a size of {size}"
+            CodedText("unpacked-large", where=where, compressed=compressed, most=most, size=size)
         )
 
 
@@ -182,7 +189,7 @@ def decompress_partly(how: str, data: bytes, *, most: int, where: str) -> bytes:
         import lz4.frame
 
         return _inflate(lz4.frame.LZ4FrameDecompressor(), data, most)
-    raise CorruptFile(f"{where}: expected compression none, bz2, lz4 or zstd, got {how[:40]!r}")
+    raise CorruptFile(CodedText("compression-unknown", where=where, how=how[:40]))
 
 
 def _inflate(decoder: Any, data: bytes, most: int) -> bytes:

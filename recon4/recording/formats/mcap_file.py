@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any, TypeVar
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.bag_clock import chunks_going_on
 from recon4.recording.formats.chunks import (
     MAX_TIME_NS,
@@ -133,7 +134,9 @@ def _parsed(read: Callable[[], _T], where: str) -> _T:
     try:
         return read()
     except Exception as error:  # EndOfFile, struct.error, UnicodeDecodeError, MemoryError …
-        raise CorruptFile(f"{where}: a record that cannot be read ({error!r})") from error
+        raise CorruptFile(
+            CodedText("mcap-record-unreadable", where=where, why=repr(error))
+        ) from error
 
 
 # -- summary
@@ -156,7 +159,7 @@ def _summary(file: RecordFile) -> BagIndex:
         elif op == _STATISTICS:
             counts = _parsed(partial(_channel_counts, record), where)
     if counts is None or not chunks or not topics.types:
-        raise CorruptFile(f"{where}: expected schemas, chunks and statistics, not all are there")
+        raise CorruptFile(CodedText("mcap-summary", where=where))
     require_apart(chunks, file.name, start)
     found = [_checked(file, chunk, start) for chunk in chunks]
     require_apart(found, file.name, start)
@@ -167,7 +170,7 @@ def _summary(file: RecordFile) -> BagIndex:
 def _require_counts(topics: _Topics, counts: dict[int, int], where: str) -> None:
     for number, count in counts.items():
         if number not in topics.channels:
-            raise CorruptFile(f"{where}: statistics of a channel {number} that is not there")
+            raise CorruptFile(CodedText("mcap-channel", where=where, number=number))
         topics.channels[number].msgcount = count
 
 
@@ -176,29 +179,36 @@ def _start_of_summary(file: RecordFile) -> int:
     file.seek(0)
     magic = file.take(min(len(MAGIC), file.left), "magic")
     if magic != MAGIC:
-        raise CorruptFile(f"{file.name}: expected {MAGIC!r}, got {magic!r}")
+        raise CorruptFile(
+            CodedText("bag-magic", file=file.name, expected=repr(MAGIC), got=repr(magic))
+        )
     file.seek(max(0, file.size - _FOOTER_BYTES))
     footer_at = file.at
     footer = file.take(file.left, "footer")
     op, length = _RECORD.unpack_from(footer.ljust(_RECORD.size))
     if len(footer) < _FOOTER_BYTES or footer[-8:] != MAGIC or (op, length) != (_FOOTER, 20):
-        raise CorruptFile(f"{file.name}: expected a footer at byte {footer_at}, it is cut off")
+        raise CorruptFile(CodedText("mcap-footer", file=file.name, footer_at=footer_at))
     start = int.from_bytes(footer[_RECORD.size : _RECORD.size + 8], "little")
     if not len(MAGIC) < start <= footer_at or footer_at - start > _MAX_SUMMARY_BYTES:
         raise CorruptFile(
-            f"{file.name}: expected a summary of at most {_MAX_SUMMARY_BYTES} bytes before byte "
-            f"{footer_at}, got one from byte {start}"
+            CodedText(
+                "mcap-summary-place",
+                file=file.name,
+                max_summary_bytes=_MAX_SUMMARY_BYTES,
+                footer_at=footer_at,
+                start=start,
+            )
         )
     return start
 
 
 def _summary_record(head: bytes, body: io.BytesIO, where: str) -> tuple[int, bytes]:
     if len(head) < _RECORD.size:
-        raise CorruptFile(f"{where}: it ends inside a record")
+        raise CorruptFile(CodedText("mcap-record-ends", where=where))
     op, length = _RECORD.unpack(head)
     left = len(body.getbuffer()) - body.tell()
     if length > left:
-        raise CorruptFile(f"{where}: expected a record of at most {left} bytes, got {length}")
+        raise CorruptFile(CodedText("mcap-record-long", where=where, left=left, length=str(length)))
     return op, body.read(length)
 
 
@@ -226,17 +236,30 @@ def _checked(file: RecordFile, listed: ChunkRef, end: int) -> ChunkRef:
     op, length = _RECORD.unpack(file.take(_RECORD.size, "chunk"))
     if op != _CHUNK or listed.length != _RECORD.size + length:
         raise CorruptFile(
-            f"{file.name}: expected a chunk of {listed.length} bytes at byte {listed.offset}, "
-            f"got a record of kind {op} of {length} bytes"
+            CodedText(
+                "mcap-chunk-place",
+                file=file.name,
+                length=listed.length,
+                offset=listed.offset,
+                op=str(op),
+                got=str(length),
+            )
         )
     found = _chunk_head(file, length)
     if (found.t_first_ns, found.size) != (listed.t_first_ns, listed.size):
         raise CorruptFile(
-            f"{file.name}: chunk at byte {listed.offset}: expected {listed.size} bytes from "
-            f"{listed.t_first_ns} ns on as in the summary, got {found.size} from {found.t_first_ns}"
+            CodedText(
+                "mcap-chunk-differs",
+                file=file.name,
+                offset=listed.offset,
+                size=listed.size,
+                t_first_ns=listed.t_first_ns,
+                got_size=found.size,
+                got_first_ns=found.t_first_ns,
+            )
         )
     if found.t_last_ns > MAX_TIME_NS or found.offset > end:
-        raise CorruptFile(f"{file.name}: chunk at byte {listed.offset}: its times make no sense")
+        raise CorruptFile(CodedText("mcap-chunk-times", file=file.name, offset=listed.offset))
     return ChunkRef(
         found.offset,
         found.length,
@@ -258,7 +281,7 @@ def _chunk_head(file: RecordFile, length: int) -> ChunkRef:
     data = file.uint(8, "chunk")
     if file.at + data != end:
         raise CorruptFile(
-            f"{file.name}: chunk at byte {file.at}: expected {end - file.at} bytes, got {data}"
+            CodedText("mcap-chunk-size", file=file.name, at=file.at, end=end - file.at, data=data)
         )
     here = min(data, file.left)
     return ChunkRef(file.at, here, size, name, t_first, t_last, crc=crc, partial=here < data)

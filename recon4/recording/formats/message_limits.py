@@ -6,6 +6,7 @@ import struct
 from collections.abc import Sequence
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.packets.messages import DATA_MESSAGES
 
 MAX_SAMPLE_BYTES = 64 << 10
@@ -38,11 +39,11 @@ def check_message(kind: str, data: bytes, *, ros1: bool) -> None:
     if kind == _CLOUD:
         count = _fields_of_cloud(data, ros1=ros1)
         if count > MAX_FIELDS:
-            raise CorruptFile(f"a cloud: expected at most {MAX_FIELDS} fields, got {count}")
+            raise CorruptFile(CodedText("message-fields-many", max_fields=MAX_FIELDS, count=count))
         return
     most = _MOST_BYTES.get(kind, MAX_SAMPLE_BYTES)
     if len(data) > most:
-        raise CorruptFile(f"a message {kind}: expected at most {most} bytes, got {len(data)}")
+        raise CorruptFile(CodedText("message-large", kind=kind, most=most, count=len(data)))
 
 
 def require_apart_fields(fields: Sequence[tuple[int, int]]) -> None:
@@ -57,9 +58,7 @@ def require_apart_fields(fields: Sequence[tuple[int, int]]) -> None:
     end = 0
     for offset, size in sorted(fields):
         if offset < end:
-            raise CorruptFile(
-                f"a cloud: expected a field at byte {end} of a point or behind, got {offset}"
-            )
+            raise CorruptFile(CodedText("message-field-place", end=end, offset=offset))
         end = offset + size
 
 
@@ -79,4 +78,4 @@ def _fields_of_cloud(data: bytes, *, ros1: bool) -> int:
             at += -(at - base) % 4
         return int(struct.unpack_from(f"{order}I", data, at + 8)[0])
     except struct.error as error:
-        raise CorruptFile(f"a cloud that ends inside its header: {error}") from error
+        raise CorruptFile(CodedText("message-header-cut", why=str(error))) from error

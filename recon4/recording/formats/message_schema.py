@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.limits import MAX_DEFINITION_CHARACTERS
 
 Columns = dict[str, NDArray[Any]]
@@ -102,7 +103,7 @@ def parse_schema(kind: str, definition: str) -> MessageSchema:
         CorruptFile: If a line is no field, a type is missing, or types contain themselves.
     """
     if len(definition) > MAX_DEFINITION_CHARACTERS:
-        raise CorruptFile(f"{kind}: a definition of {len(definition)} characters")
+        raise CorruptFile(CodedText("schema-long", kind=kind, count=len(definition)))
     first, *others = re.split(r"^=+\s*$", definition, flags=re.MULTILINE)
     texts = {}
     for text in others:
@@ -147,7 +148,7 @@ def _fields(text: str, package: str, texts: Mapping[str, str]) -> tuple[SchemaFi
             continue
         match = _LINE.match(line)
         if match is None:
-            raise CorruptFile(f"a definition with the line {line[:80]!r}")
+            raise CorruptFile(CodedText("schema-line", line=line[:80]))
         kind, is_list, count, name, constant = match.groups()
         if not constant:
             kind = _resolved(_plain(kind), package, texts)
@@ -156,7 +157,7 @@ def _fields(text: str, package: str, texts: Mapping[str, str]) -> tuple[SchemaFi
                 SchemaField(name, kind, bool(is_list), int(count) if count and not bounded else 0)
             )
     if len(found) > _MAX_FIELDS:
-        raise CorruptFile(f"a definition of {len(found)} fields")
+        raise CorruptFile(CodedText("schema-fields", count=len(found)))
     return tuple(found)
 
 
@@ -167,7 +168,7 @@ def _resolved(kind: str, package: str, texts: Mapping[str, str]) -> str:
     for name in (aliases.get(kind, kind), f"{package}/{kind}"):
         if name in texts:
             return name
-    raise CorruptFile(f"a definition that leaves out the type {kind}")
+    raise CorruptFile(CodedText("schema-type-missing", kind=kind))
 
 
 def _expanded(
@@ -187,7 +188,7 @@ def _expanded(
             for field in types[kind]
         )
         if total > _MAX_VALUES:
-            raise CorruptFile(f"a definition whose types contain each other, or too much: {kind}")
+            raise CorruptFile(CodedText("schema-cycle", kind=kind))
         sizes[kind] = total
     return sizes[kind]
 
@@ -229,7 +230,7 @@ class _Cursor:
         """Move over some bytes; returns where they begin."""
         start, self.at = self.at, self.at + size
         if self.at > len(self.data):
-            raise CorruptFile(f"a message of {len(self.data)} bytes that ends inside a field")
+            raise CorruptFile(CodedText("message-cut", count=len(self.data)))
         return start
 
     def numbers(self, code: str, count: int) -> NDArray[Any]:
@@ -252,7 +253,7 @@ def _value(
     field: SchemaField, types: Mapping[str, tuple[SchemaField, ...]], cursor: _Cursor
 ) -> Any:
     if field.kind == "wstring":
-        raise CorruptFile(f"the field {field.name} is a text of wide characters")
+        raise CorruptFile(CodedText("schema-wide-text", field=field.name))
     if not field.is_list:
         return _one(field.kind, types, cursor)
     count = field.count or cursor.length()
@@ -262,7 +263,9 @@ def _value(
     if leaves:
         return _columns(leaves, count, cursor)
     if count > _MAX_ITEMS:
-        raise CorruptFile(f"{field.name}: {count} items, expected at most {_MAX_ITEMS}")
+        raise CorruptFile(
+            CodedText("schema-items", field=field.name, count=count, max_items=_MAX_ITEMS)
+        )
     return [_one(field.kind, types, cursor) for _ in range(count)]
 
 
@@ -289,7 +292,7 @@ def _columns(leaves: Sequence[tuple[str, str]], count: int, cursor: _Cursor) -> 
     repeat after at most 8 structures, so each phase of this cycle has one stride.
     """
     if count > len(cursor.data):
-        raise CorruptFile(f"a list of {count} structures in {len(cursor.data)} bytes")
+        raise CorruptFile(CodedText("schema-structures", count=count, size=len(cursor.data)))
     out = {name: np.empty(count, np.dtype(cursor.order + code)) for name, code in leaves}
     phases, cycle = _phases(leaves, cursor)
     begin = cursor.at

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
@@ -94,7 +95,7 @@ def read_pcap(
         why = f" ({report.said()[-1]})" if report.counts["files_cut"] > damaged else ""
         if untimed := report.counts["records_without_time"] - untimed:
             why += f" that has a time; {untimed} have none (simple packet blocks)"
-        raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
+        raise EmptyRecording(CodedText("pcap-no-packet", file=path.name, why=why))
 
 
 def is_pcap(path: Path) -> bool:
@@ -107,16 +108,14 @@ def is_pcap(path: Path) -> bool:
 def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
     magic = file.read(4)
     if not magic:
-        raise EmptyRecording(f"{name}: the file is empty (0 bytes)")
+        raise EmptyRecording(CodedText("file-empty", name=name))
     if magic == PCAPNG:
         file.seek(0)
         yield from _next_generation(file, name, report)
     elif magic in _CLASSIC:
         yield from _classic(file, name, _CLASSIC[magic], report=report)
     else:
-        raise UnknownFormat(
-            f"{name}: expected a capture file (pcap or pcapng), got first bytes {magic.hex(' ')}"
-        )
+        raise UnknownFormat(CodedText("pcap-magic", name=name, magic=magic.hex(" ")))
 
 
 def _classic(
@@ -125,7 +124,7 @@ def _classic(
     order, unit_ns = kind
     header = file.read(20)
     if len(header) < 20:
-        raise EmptyRecording(f"{name}: cut inside the file header, no packet is left")
+        raise EmptyRecording(CodedText("pcap-header-cut", name=name))
     link_type = struct.unpack(f"{order}I", header[16:])[0] & 0x0FFF_FFFF
     _require_link_type(link_type, name)
     rest, at = b"", 24
@@ -208,10 +207,7 @@ def _joined(packets: list[Packet]) -> _Records:
 
 def _require_link_type(link_type: int, name: str) -> None:
     if link_type not in _IP_AT:
-        raise UnknownFormat(
-            f"{name}: expected a capture of Ethernet, Linux cooked or raw IP packets, "
-            f"got link type {link_type}"
-        )
+        raise UnknownFormat(CodedText("pcap-link-type", name=name, link_type=link_type))
 
 
 def _salvaged(report: ImportReport, name: str, **where: Value | Exception) -> None:

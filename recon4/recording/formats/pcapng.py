@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import IO, NamedTuple
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 
 MAGIC = b"\x0a\x0d\x0d\x0a"
 MAX_BLOCK_BYTES = 16 << 20
@@ -63,7 +64,9 @@ def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Pa
             interfaces = []
         elif kind == _INTERFACE:
             if len(interfaces) >= MAX_INTERFACES:
-                raise CorruptFile(f"{where}: expected at most {MAX_INTERFACES} interfaces")
+                raise CorruptFile(
+                    CodedText("pcapng-interfaces", where=where, max_interfaces=MAX_INTERFACES)
+                )
             interfaces.append(_interface(body, order, where))
         elif kind == _SIMPLE_PACKET:
             skipped("records_without_time")
@@ -82,28 +85,31 @@ def _order(file: IO[bytes], head: bytes, order: str, *, where: str) -> str:
     magic = _read(file, 4)
     file.seek(-len(magic), 1)
     if magic not in {b"\x4d\x3c\x2b\x1a", b"\x1a\x2b\x3c\x4d"}:
-        raise CorruptFile(f"{where}: expected a byte order mark, got {magic.hex(' ')}")
+        raise CorruptFile(CodedText("pcapng-order", where=where, magic=magic.hex(" ")))
     return "<" if magic[0] == 0x4D else ">"
 
 
 def _block(file: IO[bytes], head: bytes, order: str, *, where: str) -> tuple[int, bytes, int]:
     """Kind, body and length of a block."""
     if len(head) < 8:
-        raise CorruptFile(f"{where}: expected 8 bytes, got {len(head)}: the file is cut off")
+        raise CorruptFile(CodedText("pcapng-cut", where=where, count=len(head)))
     kind, length = struct.unpack(f"{order}II", head)
     if not 12 <= length <= MAX_BLOCK_BYTES or length % 4:
         raise CorruptFile(
-            f"{where}: expected a length of 12 to {MAX_BLOCK_BYTES} bytes in steps of 4, "
-            f"got {length}"
+            CodedText(
+                "pcapng-length", where=where, max_block_bytes=MAX_BLOCK_BYTES, length=str(length)
+            )
         )
     rest = _read(file, length - 8)
     if len(rest) < length - 8:
         raise CorruptFile(
-            f"{where}: expected {length} bytes, got {len(rest) + 8}: the file is cut off"
+            CodedText("pcapng-block-cut", where=where, length=str(length), count=len(rest) + 8)
         )
     (again,) = struct.unpack_from(f"{order}I", rest, length - 12)
     if again != length:
-        raise CorruptFile(f"{where}: expected the length {length} at its end too, got {again}")
+        raise CorruptFile(
+            CodedText("pcapng-length-twice", where=where, length=str(length), again=str(again))
+        )
     return kind, rest[:-4], length
 
 
@@ -117,7 +123,7 @@ def _read(file: IO[bytes], length: int) -> bytes:
 
 def _interface(body: bytes, order: str, where: str) -> Interface:
     if len(body) < 8:
-        raise CorruptFile(f"{where}: expected an interface of at least 8 bytes, got {len(body)}")
+        raise CorruptFile(CodedText("pcapng-interface", where=where, count=len(body)))
     (link_type,) = struct.unpack_from(f"{order}H", body)
     ticks_per_s, offset_s = 1_000_000, 0
     at = 8
@@ -139,15 +145,19 @@ def _packet(kind: int, body: bytes, order: str, *, known: tuple[list[Interface],
     layout = f"{order}IIIII" if kind == _PACKET else f"{order}H2xIIII"
     size = struct.calcsize(layout)
     if len(body) < size:
-        raise CorruptFile(f"{where}: expected a packet of at least {size} bytes, got {len(body)}")
+        raise CorruptFile(CodedText("pcapng-packet", where=where, size=size, count=len(body)))
     number, high, low, captured, _ = struct.unpack_from(layout, body)
     if number >= len(interfaces):
         raise CorruptFile(
-            f"{where}: expected one of {len(interfaces)} interfaces, got number {number}"
+            CodedText(
+                "pcapng-interface-number", where=where, count=len(interfaces), number=str(number)
+            )
         )
     most = min(MAX_PACKET_BYTES, len(body) - size)
     if captured > most:
-        raise CorruptFile(f"{where}: expected at most {most} bytes of a packet, got {captured}")
+        raise CorruptFile(
+            CodedText("pcapng-packet-large", where=where, most=most, captured=str(captured))
+        )
     source = interfaces[number]
     data = body[size : size + captured]
     return Packet(source.t_ns(high << 32 | low), source.link_type, data)

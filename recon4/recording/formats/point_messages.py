@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.clouds.point_fields import (
     EXACT_TIME,
     INTENSITY_FIELDS,
@@ -198,7 +199,7 @@ class PointReader:
             lists = _lists(self.schema, message) if self.table is None else {}
             table = self.table(message) if self.table else next(iter(lists.values()))
         except (KeyError, TypeError, AttributeError) as error:
-            raise CorruptFile(f"a message of points without a field: {error}") from error
+            raise CorruptFile(CodedText("message-no-field", why=str(error))) from error
         header = getattr(message, "header", None)
         if self.schema.kind_of("header") != "std_msgs/Header":
             header = SimpleNamespace(stamp=SimpleNamespace(sec=0, nanosec=0), frame_id="")

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.clocks.stamps import strays
 from recon4.recording.formats.damaged_lines import DamagedLines
@@ -78,7 +79,7 @@ def read_tum(path: Path, report: ImportReport | None = None) -> Trajectory:
     report.count("poses", int(np.count_nonzero(kept)))
     values = table.values[np.array(rows, np.intp)[kept]][:, order]
     if not len(values):
-        raise EmptyRecording(f"{path.name}: no poses")
+        raise EmptyRecording(CodedText("poses-none", file=path.name))
     return Trajectory(t_ns[kept], SE3.from_quat(values[:, 4:], values[:, 1:4]))
 
 
@@ -116,7 +117,7 @@ def write_tum(path: Path, trajectory: Trajectory) -> None:
 def _check_length(quaternion: Array, where: str) -> None:
     norm = float(np.linalg.norm(quaternion))
     if not abs(norm - 1.0) <= _ROTATION_TOLERANCE:
-        raise CorruptFile(f"{where}: a quaternion has length 1, got {norm:.4g}")
+        raise CorruptFile(CodedText("pose-quaternion", where=where, norm=norm))
 
 
 def _in_order(t_ns: Times) -> NDArray[np.bool_]:
@@ -181,7 +182,7 @@ class _Table:
             lines.append(number)
         if not first:
             damaged.check(0)
-            raise EmptyRecording(f"{path.name}: no poses")
+            raise EmptyRecording(CodedText("poses-none", file=path.name))
         return _Table(path.name, first, lines, np.array(values).reshape(-1, 8))
 
     def where(self, row: int) -> str:
@@ -196,10 +197,10 @@ def _numbers(cells: list[str], where: str) -> list[float]:
         row = [float(cell) for cell in cells]
     except ValueError as error:
         raise CorruptFile(
-            f"{where}: expected 8 numbers, got {len(cells)}: {' '.join(cells)[:80]!r}"
+            CodedText("pose-numbers", where=where, count=len(cells), cells=" ".join(cells)[:80])
         ) from error
     if not all(map(math.isfinite, row)):
-        raise CorruptFile(f"{where}: expected finite numbers, got one that is not")
+        raise CorruptFile(CodedText("pose-not-finite", where=where))
     return row
 
 
@@ -252,7 +253,7 @@ def _nanoseconds(text: str, unit_ns: int, where: str) -> int:
         part = int((found[3] or "").ljust(digits, "0")[:digits] or "0")
         t_ns = sign * (int(found[2]) * unit_ns + part)
     if not -(2**63) <= t_ns < 2**63:
-        raise CorruptFile(f"{where}: expected a time within 292 years of 1970, got {text[:40]} s")
+        raise CorruptFile(CodedText("pose-time", where=where, text=text[:40]))
     return t_ns
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, RecordingError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.las_records import CHUNK, MAX_POINTS
 from recon4.recording.limits import LIMITS
 from recon4.untrusted.bounded import open_regular
@@ -36,18 +37,18 @@ class _TextScan:
         head = [self._numbers(self._line(), width) for width in _WIDTHS]
         matrix = np.stack(head[4:])
         if not np.isfinite(matrix).all():
-            raise CorruptFile(f"{self.where}: its transformation has numbers that are not finite")
+            raise CorruptFile(CodedText("ptx-not-finite", where=self.where))
         turn = matrix[:3, :3]
         skew = turn @ turn.T - np.eye(3) if np.abs(turn).max() < 2.0 else turn
         if np.abs(skew).max() > LIMITS.ptx_skew or np.linalg.det(turn) < 0.0:
-            raise CorruptFile(f"{self.where}: its transformation is no rotation")
+            raise CorruptFile(CodedText("ptx-no-rotation", where=self.where))
         return matrix
 
     def count(self, line: bytes) -> int:
         """Columns or rows."""
         found = _COUNT.fullmatch(line)
         if not found:
-            raise CorruptFile(f"{self.where}: expected a number of columns or rows, got {line!r}")
+            raise CorruptFile(CodedText("ptx-size", where=self.where, line=repr(line)))
         return int(found[1])
 
     def points(self, count: int) -> Iterator[Array]:
@@ -57,19 +58,23 @@ class _TextScan:
             lines = list(islice(iter(self._line, b""), want))
             if len(lines) < want:
                 got = first + len(lines)
-                raise CorruptFile(f"{self.where}: expected {count} points, got {got}")
+                raise CorruptFile(CodedText("ptx-points", where=self.where, count=count, got=got))
             try:
                 xyz = np.loadtxt(lines, ndmin=2, usecols=(0, 1, 2))
             except ValueError as error:
-                raise CorruptFile(f"{self.where}: no line of numbers: {error}") from error
+                raise CorruptFile(
+                    CodedText("ptx-no-numbers", where=self.where, why=str(error))
+                ) from error
             if len(xyz) != want:
-                raise CorruptFile(f"{self.where}: expected {want} lines of points, got {len(xyz)}")
+                raise CorruptFile(
+                    CodedText("ptx-lines", where=self.where, want=want, count=len(xyz))
+                )
             yield xyz[(xyz != 0.0).any(axis=1)]
 
     def _line(self) -> bytes:
         line = self.file.readline(_LINE_BYTES)
         if len(line) == _LINE_BYTES:
-            raise CorruptFile(f"{self.where}: a line has {_LINE_BYTES} bytes or more")
+            raise CorruptFile(CodedText("ptx-line-long", where=self.where, line_bytes=_LINE_BYTES))
         return line
 
     def _numbers(self, line: bytes, width: int) -> Array:
@@ -78,7 +83,7 @@ class _TextScan:
         except ValueError:
             numbers = np.empty(0)
         if len(numbers) != width:
-            raise CorruptFile(f"{self.where}: expected {width} numbers in its head, got {line!r}")
+            raise CorruptFile(CodedText("ptx-head", where=self.where, width=width, line=repr(line)))
         return numbers
 
 
@@ -100,7 +105,7 @@ def ptx_points(path: Path) -> Iterator[Array]:
             promised += count
             if promised > MAX_POINTS:
                 raise RecordingError(
-                    f"{scan.where}: more than {MAX_POINTS // 10**6} million points are promised"
+                    CodedText("ptx-many", where=scan.where, max_points=MAX_POINTS // 10**6)
                 )
             matrix = scan.transformation()
             for xyz in scan.points(count):

@@ -16,6 +16,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
 from recon4.recording.formats.cloud_files import cloud_chunks, cloud_fields, cloud_rows
 from recon4.recording.formats.cloud_headers import HEADER_BYTES, HEADER_FORMATS, header_format
@@ -65,7 +66,7 @@ def open_cloud(
     """
     head = _head(path)
     if not head:
-        raise UnknownFormat(f"{path.name}: the file is empty (0 bytes)")
+        raise UnknownFormat(CodedText("file-empty", name=path.name))
     columns, stated = "", StatedCrs()
     kind = _kind(head, path)
     if kind == "las":
@@ -82,7 +83,7 @@ def open_cloud(
         stated = geographic_crs() if text.columns.geographic else StatedCrs()
     else:
         names = ", ".join([*(one.name for one in HEADER_FORMATS), "LAS, LAZ, E57, PTX"])
-        raise UnknownFormat(f"{path.name}: expected a {names}, XYZ or CSV cloud")
+        raise UnknownFormat(CodedText("reference-format", file=path.name, names=names))
     return CloudSource(_checked(chunks, path.name), stated, columns)
 
 
@@ -123,7 +124,12 @@ def _head(path: Path) -> bytes:
         head = file.read(HEADER_BYTES)
     if size > LIMITS.cloud_file_bytes:
         raise RecordingError(
-            f"{path.name} has {size >> 30} GiB, at most {LIMITS.cloud_file_bytes >> 30}"
+            CodedText(
+                "reference-large",
+                file=path.name,
+                size=size >> 30,
+                cloud_file_bytes=LIMITS.cloud_file_bytes >> 30,
+            )
         )
     return head
 
@@ -133,22 +139,31 @@ def _checked(chunks: Iterator[Array], name: str) -> Iterator[Array]:
     for chunk in chunks:
         if not np.isfinite(chunk).all():
             bad = int((~np.isfinite(chunk).all(axis=1)).sum())
-            raise CorruptFile(f"{name}: {bad} points have coordinates that are not numbers")
+            raise CorruptFile(CodedText("reference-not-finite", name=name, bad=bad))
         if len(chunk) and np.abs(chunk).max() > 1e8:
-            raise CorruptFile(f"{name}: coordinates beyond 100 000 km are not meters")
+            raise CorruptFile(CodedText("reference-not-meters", name=name))
         count += len(chunk)
         if count > MAX_POINTS:
-            raise RecordingError(f"{name} has more than {MAX_POINTS // 10**6} million points")
+            raise RecordingError(
+                CodedText("reference-many", name=name, max_points=MAX_POINTS // 10**6)
+            )
         yield chunk
     if not count:
-        raise CorruptFile(f"{name} holds no points")
+        raise CorruptFile(CodedText("reference-no-points", name=name))
 
 
 def _table(path: Path) -> Iterator[Array]:
     fields = cloud_fields(path)
     missing = [axis for axis in "xyz" if axis not in fields]
     if missing:
-        raise CorruptFile(f"{path.name}: no column {missing}; it has {sorted(fields)[:20]}")
+        raise CorruptFile(
+            CodedText(
+                "reference-column",
+                file=path.name,
+                missing=str(missing),
+                fields=str(sorted(fields)[:20]),
+            )
+        )
     refuse_many(cloud_rows(path), path.name)
     for table in cloud_chunks(path):
         yield np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from recon4.errors import NoSpace, StoreError
+from recon4.locales.coded import CodedText
 from recon4.store.locks import open_lock_file, try_lock, wait_for_lock
 
 _LOCK = "lock"
@@ -40,8 +41,12 @@ def scratch_folder(needed_bytes: int) -> Iterator[Path]:
     free = shutil.disk_usage(base).free
     if free < needed_bytes + _RESERVE_BYTES:
         raise NoSpace(
-            f"{base}: expected {(needed_bytes + _RESERVE_BYTES) / 1e9:.1f} GB of free space for a "
-            f"temporary copy, got {free / 1e9:.1f} GB (the variable TMPDIR names another place)"
+            CodedText(
+                "scratch-no-room",
+                base=str(base),
+                needed_bytes=(needed_bytes + _RESERVE_BYTES) / 1e9,
+                free=free / 1e9,
+            )
         )
     folder = Path(tempfile.mkdtemp(dir=base))
     lock = open_lock_file(folder / _LOCK)
@@ -111,5 +116,5 @@ def _base() -> Path:
     base.mkdir(mode=0o700, exist_ok=True)
     status = base.lstat()
     if base.is_symlink() or status.st_uid != os.getuid() or status.st_mode & 0o077:
-        raise StoreError(f"{base} does not belong to this user alone: remove it")
+        raise StoreError(CodedText("scratch-not-own", base=str(base)))
     return base

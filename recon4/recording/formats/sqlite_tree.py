@@ -11,6 +11,7 @@ import os
 from pathlib import Path
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 
 _INNER_TABLE = 5
 _HEADER_BYTES = 12
@@ -44,8 +45,7 @@ def check_table_tree(path: Path, root: int, page_bytes: int) -> None:
                     continue
                 if seen[number] or depth > _MAX_DEPTH:
                     raise CorruptFile(
-                        f"{path.name}: no readable SQLite database: expected a tree of pages, got "
-                        f"page {number} twice or on level {depth}; not one message is left"
+                        CodedText("db3-tree", file=path.name, number=number, depth=depth)
                     )
                 seen[number] = 1
                 following += _children(file, number, page_bytes)

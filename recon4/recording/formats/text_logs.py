@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.formats.limits import MAX_RATIO, RATIO_FLOOR_BYTES
 from recon4.recording.report import ImportReport
@@ -40,17 +41,20 @@ def log_lines(path: Path, report: ImportReport) -> Iterator[bytes]:
         for piece in _pieces(file, path.name, report):
             total += len(piece)
             if total > most:
-                raise CorruptFile(f"{path.name}: expected at most {most} bytes of text, got more")
+                raise CorruptFile(CodedText("text-large", file=path.name, most=most))
             *lines, rest = (rest + piece).split(b"\n")
             for line in lines:
                 number += 1
                 yield line
             if number > MAX_LOG_LINES:
-                raise CorruptFile(f"{path.name}: expected at most {MAX_LOG_LINES} lines, got more")
+                raise CorruptFile(
+                    CodedText("text-lines-many", file=path.name, max_log_lines=MAX_LOG_LINES)
+                )
             if len(rest) > LIMITS.line_bytes:
                 raise CorruptFile(
-                    f"{path.name}: line {number + 1}: expected at most {LIMITS.line_bytes} bytes, "
-                    "got a longer line"
+                    CodedText(
+                        "text-line-long", file=path.name, line=number + 1, limit=LIMITS.line_bytes
+                    )
                 )
         if rest.strip():
             yield rest

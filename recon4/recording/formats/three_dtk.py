@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText, at
 from recon4.untrusted.bounded import parse_float, read_text_limited, text_blocks
 
 SCAN_SUFFIX, POSE_SUFFIX, FRAMES_SUFFIX = ".3d", ".pose", ".frames"
@@ -70,9 +71,9 @@ def read_pose(path: Path) -> SE3:
     try:
         values = np.array([parse_float(word) for word in words])
     except ValueError as error:
-        raise CorruptFile(f"{path.name}: {error}") from error
+        raise CorruptFile(at(path.name, str(error))) from error
     if len(values) != 6 or not np.isfinite(values).all():
-        raise CorruptFile(f"{path.name}: expected a position and three angles, got {words[:8]}")
+        raise CorruptFile(CodedText("three-dtk-pose", file=path.name, words=str(words[:8])))
     rx, ry, rz = np.radians(values[3:])
     R = _about(0, rx) @ _about(1, ry) @ _about(2, rz)
     return SE3(_AXES.T @ R @ _AXES, _AXES.T @ values[:3] / _CM)
@@ -108,7 +109,7 @@ def _is_resolution(lines: list[str]) -> bool:
 def _width(line: str, where: str) -> int:
     width = len(line.split())
     if not 3 <= width <= 6:
-        raise CorruptFile(f"{where}: expected three to six numbers, got {line[:60]!r}")
+        raise CorruptFile(CodedText("three-dtk-line", where=where, line=line[:60]))
     return width
 
 

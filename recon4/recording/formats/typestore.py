@@ -14,6 +14,7 @@ from types import MappingProxyType
 from typing import Any
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.message_schema import (
     MessageSchema,
     SchemaField,
@@ -166,9 +167,9 @@ def _require_fields(kind: str, schema: MessageSchema, known: Sequence[MessageSch
     missing = sorted(needed - _names(schema.fields, schema.types) - {"header"})
     if missing:
         raise CorruptFile(
-            f"the bag defines {kind.replace('/msg/', '/')} without {', '.join(missing)}, by which "
-            "its packets are read: play it back through its driver, and record the PointCloud2 "
-            "that it publishes"
+            CodedText(
+                "typestore-lacks", kind=kind.replace("/msg/", "/"), missing=", ".join(missing)
+            )
         )
 
 

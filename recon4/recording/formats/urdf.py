@@ -12,6 +12,7 @@ from xml.parsers import expat
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 
 MAX_URDF_BYTES = 4 << 20
 MAX_DEPTH = 64
@@ -51,7 +52,7 @@ def urdf_joints(text: str) -> list[UrdfJoint]:
     """
     size = len(text.encode("utf-8", "replace"))
     if size > MAX_URDF_BYTES:
-        raise CorruptFile(f"expected at most {MAX_URDF_BYTES} bytes, got {size}")
+        raise CorruptFile(CodedText("urdf-large", max_urdf_bytes=MAX_URDF_BYTES, size=size))
     found = _Joints()
     parser = expat.ParserCreate()
     parser.StartDoctypeDeclHandler = _refuse_doctype
@@ -59,7 +60,7 @@ def urdf_joints(text: str) -> list[UrdfJoint]:
     try:
         parser.Parse(_without_declaration(text.encode("utf-8", "replace")), True)
     except expat.ExpatError as error:
-        raise CorruptFile(f"no sound XML: {error}") from None
+        raise CorruptFile(CodedText("xml-unsound", why=str(error))) from None
     return found.joints
 
 
@@ -72,7 +73,7 @@ def _without_declaration(xml: bytes) -> bytes:
 
 
 def _refuse_doctype(*_: object) -> None:
-    raise CorruptFile("it has a document type (DOCTYPE), which a reader would fetch")
+    raise CorruptFile(CodedText("xml-doctype"))
 
 
 @dataclass(slots=True)
@@ -86,7 +87,7 @@ class _Joints:
     def begin(self, name: str, attributes: dict[str, str]) -> None:
         self.depth += 1
         if self.depth > MAX_DEPTH:
-            raise CorruptFile(f"elements nested deeper than {MAX_DEPTH}")
+            raise CorruptFile(CodedText("xml-deep", max_depth=MAX_DEPTH))
         if name == "joint" and self.depth == 2:
             kind, called = attributes.get("type", ""), attributes.get("name", "")
             self._joint = UrdfJoint(kind, called) if kind in KINDS else None
@@ -96,7 +97,7 @@ class _Joints:
     def end(self, name: str) -> None:
         if self.depth == 2 and self._joint is not None:
             if len(self.joints) >= MAX_JOINTS:
-                raise CorruptFile(f"more than {MAX_JOINTS} joints")
+                raise CorruptFile(CodedText("urdf-joints", max_joints=MAX_JOINTS))
             self.joints.append(self._joint)
             self._joint = None
         self.depth -= 1
@@ -128,5 +129,5 @@ def _numbers(text: str, what: str, *, count: int) -> tuple[float, ...]:
     except ValueError:
         numbers = ()
     if len(numbers) != count or not np.all(np.isfinite(numbers)):
-        raise CorruptFile(f"{what} of a joint: expected {count} numbers, got {text[:80]!r}")
+        raise CorruptFile(CodedText("urdf-numbers", what=what, count=count, text=text[:80]))
     return numbers

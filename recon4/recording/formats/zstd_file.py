@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.limits import MAX_CHUNK_BYTES, Budget
 
 _PIECE = 4 << 20
@@ -34,5 +35,7 @@ def decompress_file(path: Path, folder: Path, budget: Budget) -> Path:
                 out.write(piece)
         except zstandard.ZstdError as error:
             if not written:
-                raise CorruptFile(f"{path.name}: no readable zstd file: {error}") from error
+                raise CorruptFile(
+                    CodedText("zstd-unreadable", file=path.name, why=str(error))
+                ) from error
     return copy

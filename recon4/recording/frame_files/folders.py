@@ -11,7 +11,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import SE3
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Value
@@ -93,10 +93,12 @@ def list_frames(path: Path) -> FrameFiles:
     """
     found = [path] if path.is_file() else sorted(_cloud_files(path), key=natural)
     if not found:
-        raise EmptyRecording(f"{path.name}: no {', '.join(CLOUD_SUFFIXES)} file in the folder")
+        raise EmptyRecording(
+            CodedText("frames-none", file=path.name, cloud_suffixes=", ".join(CLOUD_SUFFIXES))
+        )
     kinds = sorted({file.suffix.lower() for file in found})
     if len(kinds) > 1:
-        raise UnknownFormat(f"{path.name}: frames of one kind expected, got {', '.join(kinds)}")
+        raise UnknownFormat(CodedText("frames-mixed", file=path.name, kinds=", ".join(kinds)))
     numbered = without_strangers(found)
     found = list(numbered.files)
     times = frame_times(path, found)
@@ -255,14 +257,14 @@ def read_points(file: Path, fields: PointRecipe | None) -> Table:
     try:
         return as_points(fields, {POINTS: table})
     except CorruptFile as error:
-        raise CorruptFile(f"{file.name}: {error}") from error
+        raise CorruptFile(at(file.name, text_of(error))) from error
 
 
 def _shots(decoder: CloudDecoder, table: Table, name: str, *, t_ns: int, period_ns: int) -> Shots:
     try:
         return decoder.decode(table, t_ns=t_ns, period_ns=period_ns)
     except UnknownFormat as error:
-        raise CorruptFile(f"{name}: {error}") from error
+        raise CorruptFile(at(name, text_of(error))) from error
 
 
 def _multiframe(shots: Shots, frame_id: int, start_ns: int, *, period_ns: int) -> Multiframe:

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.recording.gnss.records import Dating, GnssFile
@@ -89,7 +90,9 @@ def read_sbet(path: Path, report: ImportReport) -> GnssFile:
     rows = _rows(path, _Sbet.COLUMNS)
     if not np.isfinite(rows[:, :11]).all():
         bad = int(np.flatnonzero(~np.isfinite(rows[:, :11]).all(axis=1))[0])
-        raise CorruptFile(f"{path.name}: row {bad + 1}: expected finite numbers, got {rows[bad]}")
+        raise CorruptFile(
+            CodedText("sbet-not-finite", file=path.name, bad=bad + 1, rows=str(rows[bad]))
+        )
     sd_m = _accuracies(path, rows[:, 0], report)
     flat_m = np.linalg.norm(sd_m[:, :2], axis=1)
     quality = np.select(
@@ -115,11 +118,9 @@ def _rows(path: Path, columns: int) -> Array:
     with open_regular(path) as file:
         size = check_file_size(file, path, GNSS_FILES.sbet_bytes)
         if size % (8 * columns):
-            raise CorruptFile(
-                f"{path.name}: cut: expected rows of {8 * columns} bytes, got {size} bytes"
-            )
+            raise CorruptFile(CodedText("sbet-cut", file=path.name, columns=8 * columns, size=size))
         if not size:
-            raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+            raise EmptyRecording(CodedText("file-empty", name=path.name))
         return np.fromfile(file, "<f8").reshape(-1, columns)
 
 

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.gps_time import utc_of_gps_ns
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC
 from recon4.model.samples import GnssQuality
@@ -122,14 +123,11 @@ def read_exported_text(path: Path, report: ImportReport) -> GnssFile:
                 damaged.add(CorruptFile(f"{where}: {error}: {line.strip()[:80]!r}"))
     damaged.finish(len(rows))
     if table is None or not len(rows):
-        raise EmptyRecording(f"{path.name}: no position under the names of its columns")
+        raise EmptyRecording(CodedText("gnss-no-position", file=path.name))
     if "ellipsoidal" not in table.columns:
         report.count(HEIGHTS_ORTHOMETRIC, len(rows))
     if table.dating is Dating.UTC and max(rows.t_ns) < GNSS_FILES.earliest_ns:
-        raise CorruptFile(
-            f"{path.name}: expected UTCTime in seconds since 1970, or with a date, got "
-            f"{rows.t_ns[0] / SECOND_NS:.3f}: export GPSTime with Week"
-        )
+        raise CorruptFile(CodedText("gnss-time", file=path.name, t_ns=rows.t_ns[0] / SECOND_NS))
     samples = gnss_samples(table.utc(rows), rows.table(), rows.quality)
     return GnssFile(samples, "Inertial Explorer", table.dating)
 
@@ -149,7 +147,7 @@ class _ExportedLines:
         """Choose columns of time; raises CorruptFile if there is none, or no height."""
         if not columns.keys() & {"ellipsoidal", "orthometric"}:
             got = ", ".join(sorted(columns))
-            raise CorruptFile(f"{name}: expected a column H-Ell or H-MSL, got {got}")
+            raise CorruptFile(CodedText("gnss-height-column", name=name, got=got))
         for clock, date, gps in (("utc", "date", False), ("gps", "gps_date", True)):
             if columns.keys() >= {clock, date}:
                 return cls(columns, Dating.UTC, gps, _dated(columns[clock], columns[date]))

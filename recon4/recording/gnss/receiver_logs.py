@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.model.derived_kinds import DerivedKind
 from recon4.recording.gnss.novatel import LONG_SYNC, SHORT_SYNC, NovatelLogs
 from recon4.recording.gnss.records import Dating, FixRows, GnssFile
@@ -130,7 +131,7 @@ def read_receiver_log(path: Path, report: ImportReport) -> GnssFile:
     try:
         log = _collected(data, report)
     except CorruptFile as error:
-        raise CorruptFile(f"{path.name}: {error}") from error
+        raise CorruptFile(at(path.name, text_of(error))) from error
     kind, of_novatel = log.novatel.best()
     found = {
         "UBX": log.ubx.rows(),
@@ -140,8 +141,11 @@ def read_receiver_log(path: Path, report: ImportReport) -> GnssFile:
     name = next((name for name, rows in found.items() if len(rows)), "")
     if not name:
         raise EmptyRecording(
-            f"{path.name}: no fix in this log; expected NAV-PVT, BESTPOS, INSPVA or GGA messages "
-            f"with a position; {report.counted() or 'no message of these kinds'}"
+            CodedText(
+                "gnss-no-fix",
+                file=path.name,
+                counted=report.counted() or CodedText("gnss-no-message"),
+            )
         )
     others = [f"{other} ({len(rows)})" for other, rows in found.items() if rows and other != name]
     if others:
@@ -167,10 +171,7 @@ def _collected(data: bytes, report: ImportReport, *, head: bool = False) -> _Mix
     while match := _BEGIN.search(data, at):
         begin, text = match.start(), match[0]
         if report.counts["gnss_messages_damaged"] > most:
-            raise CorruptFile(
-                f"expected messages of a receiver, got {most} with a wrong checksum up to byte "
-                f"{begin}"
-            )
+            raise CorruptFile(CodedText("gnss-checksums", most=most, begin=begin))
         if head and log.messages >= GNSS_FILES.least_messages:
             break
         if text == SYNC:

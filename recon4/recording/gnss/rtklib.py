@@ -12,6 +12,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
 from recon4.model.samples import GnssQuality
 from recon4.recording.formats.damaged_lines import DamagedLines
@@ -97,7 +98,7 @@ def read_rtklib(path: Path, report: ImportReport) -> GnssFile:
                     damaged.add(CorruptFile(f"{where}: {error}: {line.strip()[:80]!r}"))
     damaged.finish(len(rows))
     if not len(rows):
-        raise EmptyRecording(f"{path.name}: no solution under the comments")
+        raise EmptyRecording(CodedText("rtklib-none", file=path.name))
     if header.heights and header.position == "geodetic":
         report.count(header.heights, len(rows))
     t_ns, table = rows.times(gps=_is_gps(header.time, path.name)), rows.table()
@@ -114,7 +115,7 @@ def _names(line: str) -> str:
 
 def _is_gps(time: str, name: str) -> bool:
     if time not in ("GPST", "UTC", "JST"):
-        raise CorruptFile(f"{name}: expected times in GPST, UTC or JST, got {time[:20]!r}")
+        raise CorruptFile(CodedText("rtklib-time-system", name=name, time=time[:20]))
     return time == "GPST"
 
 
@@ -185,18 +186,12 @@ def _geodetic(position: Array, header: _Header, name: str) -> Array:
     geodetic = Transformer.from_crs("EPSG:4978", "EPSG:4979")
     if header.position == "enu":
         if len(header.base) != 3:
-            raise CorruptFile(
-                f"{name}: positions are east, north, up of a baseline; expected the position of "
-                "the base in a comment 'ref pos', got none"
-            )
+            raise CorruptFile(CodedText("rtklib-no-base", name=name))
         lat, lon, height = header.base
         if np.linalg.norm(header.base) > GNSS_FILES.least_radius_m:
             lat, lon, height = geodetic.transform(*header.base)
         if not (abs(lat) <= 90.0 and abs(lon) <= 360.0):
-            raise CorruptFile(
-                f"{name}: expected a base on the earth in the comment 'ref pos', got "
-                f"{lat:g}, {lon:g}"
-            )
+            raise CorruptFile(CodedText("rtklib-base", name=name, lat=lat, lon=lon))
         to_ecef = Transformer.from_pipeline(
             "+proj=pipeline +step +inv +proj=topocentric +ellps=WGS84 "
             f"+lat_0={lat!r} +lon_0={lon!r} +h_0={height!r}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.errors import RecordingError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -130,9 +131,11 @@ class HeadAngles:
         self._close_standing(self._t_ns[-1] if self._t_ns else 0)
         if self._stood_ns * 1e-9 > 0.95 * seconds:
             raise RecordingError(
-                f"{self._name}: expected a head that turns, got an angle of "
-                f"{np.rad2deg(self._stands_since[1]):.2f}° all the time: its encoder is stuck, or "
-                "the head did not turn"
+                CodedText(
+                    "head-still",
+                    name=self._name,
+                    angle_deg=float(np.rad2deg(self._stands_since[1])),
+                )
             )
 
     def _forget(self, first_ns: int) -> None:

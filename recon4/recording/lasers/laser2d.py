@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
@@ -91,12 +92,12 @@ def read_laser_recording(
     """
     if paths[0].is_file() and is_carmen(paths[0]):
         if len(paths) > 1:
-            raise UnknownFormat(f"one CARMEN log expected, got {len(paths)} files")
+            raise UnknownFormat(CodedText("carmen-one", count=len(paths)))
         scans = _of_carmen(read_carmen(paths[0], report), paths[0].name, report)
         return LaserRecording(in_meters(scans, report))
     if paths[0].is_file() and is_laser_table(paths[0]):
         if len(paths) > 1:
-            raise UnknownFormat(f"one table of a 2-D laser expected, got {len(paths)} files")
+            raise UnknownFormat(CodedText("laser-table-one", count=len(paths)))
         return LaserRecording(in_meters(read_laser_table(paths[0], report), report))
     if recognize(paths[0]) is RecordingKind.PCAP:
         files = [file for path in paths for file in capture_files(path)]
@@ -156,7 +157,7 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
         report.warn(FindingKind.RANGES_INVALID, ranges=int(bad.sum()))
     ranges[bad | (ranges == 0.0)] = np.nan
     if not np.isfinite(ranges).any():
-        raise EmptyRecording("the scans have not one range above 0")
+        raise EmptyRecording(CodedText("laser-no-range"))
     largest = float(np.nanmax(ranges))
     # SICK lasers report several error codes within a percent of the largest range.
     at_largest = ranges >= 0.99 * largest
@@ -220,7 +221,12 @@ def _of_bags(
     if not parts:
         why = "" if topic else "".join(f"; {text}" for text in report.said())
         raise EmptyRecording(
-            f"{paths[0].name}: no scan of {topic or 'a 2-D laser'} can be read{why}"
+            CodedText(
+                "laser-no-scan-of",
+                name=paths[0].name,
+                topic=topic or CodedText("laser-any"),
+                why=why,
+            )
         )
     out_of_order = report.counts["scans_out_of_order"]
     if out_of_order:

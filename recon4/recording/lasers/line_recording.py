@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
@@ -78,14 +79,13 @@ class LineRecording:
             self._imu = choose_imu(bag, named, report)
         row = rig.row_of("profiler")
         assert row is not None
-        self._row, self._laser_row = row, rig.row_of("laser2d")
-        self._lines = _topic_of(rig.sensors[row].topic, rig.sensors[row].name, self.topics)
+        self._row, self._laser_row, sensor = row, rig.row_of("laser2d"), rig.sensors[row]
+        self._lines = _topic_of(sensor.topic, sensor.name, self.topics)
         if not self._lines:
             names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[: LISTED.names])
-            raise EmptyRecording(
-                f"{paths[0].name}: no line scans of {rig.sensors[row].name}; topics: {names}"
-            )
-        self._joint = self._find_joint(rig.sensors[row])
+            text = CodedText("lines-none", name=paths[0].name, sensor=sensor.name, topics=names)
+            raise EmptyRecording(text)
+        self._joint = self._find_joint(sensor)
         self._head = "" if self._joint else self._find_head(rig, row)
         self._scans = self._find_scans(rig)
         found = {row: self._lines} | ({self._laser_row: self._scans} if self._scans else {})

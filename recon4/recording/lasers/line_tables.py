@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Rig
@@ -61,10 +62,7 @@ class LineTables:
         lines = [path for path in paths if is_line_table(path)]
         scans = [path for path in paths if is_laser_table(path)]
         if len(lines) != 1 or len(scans) > 1:
-            raise UnknownFormat(
-                f"expected one table of line scans and at most one of a 2-D laser, got "
-                f"{len(lines)} and {len(scans)}"
-            )
+            raise UnknownFormat(CodedText("line-tables-count", lines=len(lines), lasers=len(scans)))
         rest = [path for path in paths if path not in (*lines, *scans)]
         return LineTables(lines[0], scans[0] if scans else None, rest[0] if rest else None)
 
@@ -82,16 +80,10 @@ class LineTableRecording:
         name = tables.lines.name
         row = None if rig is None else rig.row_of("profiler")
         if rig is None or row is None:
-            raise ConfigError(
-                f"{name}: line scans need a rig with a sensor of kind profiler (page: field Rig; "
-                "command: --rig): tables do not say where the sensors are mounted"
-            )
+            raise ConfigError(CodedText("line-tables-rig", name=name))
         sensor = rig.sensors[row]
         if "head_deg" not in column_names(tables.lines) and not sensor.head_rate_rad_s:
-            raise ConfigError(
-                f"{sensor.name}: the angles of its head are missing: expected a column head_deg in "
-                f"{name}; with a head of constant rate, head_rate_deg_s in the rig file"
-            )
+            raise ConfigError(CodedText("head-column-missing", sensor=sensor.name, name=name))
         if rig.row_of("laser2d") is None:
             report.warn(FindingKind.LASER_NOT_IN_RIG)
         elif tables.laser2d is None:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.lasers.tuning import RANGE_UNITS
@@ -22,7 +23,7 @@ def in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
         CorruptFile: If no unit makes sense.
     """
     if not np.isfinite(scans.range_m).any():
-        raise EmptyRecording("the scans have not one return")
+        raise EmptyRecording(CodedText("laser-no-return"))
     return LaserUnit(report).in_meters(scans)
 
 
@@ -72,7 +73,7 @@ def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: Import
     largest = max(float(seen.max()), range_max_m)
     is_mm = largest > RANGE_UNITS.largest_cm or median > RANGE_UNITS.median_cm
     if median * (1e-3 if is_mm else 1e-2) > RANGE_UNITS.far_m:
-        raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
+        raise CorruptFile(CodedText("laser-ranges-unit", median=median))
     return _reported_unit_m(median, is_mm, name="laser2d", report=report)
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, joined_scans
@@ -114,7 +115,7 @@ def rig_of_scans(files: Sequence[Path], report: ImportReport) -> Rig:
     """
     found = scan_streams(files).laser
     if found is None:
-        raise EmptyRecording(f"{files[0].name}: no datagrams of a 2-D laser")
+        raise EmptyRecording(CodedText("laser-no-datagrams", files=files[0].name))
     address, port = found
     report.derive(DerivedKind.LASER_BY_SENDER, address=address, port=port)
     laser = Sensor(
@@ -160,8 +161,13 @@ class ScanCapture:
         laser, profiler = (_sensor(rig, kind) for kind in ("laser2d", "profiler"))
         if laser and profiler and _same_source(laser[1], profiler[1]):
             raise ConfigError(
-                f"rig {rig.name}: {laser[1].name} and {profiler[1].name} both send to port "
-                f'{laser[1].port}: give each its address = "…" in the rig file, or its own port'
+                CodedText(
+                    "laser-port-shared",
+                    rig=rig.name,
+                    laser=laser[1].name,
+                    profiler=profiler[1].name,
+                    port=laser[1].port,
+                )
             )
         self._laser = _LaserReader(laser[1], report) if laser else None
         self._profiler = _ProfilerReader(profiler[0], rig, report) if profiler else None
@@ -320,7 +326,7 @@ def read_scan_captures(files: Sequence[Path], report: ImportReport) -> LaserScan
     capture = ScanCapture(files, rig, report=report)
     parts = [item for item in capture.read() if isinstance(item, LaserScans)]
     if not parts:
-        raise EmptyRecording(f"{files[0].name}: no scan of the 2-D laser can be read")
+        raise EmptyRecording(CodedText("laser-no-scan-read", files=files[0].name))
     scans = joined_scans(parts)
     if scans.odometry is None:
         report.derive(DerivedKind.ODOMETRY_MISSING)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
@@ -191,17 +192,15 @@ def _checked(scan: Any, report: ImportReport) -> tuple[NDArray[np.float32], floa
     """Ranges, angle between two shots [rad] and time between them [s]; 0 = not known."""
     ranges = np.asarray(scan.ranges, np.float32)
     if not 0 < len(ranges) <= LIMITS.beams:
-        raise CorruptFile(f"a scan: expected 1 to {LIMITS.beams} ranges, got {len(ranges)}")
+        raise CorruptFile(CodedText("scan-ranges", beams=LIMITS.beams, count=len(ranges)))
     first, step = float(scan.angle_min), float(scan.angle_increment)
     wide = abs(step) * (len(ranges) - 1) >= SCAN_BEAMS.narrowest_rad or len(ranges) == 1
     if not np.all(np.isfinite([first, step])) or step == 0.0 or not wide:
-        raise CorruptFile(
-            f"a scan: expected a first angle and a step between beams, got {first} and {step} rad"
-        )
+        raise CorruptFile(CodedText("scan-angles", first=first, step=step))
     widest = max(abs(first), abs(step) * len(ranges))
     if widest > SCAN_BEAMS.max_angle_rad:
         raise CorruptFile(
-            f"a scan: expected angles within {SCAN_BEAMS.max_angle_rad:g} rad, got {widest:.3g} rad"
+            CodedText("scan-angles-wide", max_angle_rad=SCAN_BEAMS.max_angle_rad, widest=widest)
         )
     # Messages of datagrams have no last angle.
     last = float(getattr(scan, "angle_max", np.nan))

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.ports import PORTS
 from recon4.model.rig import Rig
 from recon4.recording.bags.messages import imu_row, stamp_ns
@@ -105,12 +106,17 @@ def _of_lines(recording: Path, rig: Rig) -> Iterator[ScanDatagram]:
     kinds = {topic.name: topic.type for topic in found.topics}
     if found.joint is not None:
         raise UnknownFormat(
-            f"{recording.name}: datagrams have angles of a head, no transforms: {found.joint.text}"
+            CodedText("replay-transforms", recording=recording.name, text=found.joint.text)
         )
     if kinds[found.lines_topic] != LASER_SCAN:
         raise UnknownFormat(
-            f"{recording.name}: only lines that are {LASER_SCAN} can be sent, those of "
-            f"{found.lines_topic} are {kinds[found.lines_topic]}"
+            CodedText(
+                "replay-lines",
+                recording=recording.name,
+                laser_scan=LASER_SCAN,
+                lines_topic=found.lines_topic,
+                kinds=kinds[found.lines_topic],
+            )
         )
     profiler, laser = rig.row_of("profiler"), rig.row_of("laser2d")
     assert profiler is not None

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.columns import TIME, Columns
 from recon4.recording.lasers.tuning import LINES
 from recon4.recording.limits import LIMITS
@@ -48,7 +49,7 @@ def _check_length(sweep: Columns, number: str, where: str) -> None:
     if count > LIMITS.beams:
         how = f"the column {number} changes" if number else "the angle turns back"
         raise CorruptFile(
-            f"{where}: expected sweeps of at most {LIMITS.beams} shots, where {how}; got {count}"
+            CodedText("sweep-shots", where=where, beams=LIMITS.beams, how=how, count=count)
         )
 
 

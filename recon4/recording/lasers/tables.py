@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.recording.formats.columns import TIME, Columns, column_names, read_columns
@@ -45,7 +46,7 @@ def read_laser_table(path: Path, report: ImportReport) -> LaserScans:
     """
     parts = list(laser_batches(path, report))
     if not parts:
-        raise EmptyRecording(f"{path.name}: no scan of a 2-D laser can be read")
+        raise EmptyRecording(CodedText("laser-table-no-scan", file=path.name))
     scans = joined_scans(parts)
     if scans.odometry is None:
         report.derive(DerivedKind.ODOMETRY_MISSING)
@@ -99,7 +100,7 @@ class _BeamGrid:
         times = np.concatenate([np.diff(scan[TIME]) for scan in scans])
         used = np.isfinite(steps) & (steps != 0.0)
         if not used.any():
-            raise UnknownFormat(f"{where}: expected angles that change from beam to beam, got none")
+            raise UnknownFormat(CodedText("laser-table-angles", where=where))
         # A laser that swings back and forth has as many steps in either direction.
         forward = 1.0 if np.count_nonzero(steps[used] > 0.0) * 2 >= used.sum() else -1.0
         step = forward * float(np.median(np.abs(steps[used])))
@@ -107,7 +108,8 @@ class _BeamGrid:
         low, high = float(finite.min()), float(finite.max())
         beams = round((high - low) / abs(step)) + 1
         if beams > LIMITS.beams:
-            raise UnknownFormat(f"{where}: expected at most {LIMITS.beams} beams, got {beams}")
+            limit = LIMITS.beams
+            raise UnknownFormat(CodedText("laser-table-beams", where=where, limit=limit, got=beams))
         per_beam = times[used] / np.maximum(np.rint(steps[used] / step), 1.0)
         return _BeamGrid(low if step > 0 else high, step, beams, float(np.median(per_beam)))
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText, at
 from recon4.model.finding import Finding
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -50,7 +51,7 @@ def convert(sources: Sources, folder: Path, *, progress: Progress) -> Converted:
         StoreError: If the folder cannot be written.
     """
     if folder.exists():
-        raise ConfigError(f"{folder} exists already: name a new folder")
+        raise ConfigError(CodedText("folder-exists", folder=str(folder)))
     report, sources = ImportReport(), located_sources(sources)
     settings = IngestSettings()
     recording = open_recording(OpenRequest(sources.recordings, sources.rig, settings, report))
@@ -62,8 +63,11 @@ def convert(sources: Sources, folder: Path, *, progress: Progress) -> Converted:
         for item in recording.read():
             if isinstance(item, Multiframe):
                 raise ConfigError(
-                    f"{sources.recordings[0].name}: expected packets or messages of LiDARs, got "
-                    f"{recording.kind}: they have no points of single sensors"
+                    CodedText(
+                        "convert-needs-packets",
+                        recordings=sources.recordings[0].name,
+                        kind=recording.kind,
+                    )
                 )
             if isinstance(item, Shots):
                 writer.push(item)
@@ -72,7 +76,7 @@ def convert(sources: Sources, folder: Path, *, progress: Progress) -> Converted:
                 gather(imu, item)
         writer.close(_cleaned(imu, recording.rig, report=report))
         if not writer.points:
-            raise ConfigError(f"{sources.recordings[0].name}: {report.why_no_points()}")
+            raise ConfigError(at(sources.recordings[0].name, report.why_no_points()))
     return Converted(writer.points, writer.samples, tuple(report.lost()), tuple(report.findings))
 
 

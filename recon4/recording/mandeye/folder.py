@@ -86,7 +86,7 @@ def list_walk(folder: Path, report: ImportReport) -> MandeyeWalk:
     files = sorted((f for f in folder.iterdir() if is_points_file(f.name)), key=natural)
     parts = [part for file in files if (part := _part(file, report)) is not None]
     if not parts:
-        raise EmptyRecording(f"{folder.name}: none of {len(files)} files lidar*.laz has points")
+        raise EmptyRecording(CodedText("mandeye-no-points", folder=folder.name, count=len(files)))
     timed = [part for part in parts if part.t_first_ns]
     require_one_walk([FileTimes(p.path, p.t_first_ns, p.t_first_ns) for p in timed])
     # A part whose first points have no time is where its number says.
@@ -111,11 +111,11 @@ def _part(path: Path, report: ImportReport) -> WalkPart | None:
     """A part; None (counted) if it is damaged or empty, as the last one after a power cut."""
     try:
         if not path.stat().st_size:
-            raise CorruptFile(f"{path.name}: the file is empty (0 bytes)")
+            raise CorruptFile(CodedText("file-empty", name=path.name))
         points = las_header(path).points
         head = next(las_points(path, most=MANDEYE.head_points), None) if points else None
         if head is None:
-            raise CorruptFile(f"{path.name}: no points")
+            raise CorruptFile(CodedText("file-no-points", file=path.name))
         times = times_ns(head)
         ids = tuple(distinct(np.asarray(head.user_data)).tolist())
     except (RecordingError, AttributeError) as error:

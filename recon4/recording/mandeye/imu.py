@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import ImuSamples
 from recon4.recording.formats.damaged_lines import DamagedLines
@@ -84,7 +85,11 @@ def _places(cells: Sequence[str], name: str) -> Mapping[str, int]:
     named = {cell.lower(): k for k, cell in enumerate(cells)}
     if "timestamp" in named:
         if missing := [column for column in NEEDED if column not in named]:
-            raise CorruptFile(f"{name}: expected the columns {', '.join(NEEDED)}, no {missing[0]}")
+            raise CorruptFile(
+                CodedText(
+                    "mandeye-columns", name=name, needed=", ".join(NEEDED), missing=missing[0]
+                )
+            )
         return named
     return {column: k for k, column in enumerate(COLUMNS[: max(len(NEEDED), len(cells))])}
 

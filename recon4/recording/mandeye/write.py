@@ -9,6 +9,7 @@ import laspy
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
@@ -114,8 +115,12 @@ def _write_points(path: Path, shots: Sequence[Shots]) -> int:
     xyz = np.concatenate([one.xyz for one in shots])[order].astype(np.float64)
     if len(xyz) and np.abs(xyz).max() > np.iinfo(np.int32).max * MANDEYE.scale_m:
         raise ConfigError(
-            f"{path.name}: expected points within {np.iinfo(np.int32).max * MANDEYE.scale_m:.0f} "
-            f"m, got {np.abs(xyz).max():.4g} m"
+            CodedText(
+                "convert-far",
+                file=path.name,
+                limit_m=np.iinfo(np.int32).max * MANDEYE.scale_m,
+                farthest_m=float(np.abs(xyz).max()),
+            )
         )
     header = laspy.LasHeader(version="1.2", point_format=1)
     header.scales, header.offsets = np.full(3, MANDEYE.scale_m), np.zeros(3)

@@ -8,6 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from recon4.errors import ConfigError, RecordingError, UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
@@ -25,7 +26,7 @@ def open_frames(request: OpenRequest) -> Recording:
     """A folder of cloud files."""
     paths, settings, report = request.paths, request.settings, request.report
     if len(paths) > 1:
-        raise UnknownFormat("give the folder of the frames, not several files or folders")
+        raise UnknownFormat(CodedText("frames-one-folder"))
     frames = list_frames(paths[0])
     frames = replace(frames, t_ns=without_jumps(frames.t_ns, request.jumps))
     for one in frames.derived:
@@ -61,13 +62,9 @@ def _require_one_lidar(rig: Rig, path: Path) -> None:
         ConfigError: If it has several sensors.
     """
     if rig.row_of("profiler") is not None:
-        raise UnknownFormat(
-            f"{path.name}: line scans are read from bags, tables or captures, got frames"
-        )
+        raise UnknownFormat(CodedText("frames-line-scans", file=path.name))
     if len(rig.sensors) > 1:
-        raise ConfigError(
-            f"a folder of frames is one LiDAR, the rig {rig.name!r} has {len(rig.sensors)}"
-        )
+        raise ConfigError(CodedText("frames-one-lidar", rig=rig.name, count=len(rig.sensors)))
 
 
 def frames_model(files: Sequence[Path], fields: PointRecipe | None) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.errors import UnknownFormat
+from recon4.locales.coded import CodedText
 from recon4.recording.mandeye.folder import MandeyeWalk, list_walk
 from recon4.recording.mandeye.read import MandeyeRecording, walk_streams
 from recon4.recording.openers.request import OpenRequest, Recording
@@ -14,7 +15,7 @@ from recon4.recording.rigs.choice import choose_rig
 def open_mandeye(request: OpenRequest) -> Recording:
     """The parts of one walk; several LiDARs have numbers."""
     if len(request.paths) > 1:
-        raise UnknownFormat("give one folder of a MANDEYE device, not several files or folders")
+        raise UnknownFormat(CodedText("mandeye-one-folder"))
     walk = list_walk(request.paths[0], request.report)
     rig = request.rig or choose_rig(walk_streams(walk), request.report)
     recording = MandeyeRecording(walk, rig, request.report)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
@@ -108,9 +109,7 @@ class PacketCapture:
         groups = sensors_of(self.streams, open_file)
         if given is None and not groups:
             found = _found_instead(self.streams, heads)
-            raise EmptyRecording(
-                f"{paths[0].name}: no data packets of a LiDAR that is read; found: {found}"
-            )
+            raise EmptyRecording(CodedText("packets-none", paths=paths[0].name, found=found))
         self.rig = rig if isinstance(rig, Rig) else self._chosen(rig, groups)
         self._warn_of_others()
         self._imu = LidarImu(self.rig, other=self._own_imu(), report=report)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import LIDARS, lidar_model
@@ -47,9 +48,7 @@ def open_decoder(
     if family is None:
         known = ", ".join(name for name, facts in LIDARS.items() if facts.maker)
         raise ConfigError(
-            f"{of.sensor.topic or of.sensor.name}: these are packets of no LiDAR that is decoded; "
-            "state its model in the rig file, or play the recording back through the driver and "
-            f"record the PointCloud2 that it publishes; decoded: {known}"
+            CodedText("packets-unknown", source=of.sensor.topic or of.sensor.name, known=known)
         )
     require_one_sender(family.open(replace(of, report=ImportReport())), of)
     return PacketDecoder(family.open(of), of, utc_offset_ns=utc_offset_ns, alone=alone)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.recording.clocks.stamps import strays
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketFormat, PacketSensor, Payloads
@@ -49,9 +50,7 @@ def require_one_sender(layout: PacketFormat, of: PacketSensor) -> None:
     why = _goes_back(head) or _turns_to_and_fro(head) or _comes_too_often(head)
     if why:
         raise ConfigError(
-            f"{of.sensor.topic or of.sensor.name}: packets of two sensors of one model are mixed, "
-            f"and nothing in them tells the sensors apart ({why}): record each of them in a topic "
-            "of its own, or to a port of its own"
+            CodedText("packets-mixed", source=of.sensor.topic or of.sensor.name, why=why)
         )
 
 

@@ -248,7 +248,11 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
         bytes_read += len(batch.buffer)
     if left == max_packets:
         raise EmptyRecording(
-            f"{path.name}: no UDP datagram in it; found: {unread_text(report) or 'nothing'}"
+            CodedText(
+                "packets-no-datagram",
+                file=path.name,
+                found=unread_text(report) or CodedText("found-nothing"),
+            )
         )
     return _Head(path, join_datagrams(parts), read_ratio)
 

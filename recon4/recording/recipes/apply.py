@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.point_recipes import PointRecipe, Term
 from recon4.recording.clouds.point_fields import NS_TIME
 from recon4.recording.formats.point_messages import WHOLE
@@ -37,7 +38,11 @@ def as_points(recipe: PointRecipe, lists: Mapping[str, Columns]) -> dict[str, Co
         parts = [points.column(term.column) for term in terms]
         for term, part in zip(terms, parts, strict=True):
             if part.dtype.kind not in "fiub":
-                raise CorruptFile(f"{role}: {term.column!r} is no number, but {part.dtype}")
+                raise CorruptFile(
+                    CodedText(
+                        "recipe-no-number", role=role, column=term.column, dtype=str(part.dtype)
+                    )
+                )
         found[role] = parts[0]
         if role == "time" and terms[0].unit:
             found[role] = _sum_ns(parts, terms)
@@ -98,7 +103,11 @@ def chosen_list(names: Iterable[str], lists: Mapping[str, Columns]) -> PointList
     fewest = min(missing, key=len, default=wanted)
     there = ", ".join(key for name, one in lists.items() for key in one if name != WHOLE)
     raise CorruptFile(
-        f"no column {', '.join(map(repr, fewest[:5]))}; there are {there[:300] or 'none'}"
+        CodedText(
+            "recipe-columns-missing",
+            missing=", ".join(map(repr, fewest[:5])),
+            there=there[:300] or CodedText("found-none"),
+        )
     )
 
 

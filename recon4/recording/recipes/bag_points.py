@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.locales.coded import CodedText, at
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
@@ -66,9 +67,7 @@ def declared_recipes(
     found: dict[str, PointRecipe] = {}
     for sensor in rig.sensors if rig is not None else ():
         if sensor.fields and not sensor.topic:
-            raise ConfigError(
-                f"sensor {sensor.name} of the rig: fields need the topic they are for, got none"
-            )
+            raise ConfigError(CodedText("recipe-no-topic", sensor=sensor.name))
         if sensor.fields:
             found[sensor.topic] = sensor.fields
     samples = bag_samples(bag, [t for t in bag.topics if _may_be_points(t)])
@@ -116,10 +115,9 @@ def _topic_with(recipe: PointRecipe, samples: Mapping[str, RecipeSample]) -> str
         return having[0]
     if having:
         raise ConfigError(
-            f"fields {recipe.text()}: {', '.join(having)} have these columns: say in a rig file "
-            "which topic is meant (topic and fields of its [[sensor]])"
+            CodedText("recipe-several-topics", recipe=recipe.text(), having=", ".join(having))
         )
-    raise ConfigError(f"fields {recipe.text()}: {'; '.join(why) or 'the bag has no points'}")
+    raise ConfigError(at(f"fields {recipe.text()}", "; ".join(why) or CodedText("bag-no-points")))
 
 
 def unknown_points(bag: Bag, known: Iterable[CloudTopic], *, only: str = "") -> list[UnknownPoints]:

@@ -15,6 +15,7 @@ import numpy as np
 from recon4.errors import ConfigError, CorruptFile
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import at, text_of
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import ANGLES, LENGTHS, TIMES, PointRecipe, Units
 from recon4.recording.clouds.point_fields import NS_TIME
@@ -59,15 +60,15 @@ def require_fitting(recipe: PointRecipe, sample: RecipeSample, report: ImportRep
         points = as_points(recipe, largest)
         chosen = chosen_list(recipe.columns, largest)
     except CorruptFile as error:
-        raise ConfigError(f"{where}: {error}") from error
+        raise ConfigError(at(where, text_of(error))) from error
     raw = {
         role: [chosen.column(term.column) for term in terms] for role, terms in recipe.terms.items()
     }
     for texts in (_angles(recipe, raw), _lengths(recipe, points), _rings(recipe, points)):
         if texts:
-            raise ConfigError(f"{where}: {texts}")
+            raise ConfigError(at(where, texts))
     if text := _times(recipe, points, raw, period_s=sample.period_s):
-        raise ConfigError(f"{where}: {text}")
+        raise ConfigError(at(where, text))
     if _is_mirrored(points):
         report.warn(FindingKind.POINTS_TURN_LEFT, name=sample.name)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.point_recipes import PointRecipe, parse_fields_text
 from recon4.model.rig import Rig, load_rig, parse_rig
 from recon4.recording.info.describe import describe
@@ -36,11 +37,10 @@ def rig_given(recordings: Sequence[Path], rig: str, fields: str) -> Rig | None:
     if recipe is None:
         return load_rig(rig) if rig else None
     if rig:
-        raise ConfigError(
-            f"command: --fields and --rig: expected one of them; write {recipe.toml()} into the "
-            "[[sensor]] of the rig file"
-        )
+        raise ConfigError(CodedText("recipe-and-rig", recipe=recipe.toml()))
     found = describe(recordings[0], fields=recipe)
     if not found.first_rig:
-        raise ConfigError(f"command: --fields {fields}: no rig for it: {'; '.join(found.missing)}")
+        raise ConfigError(
+            CodedText("recipe-no-rig", fields=fields, missing="; ".join(found.missing))
+        )
     return parse_rig(found.first_rig, where="command: --fields")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recon4.errors import ConfigError, EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.recording.bags.driver_topics import needed_text
 from recon4.recording.recipes.check import RecipeSample, require_fitting
 from recon4.recording.recipes.propose import Proposal, say_doubts
@@ -57,7 +58,7 @@ def require_known(unknown: Sequence[tuple[Stream, Proposal]], name: str) -> None
         return
     if not ready:
         lacking = "; ".join(proposal_text(stream.label, one) for stream, one in unknown)
-        raise EmptyRecording(f"{name}: no LiDAR data; {lacking}")
+        raise EmptyRecording(CodedText("no-lidar-data", name=name, lacking=lacking))
     lines = [f"{name}: the columns of the points have no common names; proposed for a rig file:"]
     lines += [f"  {proposal_text(stream.label, one)}" for stream, one in ready]
     recipe = ready[0][1].recipe

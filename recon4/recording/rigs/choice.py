@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.imu_mounts import imu_mount
@@ -205,9 +206,7 @@ def assign_topics(rig: Rig, streams: Sequence[Stream], report: ImportReport) -> 
             chosen[sensor.name] = topic
             report.derive(DerivedKind.SENSOR_TOPIC, sensor=sensor.name, topic=topic)
     if not chosen:
-        raise ConfigError(
-            f"no LiDAR of the rig is in the recording: {mismatch_text(rig, _names(streams))}"
-        )
+        raise ConfigError(CodedText("rig-not-recorded", why=mismatch_text(rig, _names(streams))))
     _warn_unassigned(rig, chosen, _free(topics, chosen), report=report)
     sensors = [replace(s, topic=chosen.get(s.name, s.topic)) for s in rig.sensors]
     return replace(rig, sensors=tuple(sensors))

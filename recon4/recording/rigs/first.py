@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, format_rig
 from recon4.recording.packets.companions import companion_paths, with_descriptions
@@ -81,7 +82,7 @@ def write_first_rig(text: str, path: Path) -> None:
         StoreError: If it cannot be written.
     """
     if not text:
-        raise ConfigError(f"{path.name}: no sensor is known to write a rig file of")
+        raise ConfigError(CodedText("rig-no-sensor-known", file=path.name))
     if path.exists():
-        raise ConfigError(f"{path} exists: give a new file")
+        raise ConfigError(CodedText("rig-file-exists", file=str(path)))
     write_text(path, text)

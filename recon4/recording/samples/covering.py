@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TypeVar
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -30,12 +31,7 @@ def covering(
     if last < span[0] - margin_ns or first > span[1] + margin_ns:
         ahead_s = (first - span[0]) / 1e9
         if asked_for:
-            raise ConfigError(
-                f"{what} samples cover {first / 1e9:.3f} … {last / 1e9:.3f} s, the points "
-                f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same? If both "
-                f"begin together, they differ by {described(ahead_s)}: give [{what.lower()}] "
-                f"time_offset_s = {-ahead_s:.3f} in the rig file"
-            )
+            raise ConfigError(_elsewhere(what, (first, last), span))
         report.warn(
             FindingKind.SAMPLES_ELSEWHEN,
             what=what,
@@ -61,3 +57,20 @@ def covering(
             **(clock if looks else {}),
         )
     return samples
+
+
+def _elsewhere(what: str, samples: tuple[int, int], points: tuple[int, int]) -> CodedText:
+    """That samples are of another time than the points; both from first to last [ns]."""
+    (first, last), (begin, end) = ((one / 1e9, other / 1e9) for one, other in (samples, points))
+    ahead_s = (samples[0] - points[0]) / 1e9
+    return CodedText(
+        "samples-not-covering",
+        what=what,
+        first_s=first,
+        last_s=last,
+        begin_s=begin,
+        end_s=end,
+        ahead=described(ahead_s),
+        table=what.lower(),
+        offset_s=-ahead_s,
+    )

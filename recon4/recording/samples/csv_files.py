@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import DamagedLines
@@ -129,24 +130,29 @@ def _read(
         values.extend(numbers)
     damaged.finish(len(times))
     if not times:
-        raise EmptyRecording(f"{path.name}: no samples under the header")
+        raise EmptyRecording(CodedText("samples-none", file=path.name))
     table = np.array(values, np.float64).reshape(len(times), -1)
     return np.array(times, np.int64), {name: table[:, k] for k, name in enumerate(known[1:])}
 
 
 def _checked_header(line: str, known: tuple[str, ...], name: str) -> list[str]:
     if not line.strip():
-        raise UnknownFormat(f"{name}: line 1 is empty; expected header: {','.join(known)}")
+        raise UnknownFormat(CodedText("samples-header-empty", name=name, known=",".join(known)))
     header = _names(line)
     missing = [column for column in known if column not in header and column not in _OPTIONAL]
     if missing:
         raise UnknownFormat(
-            f"{name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}; "
-            f"got {line.strip()[: LISTED.characters]}"
+            CodedText(
+                "samples-columns",
+                name=name,
+                missing=", ".join(missing),
+                known=",".join(known),
+                line=line.strip()[: LISTED.characters],
+            )
         )
     twice = sorted({column for column in known if header.count(column) > 1})
     if twice:
-        raise UnknownFormat(f"{name}: line 1: expected each column once, got {twice} twice")
+        raise UnknownFormat(CodedText("column-twice", file=name, twice=str(twice)))
     return header
 
 
@@ -155,7 +161,7 @@ def _cells(line: str, separator: str, where: str) -> list[str]:
     try:
         return next(csv.reader([line.rstrip("\r\n")], delimiter=separator), [])
     except csv.Error as error:
-        raise CorruptFile(f"{where}: expected cells of a CSV: {error}") from error
+        raise CorruptFile(CodedText("samples-csv", where=where, why=str(error))) from error
 
 
 def _sample(
@@ -163,7 +169,9 @@ def _sample(
 ) -> tuple[int, list[float]]:
     """Time and numbers of a line whose columns stand at the places ``at``; -1 = not in the file."""
     if len(row) != len(header):
-        raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
+        raise CorruptFile(
+            CodedText("samples-cells", where=where, expected=len(header), got=len(row))
+        )
     values = dict(zip(header, row, strict=True))
     if "lat_deg" in values:
         _check_place(values["lat_deg"], values["lon_deg"], where)
@@ -174,9 +182,7 @@ def _sample(
 def _check_place(latitude: str, longitude: str, where: str) -> None:
     lat, lon = csv_number(latitude, where), csv_number(longitude, where)
     if abs(lat) > 90.0 or abs(lon) > 360.0:
-        raise CorruptFile(
-            f"{where}: latitude and longitude must be in degrees, got {lat:g}, {lon:g}"
-        )
+        raise CorruptFile(CodedText("samples-degrees", where=where, lat=lat, lon=lon))
 
 
 def csv_time(text: str, where: str) -> int:
@@ -187,9 +193,9 @@ def csv_time(text: str, where: str) -> int:
     """
     digits = text.strip()
     if not (digits.isascii() and digits.lstrip("-").isdigit()):
-        raise CorruptFile(f"{where}: t_ns must be whole nanoseconds, got {text[:80]!r}")
+        raise CorruptFile(CodedText("samples-whole-ns", where=where, text=text[:80]))
     if len(digits) > 19 or not 0 <= int(digits) < 2**63:
-        raise CorruptFile(f"{where}: t_ns must be 0 to 2^63, got {digits[:80]}")
+        raise CorruptFile(CodedText("samples-time-range", where=where, digits=digits[:80]))
     return int(digits)
 
 
@@ -202,4 +208,4 @@ def csv_number(text: str, where: str) -> float:
     try:
         return parse_float(text.strip().replace(",", ".")) if text.strip() else math.nan
     except ValueError as error:
-        raise CorruptFile(f"{where}: expected a number, got {text[:80]!r}") from error
+        raise CorruptFile(CodedText("samples-number", where=where, text=text[:80])) from error

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.limits import LIMITS
 from recon4.recording.tables.coordinates import (
     AS_THE_TABLE_SAYS,
@@ -77,7 +78,9 @@ class TextCloud:
             yield points * np.array(self.columns.factor)
         promised = self.layout.promised
         if promised is not None and promised != got:
-            raise CorruptFile(f"{self.path.name}: cut: {promised} points promised, got {got}")
+            raise CorruptFile(
+                CodedText("points-cut", file=self.path.name, promised=promised, got=got)
+            )
 
     def _points(self, text: str, line: int) -> Array:
         """Numbers of a block, (N, 3)."""
@@ -115,8 +118,14 @@ class TextCloud:
                 count = row.count(delimiter) + 1 if delimiter else len(row.split())
             if count != width:
                 raise CorruptFile(
-                    f"{self.path.name}: line {number}: expected {width} cells, got {count}: "
-                    f"{row.strip()[:80]!r}"
+                    CodedText(
+                        "table-cells",
+                        file=self.path.name,
+                        number=number,
+                        width=width,
+                        count=count,
+                        row=row.strip()[:80],
+                    )
                 )
 
     def _wrong_row(self, text: str, line: int) -> CorruptFile:
@@ -144,7 +153,7 @@ def read_layout(path: Path) -> TableLayout:
     try:
         return TableLayout.of(table_head(path), path.name)
     except csv.Error as error:
-        raise CorruptFile(f"{path.name}: cannot be read as CSV: {error}") from error
+        raise CorruptFile(CodedText("table-csv", file=path.name, why=str(error))) from error
 
 
 def preview_cloud(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 
 Spread = Literal["se", "sn", "sh", "cee", "cen", "ceh", "cnn", "cnh", "chh"]
 """Standard deviations east, north, height, and covariances."""
@@ -165,10 +166,7 @@ def check_meanings(columns: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
     beside = ("-", "role", "radius", "id", *SIGMAS, *COVARIANCES)
     axes = sorted(column.lstrip("-") for column in columns if column not in beside)
     if columns and axes not in (["x", "y", "z"], ["lat", "lon", "z"]):
-        raise ConfigError(
-            "columns: expected x, y and z once each (or lat, lon and z), as in id,x,y,z; "
-            f"got {','.join(columns)}"
-        )
+        raise ConfigError(CodedText("table-columns", columns=",".join(columns)))
     return columns
 
 
@@ -178,9 +176,7 @@ def _one_meaning(word: str) -> Meaning:
             return meaning
     found = column_name(word).meaning if word else "-"
     if word and found == "-":
-        raise ConfigError(
-            f"columns: expected x, y, z, -x, -y, lat, lon, id, role, radius or -, got {word[:40]!r}"
-        )
+        raise ConfigError(CodedText("table-column-word", word=word[:40]))
     return found
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.recording.tables.column_names import (
     COVARIANCES,
     SIGMAS,
@@ -166,8 +167,13 @@ def raise_question(preview: TablePreview, name: str, *, in_file: bool = False) -
             else f"Say which column is what (command: --columns {columns})"
         )
         raise ConfigError(
-            f"{name}: {preview.question} {answer}; the first row is "
-            f"{' | '.join(preview.rows[0])[:160]}"
+            CodedText(
+                "table-question",
+                name=name,
+                question=preview.question,
+                answer=answer,
+                rows=" | ".join(preview.rows[0])[:160],
+            )
         )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.tables.column_names import column_name
 from recon4.recording.tables.tuning import DXF_POINTS
 
@@ -46,21 +47,21 @@ def dxf_table(data: bytes, name: str) -> str:
         CorruptFile: If it is damaged, has no points, or is in a unit that is not known.
     """
     if data.startswith(_BINARY):
-        raise CorruptFile(f"{name}: expected a DXF as text (ASCII), got a binary one: save it so")
+        raise CorruptFile(CodedText("dxf-binary", name=name))
     if data.rstrip()[-3:] != b"EOF":
-        raise CorruptFile(f"{name}: cut: expected EOF as its last line, got {data[-20:]!r}")
+        raise CorruptFile(CodedText("dxf-cut", name=name, data=repr(data[-20:])))
     drawing = _opened(data, name)
     unit = _UNITS.get(drawing.header.get("$INSUNITS", 0), "")
     if not unit:
         code = drawing.header["$INSUNITS"]
-        raise CorruptFile(f"{name}: expected meters, feet or another known unit, got unit {code}")
+        raise CorruptFile(CodedText("dxf-unit", name=name, code=str(code)))
     space = drawing.modelspace()
     inserts = cast("Iterable[Insert]", space.query("INSERT"))
     blocks = [_block(one) for one in inserts if one.attribs]
     points = [_place(one.dxf.location) for one in space.query("POINT")]
     found = [*blocks, *_named(points, list(_texts(space)))]
     if not found:
-        raise CorruptFile(f"{name}: expected points, or blocks with attributes, got a DXF without")
+        raise CorruptFile(CodedText("dxf-no-points", name=name))
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(["id", *(f"{axis} [{unit}]" for axis in ("east", "north", "height"))])
@@ -83,10 +84,10 @@ def _opened(data: bytes, name: str) -> Drawing:
         IndexError,
         AttributeError,
     ) as error:
-        raise CorruptFile(f"{name}: cannot be read as DXF: {str(error)[:200]}") from error
+        raise CorruptFile(CodedText("dxf-unreadable", name=name, said=str(error)[:200])) from error
     if found.errors:  # of a damaged drawing what is left would be read
         said = found.errors[0].message
-        raise CorruptFile(f"{name}: cannot be read as DXF: {said[:200]}")
+        raise CorruptFile(CodedText("dxf-unreadable", name=name, said=said[:200]))
     return drawing
 
 

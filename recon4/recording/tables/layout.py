@@ -8,6 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.tables.column_names import is_unit
 from recon4.recording.tables.tuning import TABLES
 
@@ -75,9 +76,7 @@ class TableLayout:
                 break
         else:
             seen = next((line for line in lines if is_content(line)), "")
-            raise CorruptFile(
-                f"{name}: expected rows with three numbers or more, got {seen.strip()[:80]!r}"
-            )
+            raise CorruptFile(CodedText("table-rows", name=name, seen=seen.strip()[:80]))
         rows = [split_row(line, delimiter, decimal) for line in lines[first:] if is_content(line)]
         head = lines[:first]
         width = len(_without_end(rows[0]))

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.survey_covariance import Covariance, check_covariance, covariance_of
 from recon4.recording.limits import LIMITS
 from recon4.recording.tables.coordinates import (
@@ -95,7 +96,7 @@ def read_point_table(
             return PointTable(preview, (), ())
         return _read(text, layout, columns, preview=preview, partial=partial)
     except csv.Error as error:
-        raise CorruptFile(f"{name}: cannot be read as CSV: {error}") from error
+        raise CorruptFile(CodedText("table-csv", file=name, why=str(error))) from error
 
 
 def _read(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.survey_covariance import Covariance
 from recon4.recording.limits import LIMITS
 from recon4.recording.tables.column_names import column_name
@@ -33,7 +34,7 @@ def read_covariances(data: bytes, name: str) -> dict[str, Covariance]:
     try:
         return _read(text, TableLayout.of(text, name, fewest=1), name)
     except csv.Error as error:
-        raise CorruptFile(f"{name}: cannot be read as CSV: {error}") from error
+        raise CorruptFile(CodedText("table-csv", file=name, why=str(error))) from error
 
 
 def _read(text: str, layout: TableLayout, name: str) -> dict[str, Covariance]:
@@ -41,8 +42,11 @@ def _read(text: str, layout: TableLayout, name: str) -> dict[str, Covariance]:
     spread = spread_columns(layout, meanings, own=1.0)
     if "id" not in meanings or not spread:
         raise ConfigError(
-            f"{name}: expected the columns id, sE, sN, sH or id, cEE, cEN, cEH, cNN, cNH, cHH, "
-            f"got {', '.join(layout.names)[:80] or 'no names'}"
+            CodedText(
+                "table-spread-columns",
+                name=name,
+                got=", ".join(layout.names)[:80] or CodedText("no-column-names"),
+            )
         )
     at, found = meanings.index("id"), dict[str, Covariance]()
     for line, row in enumerate(text.split("\n"), start=1):
@@ -56,6 +60,10 @@ def _read(text: str, layout: TableLayout, name: str) -> dict[str, Covariance]:
             if stated is None or point in found:
                 raise ValueError("states none" if stated is None else "is there already")
         except (ConfigError, ValueError) as error:
-            raise ConfigError(f"{name}: line {line}: {cells[at][:40]!r}: {error}") from error
+            raise ConfigError(
+                CodedText(
+                    "table-row-wrong", name=name, line=line, cells=cells[at][:40], why=str(error)
+                )
+            ) from error
         found[point] = stated
     return found

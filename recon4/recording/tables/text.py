@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.recording.tables.tuning import TABLES
 from recon4.untrusted.bounded import check_file_size, open_regular
 from recon4.untrusted.limits import LIMITS
@@ -96,8 +97,7 @@ def _check_lines(block: str, number: int, name: str) -> None:
         if end < 0:
             line = number + block.count("\n", 0, start)
             raise CorruptFile(
-                f"{name}: line {line}: expected at most {LIMITS.line_bytes} bytes, "
-                "got a longer line"
+                CodedText("text-line-long", file=name, line=line, limit=LIMITS.line_bytes)
             )
         start = end + 1
 
@@ -106,4 +106,4 @@ def _refuse_nul(text: str, number: int, name: str) -> None:
     at = text.find("\0")
     if at >= 0:
         line = number + text.count("\n", 0, at)
-        raise CorruptFile(f"{name}: line {line}: expected text, got a NUL byte")
+        raise CorruptFile(CodedText("text-nul", file=name, line=line))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.lidars import LIDARS, lidar_model
 from recon4.simulation.families.family import SimulatedFamily
 from recon4.simulation.families.hesai import HESAIS
@@ -27,7 +28,7 @@ def family_of(model: str) -> SimulatedFamily:
         if family.name == maker and family.pattern(model) is not None:
             return family
     raise ConfigError(
-        f"a LiDAR {model!r:.80} is not simulated; simulated: {', '.join(simulated_models())}"
+        CodedText("simulate-model", model=model[:80], value=", ".join(simulated_models()))
     )
 
 

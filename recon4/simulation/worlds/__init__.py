@@ -7,6 +7,7 @@ from dataclasses import replace
 from importlib import import_module
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.simulation.world import World
 
 FIXED = ("office", "staircase", "street", "field", "hall", "showroom")
@@ -32,15 +33,15 @@ def build_world(name: str) -> World:
     """
     base, colon, number = name.partition(":")
     if base not in WORLDS:
-        raise ConfigError(f"no world named {base!r}; there are: {', '.join(WORLDS)}")
+        raise ConfigError(CodedText("simulate-world", base=base, worlds=", ".join(WORLDS)))
     module = import_module(f"recon4.simulation.worlds.{base}")
     if base in FIXED:
         if colon:
-            raise ConfigError(f"{base} has no variants, got {name!r}")
+            raise ConfigError(CodedText("simulate-no-variants", base=base, name=name))
         build: Callable[[], World] = module.build
         return build()
     variant = int(number) if number.isascii() and number.isdecimal() else 0 if not colon else -1
     if not 0 <= variant <= _MAX_VARIANT:
-        raise ConfigError(f"a variant is a number of 0 to {_MAX_VARIANT}, got {name!r}")
+        raise ConfigError(CodedText("simulate-variant", max_variant=_MAX_VARIANT, name=name))
     build_variant: Callable[[int], World] = module.build
     return replace(build_variant(variant), name=name)

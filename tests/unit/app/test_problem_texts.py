@@ -1,6 +1,8 @@
 """Every problem has a code and a text in each language."""
 
+import ast
 import pickle
+import re
 from collections import Counter
 from typing import Annotated, Any, Literal
 
@@ -31,10 +33,13 @@ from recon4_app.error_responses import field_message
 from recon4_app.errors import NotFound
 from recon4_app.jobs.reason import in_language, reason_of
 from recon4_app.network.close_codes import close_reason
+from tests.source_trees import sources, trees_with
 
 OTHERS = languages()[1:]
 SAME = {
     "and-further",
+    "where-why",
+    "markers-skipped",
     "approved-refused",
     "serial-failed",
     "webhook-url",
@@ -148,6 +153,39 @@ def test_a_stored_code_that_says_nothing_now_leaves_the_english_text():
     assert stored_text("gone-since", {}, "it failed") == "it failed"
     assert stored_text("job-unknown", {}, "it failed") == "it failed"
     assert stored_text("job-unknown", {"job": "a1"}, "it failed") == "no job a1"
+
+
+PLAIN = 94
+"""Errors whose text is English only; most are of damaged files of our own."""
+WHAT = re.compile(r'at_most\([^)]*what="([^"]+)"')
+
+
+def test_no_further_error_is_said_in_english_only():
+    def below(base):
+        return {base.__name__}.union(*map(below, base.__subclasses__()))
+
+    kinds = below(errors.Recon4Error)
+    plain = [
+        f"{path}:{node.lineno}"
+        for path, tree in trees_with("raise ", sources("recon4", "app"))
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Raise)
+        and isinstance(node.exc, ast.Call)
+        and isinstance(node.exc.func, ast.Name)
+        and node.exc.func.id in kinds
+        and node.exc.args
+        and isinstance(node.exc.args[0], ast.JoinedStr | ast.Constant)
+    ]
+
+    assert len(plain) <= PLAIN, "\n".join(["give it a CodedText:", *plain])
+
+
+def test_what_is_started_too_often_is_named_in_each_language():
+    started = {what for path in sources("app") for what in WHAT.findall(path.read_text("utf-8"))}
+
+    assert "jobs" in started
+    words = messages_of(ROOT / ENGLISH / "problems.ftl").keys()
+    assert {f"word-started-{one}" for one in started} <= words
 
 
 class _Asked(BaseModel):

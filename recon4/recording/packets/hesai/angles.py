@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.recording.packets.family import Companion, PacketSensor
@@ -58,7 +59,7 @@ def read_angles(companion: Companion) -> Angles | None:
         return None
     rows = [line.split(",") for line in lines if re.match(r"\s*\d{1,3}\s*,", line)]
     if not rows:
-        raise NotAngles("there is no row channel,elevation,azimuth")
+        raise NotAngles(CodedText("hesai-angles-missing"))
     values = np.deg2rad([_row(number, row) for number, row in enumerate(rows, start=1)])
     return Angles(values[:, 0], values[:, 1])
 
@@ -81,13 +82,15 @@ def _row(number: int, cells: Sequence[str]) -> tuple[float, float]:
     try:
         channel, elevation, azimuth = int(cells[0]), float(cells[1]), float(cells[2])
     except (ValueError, IndexError):
-        raise NotAngles(f"row {number}: expected channel,elevation,azimuth, got {cells}") from None
+        raise NotAngles(CodedText("hesai-angles-row", number=number, cells=str(cells))) from None
     if channel != number:
-        raise NotAngles(f"row {number}: is of channel {channel}")
+        raise NotAngles(CodedText("hesai-angles-channel", number=number, channel=channel))
     most_elevation, most_azimuth = HESAI_ANGLES.limits_deg
     inside = abs(elevation) <= most_elevation and abs(azimuth) <= most_azimuth
     if not inside:
-        raise NotAngles(f"row {number}: elevation {elevation} or azimuth {azimuth} is no angle")
+        raise NotAngles(
+            CodedText("hesai-angles-number", number=number, elevation=elevation, azimuth=azimuth)
+        )
     return elevation, azimuth
 
 

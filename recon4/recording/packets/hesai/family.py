@@ -143,15 +143,21 @@ class Hesai:
         if model is None:
             known = ", ".join(MODELS)
             raise ConfigError(
-                f"{name}: no packet decoder for model {sensor.sensor.model!r}; decoded: {known}"
+                CodedText("packets-no-decoder", name=name, model=sensor.sensor.model, known=known)
             )
         payloads = _most_frequent(sensor.head)
         found = _data_packets(payloads) if payloads is not None else None
         packets = _usual(model) if found is None else found
         if packets.layout.channels != model.channels:
             raise ConfigError(
-                f"{name}: its packets hold {packets.layout.channels} channels "
-                f"({packets.model.name}), a {model.name} has {model.channels}"
+                CodedText(
+                    "hesai-channels",
+                    name=name,
+                    got=packets.layout.channels,
+                    got_model=packets.model.name,
+                    model=model.name,
+                    expected=model.channels,
+                )
             )
         if packets.model is not model:
             sensor.report.warn(
@@ -252,17 +258,13 @@ def _directions(model: HesaiModel, sensor: PacketSensor) -> Angles | MirrorTable
     if model.name == "AT128":
         found = mirrors_of(sensor.companions)
         if found is None:
-            raise ConfigError(
-                f"{name}: an AT128 needs its angle correction file (.dat, version 1.5) beside the "
-                "recording; a table of text (.csv) has no positions of its mirrors"
-            )
+            raise ConfigError(CodedText("hesai-at128-angles", name=name))
         sensor.report.derive(DerivedKind.ANGLES_FOUND, sensor=name, of="mirrors", source=found[0])
         return found[1]
     angles = angles_of(sensor, model.channels, model.angles)
     if angles is None:
         raise ConfigError(
-            f"{name}: a {model.name} needs its angle correction file beside the recording: a table "
-            f"Channel,Elevation,Azimuth with {model.channels} rows"
+            CodedText("hesai-needs-angles", name=name, model=model.name, channels=model.channels)
         )
     return angles
 

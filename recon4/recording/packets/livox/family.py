@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import ImuSamples
@@ -169,20 +170,16 @@ class LivoxFamily:
         name = sensor.sensor.model
         layout = _usual_layout(sensor.head)
         if layout is None:
-            raise ConfigError(
-                f"{sensor.sensor.name}: no data packet of a Livox at the head of the recording: "
-                "its data type is not known"
-            )
+            raise ConfigError(CodedText("livox-no-packet", sensor=sensor.sensor.name))
         if name not in MODELS:
-            raise ConfigError(
-                f"no packet decoder for Livox model {name!r}; decoded: {', '.join(MODELS)}"
-            )
+            raise ConfigError(CodedText("livox-no-decoder", name=name, models=", ".join(MODELS)))
         model = MODELS[name]
         if model.sdk != layout.sdk:
             sent = ", ".join(one.name for one in MODELS.values() if one.sdk == layout.sdk)
             raise ConfigError(
-                f"{sensor.sensor.name}: its packets are of Livox SDK{layout.sdk} ({sent}), "
-                f"the rig says {name}"
+                CodedText(
+                    "livox-sdk", sensor=sensor.sensor.name, sdk=layout.sdk, sent=sent, name=name
+                )
             )
         return LivoxFormat(sensor, layout, model)
 

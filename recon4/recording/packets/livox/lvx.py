@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.datagrams import MAX_UDP_BYTES, Datagrams
@@ -127,22 +128,22 @@ def read_lvx(
             if len(datagrams):
                 yield datagrams
     if not found:
-        raise EmptyRecording(f"{path.name}: an LVX file without any packet")
+        raise EmptyRecording(CodedText("lvx-no-packet", file=path.name))
 
 
 def _read_head(file: IO[bytes], name: str) -> LvxHead:
     raw = file.read(_PUBLIC.size)
     if not raw.startswith(MAGIC) or len(raw) < _PUBLIC.size:
-        raise UnknownFormat(f"{name}: an LVX file begins with {MAGIC.decode()}")
+        raise UnknownFormat(CodedText("lvx-magic", name=name, magic=MAGIC.decode()))
     _, major, minor, *_ = _PUBLIC.unpack(raw)
     if (major, minor) not in ((1, 0), (1, 1), (2, 0)):
-        raise UnknownFormat(f"{name}: LVX {major}.{minor}; read are 1.0, 1.1 and 2.0")
+        raise UnknownFormat(CodedText("lvx-version", name=name, major=str(major), minor=str(minor)))
     private = file.read(1 if (major, minor) == (1, 0) else 5)
     layout = {(1, 0): _DEVICE1_0, (1, 1): _DEVICE1, (2, 0): _DEVICE2}[major, minor]
     count = private[-1] if private else 0
     rows = file.read(count * layout.size)
     if not count or len(rows) < count * layout.size:
-        raise CorruptFile(f"{name}: {count} devices expected, the file ends in their list")
+        raise CorruptFile(CodedText("lvx-devices-cut", name=name, count=count))
     devices = tuple(
         _device(layout.unpack_from(rows, k * layout.size), k, (major, minor)) for k in range(count)
     )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
@@ -195,10 +196,7 @@ class OusterFamily:
             raise ConfigError(missing_text(sensor.head, found, sensor.sensor))
         turning = turning_of(fit.metadata, sensor.head)
         if not turning.columns:
-            raise ConfigError(
-                f"{fit.metadata.name}: neither lidar_mode nor columns_per_frame, and the packets "
-                "do not show how many columns a revolution has"
-            )
+            raise ConfigError(CodedText("ouster-columns-unknown", metadata=fit.metadata.name))
         _say(sensor, fit, found, columns=turning.columns)
         return OusterPackets(sensor, fit.metadata, turning)
 

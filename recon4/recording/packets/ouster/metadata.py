@@ -15,6 +15,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.model.lidars import LIDARS
 from recon4.recording.formats.datagrams import MAX_UDP_BYTES
 from recon4.recording.limits import LIMITS
@@ -128,11 +129,11 @@ def read_metadata(companion: Companion) -> OusterMetadata | None:
         return None
     found = parse_json(content.strip(b"\0 \r\n\t"), name, finite=True)
     if not isinstance(found, dict):
-        raise CorruptFile(f"{name}: expected a JSON object, got {type(found).__name__}")
+        raise CorruptFile(CodedText("ouster-object", name=name, kind=type(found).__name__))
     try:
         return _metadata(_Values(name, _flat(found)), companion.likeness)
     except (TypeError, OverflowError) as error:
-        raise CorruptFile(f"{name}: a value of the wrong kind: {error}") from error
+        raise CorruptFile(CodedText("ouster-value-kind", name=name, why=str(error))) from error
 
 
 def _flat(document: Mapping[str, object]) -> dict[str, object]:
@@ -162,8 +163,14 @@ class _Values:
             found = int(found)
         if not isinstance(found, int) or not limits[0] <= found <= limits[1]:
             raise CorruptFile(
-                f"{self.name}: {key}: expected a whole number from {limits[0]} to {limits[1]}, "
-                f"got {str(found)[:40]!r}"
+                CodedText(
+                    "ouster-integer",
+                    name=self.name,
+                    key=key,
+                    least=limits[0],
+                    most=limits[1],
+                    got=str(found)[:40],
+                )
             )
         return found
 
@@ -173,14 +180,16 @@ class _Values:
         if found is None:
             return None
         if not isinstance(found, list) or len(found) != count or not _all_within(found, limit):
-            raise CorruptFile(f"{self.name}: {key}: expected {count} numbers of at most {limit:g}")
+            raise CorruptFile(
+                CodedText("ouster-numbers", name=self.name, key=key, count=count, limit=limit)
+            )
         return np.array(found, dtype=np.float64)
 
     def number(self, key: str, limit: float) -> float | None:
         """A number between -limit and limit; None = there is none."""
         found = self.values.get(key)
         if found is not None and not (isinstance(found, int | float) and abs(found) <= limit):
-            raise CorruptFile(f"{self.name}: {key}: expected a number of at most {limit:g}")
+            raise CorruptFile(CodedText("ouster-number", name=self.name, key=key, limit=limit))
         return None if found is None else float(found)
 
     def count(self, key: str) -> int:
@@ -195,7 +204,7 @@ class _Values:
         T_a_b = found.reshape(4, 4)
         R_a_b = T_a_b[:3, :3]
         if np.abs(R_a_b @ R_a_b.T - np.eye(3)).max() > 1e-3 or np.linalg.det(R_a_b) < 0:
-            raise CorruptFile(f"{self.name}: {key}: its upper left 3 x 3 are no rotation")
+            raise CorruptFile(CodedText("ouster-rotation", name=self.name, key=key))
         T_a_b[:3, 3] *= 1e-3
         return T_a_b
 
@@ -208,13 +217,19 @@ def _metadata(values: _Values, likeness: int) -> OusterMetadata:
     beams = values.count(_ANGLES)
     if not 1 <= beams <= MAX_BEAMS:
         raise CorruptFile(
-            f"{values.name}: {_ANGLES}: expected 1 to {MAX_BEAMS} numbers, got {beams}"
+            CodedText(
+                "ouster-angles-count",
+                values=values.name,
+                angles=_ANGLES,
+                max_beams=MAX_BEAMS,
+                beams=beams,
+            )
         )
     elevation, azimuth = (
         values.numbers(key, beams, 180.0) for key in (_ANGLES, "beam_azimuth_angles")
     )
     if elevation is None or azimuth is None:
-        raise CorruptFile(f"{values.name}: beam_azimuth_angles: expected {beams} numbers, got none")
+        raise CorruptFile(CodedText("ouster-azimuths", values=values.name, beams=beams))
     columns, rotation_hz = _mode(values)
     product = values.text("prod_line")
     p_lidar_beam_m, stated_origin = _beam_origin(values, product)
@@ -249,18 +264,21 @@ def _layout(values: _Values, beams: int) -> PacketLayout:
     name = values.text("udp_profile_lidar") or LEGACY
     if name not in PROFILES:
         raise CorruptFile(
-            f"{values.name}: udp_profile_lidar {name[:40]!r} is not known; "
-            f"decoded: {', '.join(PROFILES)}"
+            CodedText(
+                "ouster-profile", values=values.name, name=name[:40], profiles=", ".join(PROFILES)
+            )
         )
     stated = values.integer("pixels_per_column", beams, (1, MAX_BEAMS))
     if stated != beams:
-        raise CorruptFile(f"{values.name}: {beams} angles of beams, but {stated} pixels per column")
+        raise CorruptFile(
+            CodedText("ouster-beams-differ", values=values.name, beams=beams, stated=stated)
+        )
     columns = values.integer("columns_per_packet", USUAL_COLUMNS, (1, MAX_COLUMNS))
     fusa = values.text("header_type") == "FUSA" or PROFILES[name].fusa
     layout = PacketLayout(PROFILES[name], beams, columns, fusa=fusa)
     if layout.size > MAX_UDP_BYTES:
         raise CorruptFile(
-            f"{values.name}: {columns} columns of {beams} pixels do not fit into a packet"
+            CodedText("ouster-packet-size", values=values.name, columns=columns, beams=beams)
         )
     return layout
 

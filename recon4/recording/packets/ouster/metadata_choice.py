@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile
 from recon4.geometry.distinct import distinct
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Sensor
@@ -128,9 +129,7 @@ def choose(
     if not _same_points(best):
         names = ", ".join(item.name for item in best)
         raise ConfigError(
-            f"the packets of {_sender(head, sensor)} may be of the sensors of several metadata "
-            f"files: {names}; leave the right one beside the recording, or put the address of the "
-            "sensor into the name of its file"
+            CodedText("ouster-metadata-choice", head=_sender(head, sensor), names=names)
         )
     by_name = "" if _same_points(known) else ", ".join(k.name for k in known if k is not best[0])
     return ChosenMetadata(best[0], _doubts(head, best[0]), by_name)

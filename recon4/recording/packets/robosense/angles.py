@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.lidars import lidar_model
 from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import Companion, Payloads
@@ -110,9 +111,7 @@ def laser_angles(
         return LaserAngles(table, file.name, True)
     if model.factory_cdeg is None:
         raise ConfigError(
-            f"packets of a {model.name} need the angles of its {model.lasers} lasers: record its "
-            "device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and "
-            "azimuth [°] per laser beside the recording, or into the rig as its description"
+            CodedText("robosense-needs-angles", model=model.name, lasers=model.lasers)
         )
     return LaserAngles(model.factory_cdeg.astype(np.float64), "factory", False)
 

@@ -304,7 +304,7 @@ class RoboSenseFamily:
         if name in MODELS:
             return SpinningFormat(sensor, MODELS[name])
         known = ", ".join([*MODELS, *SOLID_MODELS])
-        raise ConfigError(f"no packet decoder for RoboSense model {name!r}; decoded: {known}")
+        raise ConfigError(CodedText("robosense-no-decoder", name=name, known=known))
 
     def restamped(
         self, payloads: Payloads, shift_ns: int, companions: Sequence[Companion]

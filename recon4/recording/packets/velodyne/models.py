@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.kernels.spinning import Layout
+from recon4.locales.coded import CodedText
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 RETURN = np.dtype([("distance", "<u2"), ("intensity", "u1")])
@@ -220,7 +221,7 @@ def velodyne_model(name: str) -> VelodyneModel:
     if name in MODELS:
         return MODELS[name]
     known = ", ".join(MODELS)
-    raise ConfigError(f"no packet decoder for sensor model {name!r}; decoded: {known}")
+    raise ConfigError(CodedText("velodyne-no-decoder", name=name, known=known))
 
 
 def models_of_interval(seconds: float, return_mode: int) -> tuple[str, ...]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
 from recon4.kernels.laser_corrections import correct
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -194,11 +195,7 @@ def _hdl64(of: PacketSensor, head: Payloads) -> WideModel:
     name = of.sensor.name
     calibration = calibration_of(of.companions) or calibration_in_status(head)
     if calibration is None:
-        raise ConfigError(
-            f"{name}: packets of an HDL-64E need the calibration of the very sensor: put the YAML "
-            "of the ROS driver (a row laser_id, rot_correction, vert_correction, … of each of 64 "
-            "lasers) or the db.xml of VeloView beside the recording"
-        )
+        raise ConfigError(CodedText("hdl64-needs-calibration", name=name))
     stamps = distinct(as_packets(head)["time_us"]) if len(head) else np.zeros(0)
     step_us = float(np.median(np.diff(stamps))) if len(stamps) > 4 else 0.0
     dual = len(head) > 0 and bool(
