@@ -114,6 +114,7 @@ docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/reference/settings.md
 	$(BIN)/python -m recon4.findings.explain > docs/reference/findings.md
 	$(BIN)/python -m tools.setting_texts
+	$(BIN)/python -m tools.command_texts
 	$(BIN)/python -m tools.http_types
 	$(BIN)/python -m tools.reference_pages
 	$(BIN)/python -m tools.notice

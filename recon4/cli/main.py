@@ -34,6 +34,7 @@ from recon4.cli.overview import CommandGroup
 from recon4.cli.products import products
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
+from recon4.cli.spoken import speak, wrong_usage
 from recon4.cli.storage import space
 from recon4.cli.terminal import complaint_of, write, write_json
 from recon4.cli.workers import (
@@ -268,6 +269,12 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
+def _speak(context: typer.Context, language: str) -> None:
+    if language:
+        os.environ[ENVIRONMENT] = checked(language)
+        speak(context, language)
+
+
 @app.callback()
 def _every_command(
     context: typer.Context,
@@ -275,10 +282,8 @@ def _every_command(
         bool,
         typer.Option("--version", callback=_version, is_eager=True, help="Show the version."),
     ] = False,
-    language: Annotated[str, typer.Option(help=LANGUAGE_HELP)] = "",
+    language: Annotated[str, typer.Option(callback=_speak, is_eager=True, help=LANGUAGE_HELP)] = "",
 ) -> None:
-    if language:
-        os.environ[ENVIRONMENT] = checked(language)
     if context.invoked_subcommand is None:
         write(context.get_help())
         raise typer.Exit(2)
@@ -350,9 +355,7 @@ def _run(arguments: list[str], stop: StopSignals) -> tuple[int, str]:
     except MemoryError as error:
         return 1, f"not enough memory: a command may use 70 % of this computer's ({error})"
     except typer.TyperException as error:
-        context = getattr(error, "ctx", None)
-        command = context.command_path if context else "recon4"
-        return 2, f"{error.format_message()}\n{command} --help says what it takes"
+        return 2, wrong_usage(error, of_terminal())
 
 
 def _resumes(arguments: list[str]) -> bool:

@@ -6,6 +6,9 @@ from typing import Any
 
 from typer.core import TyperGroup
 
+from recon4.cli.spoken import speak
+from recon4.locales.languages import of_terminal
+
 HEADINGS = {
     "From a recording to a map": (
         "info",
@@ -39,6 +42,11 @@ class CommandGroup(TyperGroup):
         for heading, names in HEADINGS.items():
             for name in names:
                 vars(self.commands[name])["rich_help_panel"] = heading
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse in the language of the environment; ``--language`` may name another one."""
+        speak(ctx, of_terminal())
+        return super().parse_args(ctx, args)
 
     def list_commands(self, ctx: Any) -> list[str]:
         """Names in the order of the table; one that is missing in it comes last."""

@@ -14,7 +14,7 @@ ENGLISH = "en"
 """The language of every text; a text that another language lacks is shown in it."""
 ENVIRONMENT = "RECON4_LANGUAGE"
 """Environment variable with the language of a terminal."""
-LANGUAGE_HELP = f"Of reports and findings, as de; default: {ENVIRONMENT}, else en."
+LANGUAGE_HELP = f"Of help, errors, reports and findings, as de; default: {ENVIRONMENT}, else en."
 """Of the option of commands."""
 ROOT = Path(__file__).parent
 """Has a folder for each language."""
