@@ -235,6 +235,7 @@ export-tables-and-lines = Tabellen und Linien
 export-e57-scans-with-poses = E57, Scans mit Posen
 export-ply-all-fields-and-normals = PLY, alle Felder und Normalen
 export-xyz-lines-of-text = XYZ, Textzeilen
+export-ptx-scans-with-poses-as-text = PTX, Scans mit Posen als Text
 export-floor-plans-dxf = Grundrisse, DXF
 export-floor-plans-geojson = Grundrisse, GeoJSON
 export-orthophoto-of-a-storey-geotiff = Orthofoto eines Geschosses, GeoTIFF
@@ -365,7 +366,7 @@ quantity-clock = Uhr
 
 ## Einstellungen
 
-setting-example = voxel, odometry, GNSS…
+setting-example = Voxel, Entfernung, GNSS…
 setting-int = ganze Zahl
 setting-float = Zahl
 setting-text = Text

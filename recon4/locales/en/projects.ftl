@@ -235,6 +235,7 @@ export-tables-and-lines = Tables and lines
 export-e57-scans-with-poses = E57, scans with poses
 export-ply-all-fields-and-normals = PLY, all fields and normals
 export-xyz-lines-of-text = XYZ, lines of text
+export-ptx-scans-with-poses-as-text = PTX, scans with poses as text
 export-floor-plans-dxf = Floor plans, DXF
 export-floor-plans-geojson = Floor plans, GeoJSON
 export-orthophoto-of-a-storey-geotiff = Orthophoto of a storey, GeoTIFF
