@@ -38,7 +38,8 @@ def shown(value: bool | int | float | str) -> FluentType:
     if isinstance(value, bool | str):
         return ShownText(value)
     if abs(value) >= 1e12:  # of a damaged file: Fluent has 28 digits, 15 behind the point
-        return ShownText(f"{as_float(value):g}")
+        exact = isinstance(value, int) and abs(value) < 1e18
+        return ShownText(str(value) if exact else f"{as_float(value):g}")
     return fluent_number(value, useGrouping=False, maximumFractionDigits=sys.float_info.dig)
 
 

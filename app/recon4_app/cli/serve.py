@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import write
+from recon4.cli.terminal import complaint_of, write
 from recon4.errors import ConfigError
 from recon4.system.stopping import StopSignals
 
@@ -71,7 +71,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
             keep_earlier_s=86400.0 * keep_earlier,
         )
     except ConfigError as error:
-        raise typer.BadParameter(str(error)) from error
+        raise typer.BadParameter(complaint_of(error)) from error
     _serve(chosen, context.find_object(StopSignals), show=show)
 
 
