@@ -81,8 +81,8 @@ def test_without_a_table_or_with_two_that_fit_a_typical_unit_stands_in_and_is_a_
     [
         (b"5,abc,1", "row 5: expected channel,elevation,azimuth"),
         (b"6,10,0", "row 5: is of channel 6"),
-        (b"5,100,0", "row 5: elevation 100.0 or azimuth 0.0 is no angle"),
-        (b"5,nan,0", "row 5: elevation nan or azimuth 0.0 is no angle"),
+        (b"5,100,0", "row 5: elevation 100 or azimuth 0 is no angle"),
+        (b"5,nan,0", "row 5: elevation NaN or azimuth 0 is no angle"),
     ],
 )
 def test_a_damaged_row_is_named_and_the_table_not_used(row, why):
