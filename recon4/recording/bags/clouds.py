@@ -18,6 +18,7 @@ from recon4.recording.bags.messages import stamp_ns
 from recon4.recording.bags.tuning import LIDAR_CHOICE
 from recon4.recording.clocks.compare import note_lidar_lag
 from recon4.recording.clocks.even_stamps import EvenStamps
+from recon4.recording.clocks.set_back import SetBack
 from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.clouds.cloud_points import CloudDecoder
@@ -45,6 +46,7 @@ class CloudReader:
         self._recent: deque[tuple[int, Any]] = deque(maxlen=LIDAR_CHOICE.copies_within)
         self._order: StampOrder[tuple[BagMessage, Any]] = StampOrder()
         self._even, self._topic = EvenStamps(), ""
+        self._set_back = SetBack()
 
     def push(self, message: BagMessage, cloud: Any) -> Iterator[Shots]:
         t_ns = stamp_ns(cloud.header.stamp)
@@ -85,7 +87,15 @@ class CloudReader:
             if len(shots):
                 shots = moved(shots, self._offset_ns - self._late_ns(shots, t_ns, message.t_ns))
                 note_lidar_lag(message.topic, message.t_ns - int(shots.t_ns[-1]), self._report)
+                self._say_set_back(message.topic, int(shots.t_ns[0]))
                 yield shots
+
+    def _say_set_back(self, topic: str, start_ns: int) -> None:
+        if back_ns := self._set_back.back_ns(start_ns):
+            jump_s = -1e-9 * back_ns
+            self._report.warn(
+                FindingKind.CLOCK_JUMP, sensor=topic, whose="sensor", jump_s=jump_s, times="used"
+            )
 
     def _late_ns(self, shots: Shots, stamp_ns: int, recorded_ns: int) -> int:
         """How much too late the points of a cloud are by its stamp [ns]."""

@@ -94,7 +94,7 @@ def set_clock(bag: Bag, topic: str, head: Sequence[tuple[int, int]]) -> StampClo
         head: Stamps and times of recording of its first messages [ns].
     """
     jumps = bag.stamp_jumps
-    return StampClock(head, lambda ns: jumps.exact_ns(topic, ns, bag.report), jumps.of_recorder_ns)
+    return StampClock(head, lambda ns: jumps.exact_ns(topic, ns, bag.report), jumps.of_recorder)
 
 
 def first_stamps(bag: Bag, topic: str) -> list[tuple[int, int]]:

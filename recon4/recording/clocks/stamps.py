@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,13 +33,23 @@ def require_forward(topic: str, head: Sequence[tuple[int, int]]) -> None:
         raise UnknownFormat(CodedText("stamps-backward", topic=topic))
 
 
+@dataclass(frozen=True, slots=True)
+class RecorderJump:
+    """One time the clock of a recorder was set, without which the times of recording go on."""
+
+    t_ns: int
+    """When it was set, in times that go on [ns]."""
+    jump_ns: int
+    """By how much; negative = back [ns]."""
+
+
 class StampJumps:
     """By how much the clocks of the stamps of a bag were set while it was recorded."""
 
     def __init__(self) -> None:
         self._known_ns: list[int] = []
-        self.of_recorder_ns: list[int] = []
-        """Jumps of the recorder's clock, which may be that of the stamps, too [ns]."""
+        self.of_recorder: list[RecorderJump] = []
+        """Jumps of the recorder's clock, which may be that of the stamps, too."""
 
     def exact_ns(self, topic: str, measured_ns: int, report: ImportReport) -> int:
         """A jump as measured by one topic [ns]: the same for all topics, or a known difference.
@@ -49,7 +60,7 @@ class StampJumps:
             report: Receives the count ``clock_jumps`` and a warning, once for all topics.
         """
         same_ns = min(STAMPS.same_jump_ns, abs(measured_ns) // 4)
-        for known_ns in (*self.of_recorder_ns, *self._known_ns):
+        for known_ns in (*(one.jump_ns for one in self.of_recorder), *self._known_ns):
             if abs(known_ns - measured_ns) < same_ns:
                 return known_ns
         jump_s = known_offset_s(measured_ns / SECOND_NS)
@@ -82,7 +93,7 @@ class StampClock:
         self,
         head: Sequence[tuple[int, int]] = (),
         exact_ns: Callable[[int], int] = lambda measured_ns: measured_ns,
-        of_recorder_ns: Sequence[int] = (),
+        of_recorder: Sequence[RecorderJump] = (),
     ) -> None:
         """Prepare.
 
@@ -90,8 +101,7 @@ class StampClock:
             head: Stamp and time of recording of the first messages [ns]; the first one alone may
                 be wrong.
             exact_ns: A jump of the bag from one that was measured (`StampJumps`) [ns].
-            of_recorder_ns: Jumps of the recorder's clock that the times of recording lack [ns]:
-                stamps by that clock show them.
+            of_recorder: Jumps of the recorder's clock: stamps by that clock show them, too.
         """
         known = [stamp - recorded for stamp, recorded in head if stamp > 0]
         self.offset_ns: int | None = int(np.median(known)) if known else None
@@ -108,7 +118,7 @@ class StampClock:
         self.set_before, self.set_ns = 0, 0
         """How many stamps before the last one were of the clock that it began, and by how much
         later they are [ns]: they seemed to be held up. Of meaning if it `was_set`."""
-        self._exact_ns, self._of_recorder_ns = exact_ns, of_recorder_ns
+        self._exact_ns, self._of_recorder = exact_ns, of_recorder
         self._last: tuple[int, int] | None = None
         """The last sound stamp, and when it was recorded [ns]."""
         self._run, self._run_ns = 0, 0
@@ -119,9 +129,9 @@ class StampClock:
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
-        if self.offset_ns is not None and self._is_recorders(offset_ns - self.offset_ns):
+        if jump_ns := self._of_recorder_ns(offset_ns, recorded_ns):
             self.was_set = True
-            self.shift_ns -= self._exact_ns(offset_ns - self.offset_ns)
+            self.shift_ns -= jump_ns
         elif self.offset_ns is not None and self._is_other(offset_ns, recorded_ns):
             far = abs(offset_ns - self.offset_ns) > STAMPS.other_ns
             near_ns = STAMPS.other_ns if far else STAMPS.step_ns // 2
@@ -163,12 +173,19 @@ class StampClock:
         usual = abs(self.offset_ns - self._usual_ns) <= STAMPS.step_ns / 2
         return self._run > 0 or (even and usual)
 
-    def _is_recorders(self, jump_ns: int) -> bool:
-        """Whether stamps jump as the recorder did; short jumps are of transport."""
-        return any(
-            known < -STAMPS.recorder_ns and abs(jump_ns - known) < -known / 2
-            for known in self._of_recorder_ns
-        )
+    def _of_recorder_ns(self, offset_ns: int, recorded_ns: int) -> int:
+        """By how much stamps jump as the recorder did [ns]; 0 = they do not.
+
+        They do so soon after it was set, when messages that were on their way have arrived.
+        """
+        if self.offset_ns is None or self._last is None:
+            return 0
+        jump_ns, last_ns = offset_ns - self.offset_ns, self._last[1]
+        for known in self._of_recorder:
+            here = last_ns - STAMPS.travel_ns < known.t_ns <= recorded_ns
+            if here and abs(jump_ns - known.jump_ns) < abs(known.jump_ns) / 2:
+                return known.jump_ns
+        return 0
 
     def _goes_on(self, stamp_ns: int) -> bool:
         return self._last is not None and 0 <= stamp_ns - self._last[0] <= STAMPS.other_ns

@@ -116,8 +116,8 @@ class StampTuning(Struct, frozen=True, kw_only=True):
     """Stamps in a row that must agree on another clock: fewer are wrong ones."""
     same_jump_ns: int = 500_000_000
     """Jumps of two topics that differ by less are one: messages travel for different times [ns]."""
-    recorder_ns: int = 200_000_000
-    """Stamps that jump by more than this with the recorder are by its clock [ns]."""
+    travel_ns: int = 500_000_000
+    """A message is recorded within this after its stamp [ns]."""
     step_ns: int = 100_000_000
     """Stamps that step by more between messages that arrive evenly are of a clock that was set."""
     even_ns: int = 50_000_000
@@ -165,10 +165,26 @@ class EvenStampTuning(Struct, frozen=True, kw_only=True):
 EVEN_STAMPS = EvenStampTuning()
 
 
+class SetBackTuning(Struct, frozen=True, kw_only=True):
+    """Clouds that come too often because their clock went back (`set_back.py`)."""
+
+    around: int = 4
+    """Steps before and after that are even."""
+    between: int = 6
+    """Steps that are not: clouds lie between each other."""
+    even: float = 0.1
+    """Steps that differ from the usual one by less of it are even."""
+    least: float = 0.25
+    """A shorter way back, of the usual step, is not said."""
+
+
+SET_BACK = SetBackTuning()
+
+
 class RecorderStepTuning(Struct, frozen=True, kw_only=True):
     """Recorders of bags that were set back (`formats/bag_clock.py`)."""
 
-    least_ns: int = 100_000_000
+    least_ns: int = 20_000_000
     """Messages are written in the order of their times to within this [ns]."""
     joined_ns: int = 500_000_000
     """Parts of a file that are nearer are one recording, joined in another order [ns]."""

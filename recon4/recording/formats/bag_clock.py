@@ -58,8 +58,8 @@ def rows_going_on(t_ns: Times, topic: Topics) -> tuple[Times, tuple[RecorderStep
         if found is None:
             break
         row, shift_ns = start + found[0], found[1]
-        steps.append(RecorderStep(row, 0, shift_ns))
         t_ns[row:] += shift_ns
+        steps.append(RecorderStep(row, 0, shift_ns, int(t_ns[row])))
         start = max(start, row - RECORDER_STEPS.window)
     return t_ns, tuple(steps)
 
@@ -99,15 +99,19 @@ def _going_on(load: Load, steps: Sequence[RecorderStep], chunk: ChunkRef) -> Chu
 
 def _falls(chunks: Sequence[ChunkRef]) -> list[int]:
     """Chunks that begin earlier than those before them end, and have topics of the one before."""
-    falls = [
-        place
-        for place in range(1, len(chunks))
-        if _share_topics(chunks, place)
-        and chunks[place].t_first_ns
-        < max(chunk.t_last_ns for chunk in chunks[max(0, place - 2) : place])
-        - RECORDER_STEPS.least_ns
+    by_ns = [
+        max(chunk.t_last_ns for chunk in chunks[max(0, place - 2) : place]) - after.t_first_ns
+        if place and _share_topics(chunks, place)
+        else 0
+        for place, after in enumerate(chunks)
     ]
-    return falls[: RECORDER_STEPS.most]
+    return _deepest(np.array(by_ns, np.int64))
+
+
+def _deepest(by_ns: NDArray[np.int64]) -> list[int]:
+    """Rows in order of those that fall most: less deep ones are late messages of some topic."""
+    falls = np.flatnonzero(by_ns > RECORDER_STEPS.least_ns)
+    return np.sort(falls[np.argsort(-by_ns[falls])[: RECORDER_STEPS.most]]).tolist()
 
 
 def _share_topics(chunks: Sequence[ChunkRef], place: int) -> bool:
@@ -130,8 +134,9 @@ def _step_in(chunks: Sequence[ChunkRef], around: slice, load: Load) -> RecorderS
         min((c.t_first_ns for c in chunks[: around.start]), default=2**62),
         max((c.t_last_ns for c in chunks[around.stop or len(chunks) :]), default=0),
     )
+    t_ns = np.concatenate([np.array(one.t_ns, np.int64) for _, one in read])
     found = _first_step(
-        np.concatenate([np.array(one.t_ns, np.int64) for _, one in read]),
+        t_ns,
         np.concatenate([np.array(one.connection, np.int64) for _, one in read]),
         outside if around.stop else None,
     )
@@ -139,7 +144,7 @@ def _step_in(chunks: Sequence[ChunkRef], around: slice, load: Load) -> RecorderS
         return None
     within = int(np.searchsorted(ends, found[0], side="right"))
     first = found[0] - (int(ends[within - 1]) if within else 0)
-    return RecorderStep(read[within][0], first, found[1])
+    return RecorderStep(read[within][0], first, found[1], int(t_ns[found[0]]) + found[1])
 
 
 def _moved(chunk: ChunkRef, steps: Sequence[RecorderStep], load: Load) -> ChunkRef:
@@ -166,10 +171,8 @@ def _first_step(t_ns: Times, topic: Topics, outside: _Span | None = None) -> tup
     if not len(t_ns):
         return None
     newest = np.maximum.accumulate(t_ns)
-    falls = (t_ns[1:] < newest[:-1] - RECORDER_STEPS.least_ns) & (
-        np.diff(t_ns) < -RECORDER_STEPS.least_ns
-    )
-    for row in (np.flatnonzero(falls)[: RECORDER_STEPS.most] + 1).tolist():
+    for row in _deepest(np.minimum(newest[:-1] - t_ns[1:], -np.diff(t_ns))):
+        row += 1
         begin_ns, end_ns = int(t_ns[:row].min()), int(t_ns[row:].max())
         if outside is not None:
             begin_ns, end_ns = min(begin_ns, outside.begin_ns), max(end_ns, outside.end_ns)
@@ -184,14 +187,16 @@ def _shift(t_ns: Times, topic: Topics, row: int) -> int:
     """How far times from a row on must move to go on [ns]; 0 = not all topics go back there."""
     back_ns = int(t_ns[:row].max() - t_ns[row])
     usual_ns, shift_ns = 2**62, 0
-    for number in np.unique(topic).tolist():
+    numbers, messages = np.unique(topic, return_counts=True)
+    for number in numbers[np.argsort(-messages)].tolist():  # the fastest one tells most
         before, after = (part[kind == number] for part, kind in _sides(t_ns, topic, row))
         if min(len(before), len(after)) < RECORDER_STEPS.messages:
             continue
         step_ns = int(max(np.median(np.diff(before)), np.median(np.diff(after))))
         if not 0 < 2 * step_ns < back_ns:
             continue
-        if after[0] >= before[-1] or np.isin(after, before).all():  # goes on, or is written twice
+        # It goes on, even where one message came late, or it is written twice.
+        if after[:2].max() >= before[-1] or np.isin(after, before).all():
             return 0
         if step_ns < usual_ns:
             usual_ns, shift_ns = step_ns, int(before[-1] - after[0]) + step_ns
@@ -202,16 +207,13 @@ def _sides(t_ns: Times, topic: Topics, row: int) -> tuple[tuple[Times, Topics], 
     return (t_ns[:row], topic[:row]), (t_ns[row:], topic[row:])
 
 
-def say_steps(name: str, steps: Sequence[RecorderStep], report: ImportReport) -> list[int]:
+def say_steps(name: str, steps: Sequence[RecorderStep], report: ImportReport) -> None:
     """State where the recorder of a file was set back.
 
     Args:
         name: Of the file.
         steps: Of its index.
         report: Receives them.
-
-    Returns:
-        By how much it jumped each time [ns], negative.
     """
     report.count("clock_jumps_back", len(steps))
     for step in steps:
@@ -219,4 +221,3 @@ def say_steps(name: str, steps: Sequence[RecorderStep], report: ImportReport) ->
         values: dict[str, Value] = {"whose": "recorder", "jump_s": jump_s}
         values |= {"looks": looks} if (looks := looks_like(jump_s)) else {}
         report.warn(FindingKind.CLOCK_JUMP, sensor=name, times="without-it", **values)
-    return [-step.shift_ns for step in steps]

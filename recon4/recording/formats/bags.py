@@ -19,7 +19,7 @@ from recon4.locales.coded import CodedText
 from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.point_recipes import PointRecipe
-from recon4.recording.clocks.stamps import StampJumps
+from recon4.recording.clocks.stamps import RecorderJump, StampJumps
 from recon4.recording.formats import db3
 from recon4.recording.formats.backward import turn_round
 from recon4.recording.formats.bag1 import Bag1, is_bag1
@@ -298,8 +298,9 @@ class Bag:
         else:
             self._sources.append(self._mcap(self._stack.enter_context(RecordFile(path))))
         self._sources[-1].go_on()
-        jumps_ns = say_steps(path.name, self._sources[-1].index.steps, self.report)
-        self.stamp_jumps.of_recorder_ns += jumps_ns
+        steps = self._sources[-1].index.steps
+        say_steps(path.name, steps, self.report)
+        self.stamp_jumps.of_recorder += [RecorderJump(one.t_ns, -one.shift_ns) for one in steps]
         self._origins.append(path)
         self._stored_bytes += path.stat().st_size
 

@@ -65,6 +65,8 @@ class RecorderStep:
     """Number in the chunk of the first message after it."""
     shift_ns: int
     """What is added to this and all later times, so that they go on [ns]."""
+    t_ns: int
+    """Its time that goes on [ns]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,15 +14,16 @@ from tests.warned import K, kinds, warned
 STEP_NS, FRAMES, AT = 100_000_000, 24, 12
 
 
-def write(folder, kind, *, back_s, stamps_too):
-    """Clouds at 10 Hz and an IMU at 50 Hz; the clock goes back before the cloud ``AT``."""
+def write(folder, kind, *, back_s, stamps_too, imu_hz=50):
+    """Clouds at 10 Hz and an IMU; the clock goes back before the cloud ``AT``."""
+    each = imu_hz // 10
     path = bag_path(folder, kind)
     with Bag(path, kind) as bag:
         bag.writer.chunk_threshold = 32 * 1024
         for k in range(FRAMES):
             back_ns = round(back_s * 1e9) if k >= AT else 0
-            for j in range(5):
-                t_ns = T0_NS + k * STEP_NS + j * STEP_NS // 5
+            for j in range(each):
+                t_ns = T0_NS + k * STEP_NS + j * STEP_NS // each
                 bag.recorded_ns = t_ns - back_ns
                 stamp_ns = t_ns - back_ns * stamps_too
                 if not j:
@@ -35,7 +36,14 @@ def write(folder, kind, *, back_s, stamps_too):
 @pytest.mark.parametrize("stamps_too", [False, True], ids=["recorder", "both"])
 @pytest.mark.parametrize(
     ("kind", "back_s", "whole"),
-    [("bag1", 1.7, True), ("bag1", 0.3, False), ("db3", 0.3, True), ("mcap", 37.0, True)],
+    [
+        ("bag1", 1.7, True),
+        ("bag1", 0.3, False),
+        ("db3", 0.08, True),
+        ("db3", 0.3, True),
+        ("mcap", 0.08, True),
+        ("mcap", 37.0, True),
+    ],
 )
 def test_a_bag_goes_on_where_its_recorder_was_set_back(
     tmp_path, monkeypatch, kind, back_s, whole, stamps_too
@@ -43,7 +51,7 @@ def test_a_bag_goes_on_where_its_recorder_was_set_back(
     if not whole:
         small = structs.replace(bag_clock.RECORDER_STEPS, whole_bytes=0)
         monkeypatch.setattr(bag_clock, "RECORDER_STEPS", small)
-    path = write(tmp_path, kind, back_s=back_s, stamps_too=stamps_too)
+    path = write(tmp_path, kind, back_s=back_s, stamps_too=stamps_too, imu_hz=200)
 
     _, shots, report = read(path)
 
@@ -55,7 +63,17 @@ def test_a_bag_goes_on_where_its_recorder_was_set_back(
     assert kinds(report).count(K.CLOCK_JUMP) == 1
     found = describe(path)
     assert warned(found, K.CLOCK_JUMP, whose="recorder", jump_s=-back_s)
-    assert found.seconds == pytest.approx(2.38, abs=0.02)
+    assert found.seconds == pytest.approx(2.395, abs=0.02)
+
+
+def test_a_clock_that_went_back_within_a_chunk_of_a_large_file_is_said(tmp_path, monkeypatch):
+    small = structs.replace(bag_clock.RECORDER_STEPS, whole_bytes=0)
+    monkeypatch.setattr(bag_clock, "RECORDER_STEPS", small)
+    path = write(tmp_path, "mcap", back_s=0.08, stamps_too=True, imu_hz=200)
+
+    _, _, report = read(path)
+
+    assert warned(report, K.CLOCK_JUMP, sensor="/points", jump_s=-0.08, times="used")
 
 
 def rows(*parts):
@@ -73,6 +91,16 @@ def test_a_recorder_that_is_set_back_twice_goes_on_twice():
 
     assert [round(step.shift_ns / 1e9) for step in steps] == [5, 95]
     assert np.allclose(np.diff(t_ns[::2]), 1e8, atol=10)
+
+
+def test_a_message_that_came_late_sets_no_recorder_back():
+    t_ns, topic = rows((100, 110, [1, 2]))
+    t_ns[20] -= 350_000_000
+
+    went_on, steps = rows_going_on(t_ns, topic)
+
+    assert not steps
+    assert np.array_equal(went_on, t_ns)
 
 
 @pytest.mark.parametrize(
