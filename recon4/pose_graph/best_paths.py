@@ -77,7 +77,8 @@ class PathSums:
             some = new[first : first + BOUNDS.chunk]
             sums = dijkstra(self.links, directed=False, indices=self.anchors[some])
             self.followed.update(zip(some, sums[:, self.anchors], strict=True))
-        return np.stack([self.followed[row] for row in rows.tolist()])
+        found = [self.followed[row] for row in rows.tolist()]
+        return np.array(found, np.float64).reshape(len(rows), len(self.anchors))
 
 
 def _beside(links: csr_array, places: Rows, anchor: Rows, *, anchors: Rows, along: Array) -> Array:

@@ -157,6 +157,7 @@ def test_paths_are_followed_only_from_places_that_are_asked_for(monkeypatch):
     assert [*some.followed] == [some.anchor[90]]
     assert some[3, 117] == every[3, 117]
     assert {*some.followed} == {some.anchor[90], some.anchor[117]}
+    assert some[nodes[:0], nodes[:0]].shape == (0,)
 
 
 def test_a_height_on_the_edge_of_a_layer_belongs_to_the_layer_above():
