@@ -36,13 +36,20 @@ def unread_samples(sources: Sources) -> list[str]:
     return texts
 
 
-def missing_samples(recording: Path, kind: RecordingKind) -> CodedText:
-    """That a recording has no samples of a kind, and which file beside it has them."""
+def missing_samples(recording: Path, kind: RecordingKind, *, has: bool) -> list[CodedText]:
+    """That a recording has no samples of a kind, or which file beside it has some that it has not.
+
+    Args:
+        recording: Its path.
+        kind: Of a file of such samples.
+        has: Whether it has some itself: those of position packets are those of a plain receiver.
+    """
     name = {RecordingKind.IMU_CSV: "imu", RecordingKind.GNSS_FILE: "gnss"}[kind]
     file = nearby_samples([recording], kind)
     if file is None:
-        return CodedText(f"missing-{name}", what=name)
-    return CodedText(f"missing-{name}-given", file=file.name, what=name)
+        return [] if has else [CodedText(f"missing-{name}", what=name)]
+    code = f"missing-{name}-more" if has else f"missing-{name}-given"
+    return [CodedText(code, file=file.name, what=name)]
 
 
 def nearby_samples(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:

@@ -23,7 +23,7 @@ from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
-from tests.builders import room_cloud, write_pcd
+from tests.builders import T0_NS, Bag, bag_path, room_cloud, write_pcd
 from tests.unit.recording.ingested import frame_folder, imu_csv, run
 from tests.warned import derivations
 
@@ -148,6 +148,21 @@ def test_info_names_samples_that_lie_beside_a_recording(tmp_path, pcap):
     for given in (tmp_path, tmp_path / "walk.pcap"):
         (text,) = (text for text in describe(given).missing if text.startswith("IMU"))
         assert "imu.csv beside it has them" in text and "command: --imu FILE" in text
+
+
+def test_info_names_positions_beside_a_recording_that_has_some_itself(tmp_path):
+    path = bag_path(tmp_path, "bag1")
+    with Bag(path, "bag1") as bag:
+        for k in range(12):
+            bag.cloud("/points", T0_NS + k * 100_000_000, room_cloud())
+            bag.fix("/fix", T0_NS + k * 100_000_000, 50.0, 8.0, 100.0)
+    (path.parent / "gnss.csv").write_text(f"t_ns,lat_deg,lon_deg\n{T0_NS},50,8\n")
+
+    (text,) = (text for text in describe(path).missing if text.values["what"] == "gnss")
+
+    assert (
+        text == "positions of gnss.csv beside it (page: IMU and GNSS files; command: --gnss FILE)"
+    )
 
 
 @pytest.mark.parametrize("command", ["info", "import"])
