@@ -69,7 +69,7 @@ def test_an_export_without_room_leads_to_what_takes_space(full, page, screenshot
 
     page.get_by_role("link", name="SVG").tap()
 
-    alert = page.get_by_role("alert").filter(has_text="bytes free on the disk")
+    alert = page.get_by_role("alert").filter(has_text="GB free on the disk")
     expect(alert).to_be_visible()
     fits(page)
     alert.scroll_into_view_if_needed()

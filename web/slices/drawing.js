@@ -205,5 +205,3 @@ function facing({ position, points, surface }, { strays, frame, approval }) {
     <span class="frame">${frameText(frame)}</span>${approvalFact(approval)}
     <a href=${mapUrl(idHere()) + mapQuery(page.state)}>${t("show-in-3d")}</a>`;
 }
-
-waitFor(t("opening-map"));

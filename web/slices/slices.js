@@ -380,7 +380,8 @@ async function begin() {
       showPlan(id, project, isGuest(me));
       return true;
     }
-    await reload();
+    waitFor(t("opening-map"));
+    await reload().finally(() => waitFor(""));
     above.walk = page.stretch = await stretchOf();
     const { facts, state } = page;
     if (!facts) return true;
@@ -392,7 +393,6 @@ async function begin() {
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
     return true;
   });
-  if (!page.facts) waitFor("");
   document.body.classList.toggle("no-slices", !begun && !page.facts);
 }
 
