@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 
+import httpx
 import psutil
 import pytest
 
@@ -11,6 +12,7 @@ from tests.deadlines import BUSY_S
 from tests.served import served
 from tests.service.running import (
     SLOW,
+    WITHOUT_TLS,
     open_gate,
     recording_with_gate,
     server_process,
@@ -169,14 +171,17 @@ def damage(path):
         path.with_name(path.name + suffix).unlink(missing_ok=True)
 
 
-def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recording):
+def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recording, capfd):
     with server_process(tmp_path) as (server, process):
         job = server.start("office", recording)
         server.wait_at_gate(job)
 
-        process.send_signal(signal.SIGTERM)
+        with httpx.stream("GET", f"{server.url}/api/events", verify=WITHOUT_TLS) as page:
+            assert page.status_code == 200
+            process.send_signal(signal.SIGTERM)
 
-        assert process.wait(10.0 + BUSY_S) == 0
+            assert process.wait(10.0 + BUSY_S) == 0
+    assert capfd.readouterr().err == "recon4: stopped by SIGTERM\n"
     with server_thread(tmp_path, worker_module=SLOW) as server:
         server.post(f"/api/jobs/{job}/cancel")
         assert server.wait_state(job, "cancelled")["job"]["attempt"] == 1

@@ -254,7 +254,7 @@ async def stream_jobs(server: Server, language: Language) -> AsyncIterator[Serve
     """
     version = server.supervisor.version
     jobs = [job for job in server.jobs.latest().values() if job.state is not JobState.SUCCEEDED]
-    while True:
+    while not server.supervisor.news_ended:
         for job in jobs:
             event = "job" if job.kind is JobKind.PROCESS else str(job.kind)
             yield ServerSentEvent(event=event, data=job_view(server, job, language))

@@ -91,6 +91,8 @@ class Supervisor:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._wake = asyncio.Event()
         self._news = asyncio.Event()
+        self.news_ended = False
+        """Whether the server ends: whoever waits for news gets none any more."""
         self.version = 0
         """Number of changes of jobs so far."""
         self._touched: dict[str, int] = {}
@@ -127,11 +129,16 @@ class Supervisor:
             self._loop.call_soon_threadsafe(self._wake.set)
 
     async def news(self, version: int, *, timeout_s: float) -> None:
-        """Wait for a later version than this, at most ``timeout_s``."""
-        if version == self.version:
+        """Wait for a later version than this, at most ``timeout_s``, or until `end_news`."""
+        if version == self.version and not self.news_ended:
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(timeout_s):
                     await self._news.wait()
+
+    def end_news(self) -> None:
+        """Let those end who wait for news: the server ends."""
+        self.news_ended = True
+        self._news.set()
 
     def cancel(self, job: Job) -> Job:
         """Remove a job from the queue, or request its worker to stop.

@@ -77,6 +77,8 @@ class AnnouncingServer(uvicorn.Server):
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End; connections that are still open after the graceful time are aborted."""
+        if (parts := getattr(self._state, "parts", None)) is not None:
+            parts.supervisor.end_news()
         await super().shutdown(sockets)
         for connection in self._table:
             connection.abort()
@@ -115,7 +117,7 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
         ws_ping_timeout=PINGS.ping_timeout_s,
         ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
         timeout_keep_alive=HTTP_TIMEOUTS.keep_alive_s,
-        timeout_graceful_shutdown=2,  # event streams never end by themselves
+        timeout_graceful_shutdown=2,
         server_header=False,
         ssl_context_factory=(lambda config, default: context) if context is not None else None,
     )
