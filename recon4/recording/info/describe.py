@@ -335,13 +335,10 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
     there = {text.values.get("what") for text in samples}
     if head.imu and "imu" not in there:
         samples.append(CodedText("samples-in-packets", what="imu"))
+    has_imu, has_gnss = bool(head.imu) or "imu" in there, bool(head.gnss) or "gnss" in there
     if rig is not None:
-        missing += missing_samples(
-            path, RecordingKind.IMU_CSV, has=bool(head.imu) or "imu" in there
-        )
-    missing += missing_samples(
-        path, RecordingKind.GNSS_FILE, has=bool(head.gnss) or "gnss" in there
-    )
+        missing += missing_samples(path, RecordingKind.IMU_CSV, has=has_imu)
+    missing += missing_samples(path, RecordingKind.GNSS_FILE, has=has_gnss)
     sensors = _with_rotation(info.sensors, rig, head)
     report.count("clock_jumps_back", len(head.jumps))
     is_capture = info.kind in {kind.text for kind in CAPTURES}  # on the recorder's clock
