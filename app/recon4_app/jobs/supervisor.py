@@ -92,7 +92,7 @@ class Supervisor:
         self._wake = asyncio.Event()
         self._news = asyncio.Event()
         self.news_ended = False
-        """Whether the server ends: whoever waits for news gets none any more."""
+        """Whether the server ends: those who wait for news get none any more."""
         self.version = 0
         """Number of changes of jobs so far."""
         self._touched: dict[str, int] = {}
