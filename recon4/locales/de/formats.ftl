@@ -270,7 +270,7 @@ rtklib-none = { $file }: keine Lösung unter den Kommentaren
 rtklib-time-system = { $name }: erwartet werden Zeiten in GPST, UTC oder JST, erhalten: { QUOTED($time) }
 rtklib-no-base = { $name }: die Positionen sind Ost, Nord, Höhe einer Basislinie; erwartet wird die Position der Basisstation in einem Kommentar 'ref pos', er fehlt
 rtklib-base = { $name }: erwartet wird eine Basisstation auf der Erde im Kommentar 'ref pos', erhalten: { SIGNIFICANT($lat, digits: 6) }, { SIGNIFICANT($lon, digits: 6) }
-samples-not-covering = Werte für { $what } decken { DECIMAL($first_s, digits: 3) } … { DECIMAL($last_s, digits: 3) } s ab, die Punkte { DECIMAL($begin_s, digits: 3) } … { DECIMAL($end_s, digits: 3) } s: gehen die Uhren gleich? Wenn beide gleichzeitig beginnen, unterscheiden sie sich um { $ahead }: [{ $table }] time_offset_s = { DECIMAL($offset_s, digits: 3) } in die Rig-Datei schreiben
+samples-not-covering = Werte für { $what } decken { DECIMAL($first_s, digits: 3) } … { DECIMAL($last_s, digits: 3) } s ab, die Punkte { DECIMAL($points_first_s, digits: 3) } … { DECIMAL($points_last_s, digits: 3) } s: gehen die Uhren gleich? Wenn beide gleichzeitig beginnen, unterscheiden sie sich um { $ahead }: [{ $table }] time_offset_s = { DECIMAL($offset_s, digits: 3) } in die Rig-Datei schreiben
 samples-none = { $file }: keine Werte unter der Kopfzeile
 samples-header-empty = { $name }: Zeile 1 ist leer; erwartet wird die Kopfzeile: { $known }
 samples-columns = { $name }: es fehlen die Spalten { $missing }; erwartet wird die Kopfzeile: { $known }; erhalten: { $line }

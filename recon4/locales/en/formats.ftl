@@ -270,7 +270,7 @@ rtklib-none = { $file }: no solution under the comments
 rtklib-time-system = { $name }: expected times in GPST, UTC or JST, got { QUOTED($time) }
 rtklib-no-base = { $name }: positions are east, north, up of a baseline; expected the position of the base in a comment 'ref pos', got none
 rtklib-base = { $name }: expected a base on the earth in the comment 'ref pos', got { SIGNIFICANT($lat, digits: 6) }, { SIGNIFICANT($lon, digits: 6) }
-samples-not-covering = { $what } samples cover { DECIMAL($first_s, digits: 3) } … { DECIMAL($last_s, digits: 3) } s, the points { DECIMAL($begin_s, digits: 3) } … { DECIMAL($end_s, digits: 3) } s: are the clocks the same? If both begin together, they differ by { $ahead }: give [{ $table }] time_offset_s = { DECIMAL($offset_s, digits: 3) } in the rig file
+samples-not-covering = { $what } samples cover { DECIMAL($first_s, digits: 3) } … { DECIMAL($last_s, digits: 3) } s, the points { DECIMAL($points_first_s, digits: 3) } … { DECIMAL($points_last_s, digits: 3) } s: are the clocks the same? If both begin together, they differ by { $ahead }: give [{ $table }] time_offset_s = { DECIMAL($offset_s, digits: 3) } in the rig file
 samples-none = { $file }: no samples under the header
 samples-header-empty = { $name }: line 1 is empty; expected header: { $known }
 samples-columns = { $name }: missing columns { $missing }; expected header: { $known }; got { $line }

@@ -30,19 +30,18 @@ def covering(
     margin_ns = 1_000_000_000
     if last < span[0] - margin_ns or first > span[1] + margin_ns:
         ahead_s = (first - span[0]) / 1e9
+        times = {
+            "first_s": first / 1e9,
+            "last_s": last / 1e9,
+            "points_first_s": span[0] / 1e9,
+            "points_last_s": span[1] / 1e9,
+            "offset_s": -ahead_s,
+        }
+        names = {"what": what, "table": what.lower()}
         if asked_for:
-            raise ConfigError(_elsewhere(what, (first, last), span))
-        report.warn(
-            FindingKind.SAMPLES_ELSEWHEN,
-            what=what,
-            table=what.lower(),
-            first_s=first / 1e9,
-            last_s=last / 1e9,
-            points_first_s=span[0] / 1e9,
-            points_last_s=span[1] / 1e9,
-            offset_s=-ahead_s,
-            **offset_values(ahead_s),
-        )
+            ahead = described(ahead_s)
+            raise ConfigError(CodedText("samples-not-covering", ahead=ahead, **names, **times))
+        report.warn(FindingKind.SAMPLES_ELSEWHEN, **names, **times, **offset_values(ahead_s))
         return None
     late_s, early_s = (first - span[0]) / 1e9, (span[1] - last) / 1e9
     looks = looks_like(late_s) if abs(late_s + early_s) < 1.0 else ""
@@ -57,20 +56,3 @@ def covering(
             **(clock if looks else {}),
         )
     return samples
-
-
-def _elsewhere(what: str, samples: tuple[int, int], points: tuple[int, int]) -> CodedText:
-    """That samples are of another time than the points; both from first to last [ns]."""
-    (first, last), (begin, end) = ((one / 1e9, other / 1e9) for one, other in (samples, points))
-    ahead_s = (samples[0] - points[0]) / 1e9
-    return CodedText(
-        "samples-not-covering",
-        what=what,
-        first_s=first,
-        last_s=last,
-        begin_s=begin,
-        end_s=end,
-        ahead=described(ahead_s),
-        table=what.lower(),
-        offset_s=-ahead_s,
-    )
