@@ -44,8 +44,8 @@ def scratch_folder(needed_bytes: int) -> Iterator[Path]:
             CodedText(
                 "scratch-no-room",
                 base=str(base),
-                needed_bytes=(needed_bytes + _RESERVE_BYTES) / 1e9,
-                free=free / 1e9,
+                needed_bytes=needed_bytes + _RESERVE_BYTES,
+                free_bytes=free,
             )
         )
     folder = Path(tempfile.mkdtemp(dir=base))
