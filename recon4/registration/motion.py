@@ -133,11 +133,11 @@ class ImuMotion:
         beyond = np.abs(found - self._unit)
         usual = beyond < PREDICTION.beyond_sd * np.sqrt(np.diag(self._unit_cov))
         less = np.maximum(less, PREDICTION.left_ratio * np.where(usual, 0.0, beyond))
-        usual[9] = False
-        if of_walk and beyond[9] > IMU_ERRORS.most_clock_s:
-            found[usual] = self._unit[usual]
-            cov[usual, :] = cov[:, usual] = 0.0
-            cov[usual, usual] = np.diag(self._unit_cov)[usual]
+        if of_walk and beyond[-1] > IMU_ERRORS.most_clock_s:  # the last one is the clock
+            gain = np.flatnonzero(usual[:-1])
+            found[gain] = self._unit[gain]
+            cov[gain, :] = cov[:, gain] = 0.0
+            cov[gain, gain] = np.diag(self._unit_cov)[gain]
         self._unit, self._unit_cov = found, cov + np.diag(self._is_estimated * less**2)
 
     def extend(self, imu: ImuSamples) -> None:
