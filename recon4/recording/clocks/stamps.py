@@ -129,7 +129,7 @@ class StampClock:
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
-        if jump_ns := self._of_recorder_ns(offset_ns, recorded_ns):
+        if jump_ns := self._jump_with_recorder(offset_ns, recorded_ns):
             self.was_set = True
             self.shift_ns -= jump_ns
         elif self.offset_ns is not None and self._is_other(offset_ns, recorded_ns):
@@ -173,7 +173,7 @@ class StampClock:
         usual = abs(self.offset_ns - self._usual_ns) <= STAMPS.step_ns / 2
         return self._run > 0 or (even and usual)
 
-    def _of_recorder_ns(self, offset_ns: int, recorded_ns: int) -> int:
+    def _jump_with_recorder(self, offset_ns: int, recorded_ns: int) -> int:
         """By how much stamps jump as the recorder did [ns]; 0 = they do not.
 
         They do so soon after it was set, when messages that were on their way have arrived.

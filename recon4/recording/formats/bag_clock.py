@@ -171,8 +171,8 @@ def _first_step(t_ns: Times, topic: Topics, outside: _Span | None = None) -> tup
     if not len(t_ns):
         return None
     newest = np.maximum.accumulate(t_ns)
-    for row in _deepest(np.minimum(newest[:-1] - t_ns[1:], -np.diff(t_ns))):
-        row += 1
+    for before in _deepest(np.minimum(newest[:-1] - t_ns[1:], -np.diff(t_ns))):
+        row = before + 1
         begin_ns, end_ns = int(t_ns[:row].min()), int(t_ns[row:].max())
         if outside is not None:
             begin_ns, end_ns = min(begin_ns, outside.begin_ns), max(end_ns, outside.end_ns)

@@ -172,7 +172,7 @@ def _compression(laz: bytes, header: LasHeader, name: str) -> _Compression:
                 "laz-items-size",
                 name=name,
                 point_bytes=header.point_bytes,
-                items=str(sum((size for _, size, _ in items))),
+                items=str(sum(size for _, size, _ in items)),
             )
         )
     if chunk_points != _VARIABLE and not 1 <= chunk_points <= _MAX_CHUNK_POINTS:
