@@ -18,7 +18,7 @@ from recon4.settings.refine import RefineSettings
 from recon4.settings.registration import (
     RegistrationSettings,
 )
-from recon4.settings.renamed import changed_retired, current_name
+from recon4.settings.renamed import changed_retired, current_values
 from recon4.settings.slam2d import (
     Grid2dSettings,
     Loop2dSettings,
@@ -48,7 +48,7 @@ __all__ = [
     "VerificationSettings",
     "canonical",
     "changed_retired",
-    "current_name",
+    "current_values",
     "override",
     "preset",
     "to_json",

@@ -28,7 +28,8 @@ class IngestSettings(Checked):
     """Unit of the points of clouds [m]: 0.001 if they are in millimeters."""
 
     lidar_topic: str = ""
-    """Topic of the only LiDAR of a bag that is read. Empty = chosen by content, or by the rig."""
+    """Topic of the only LiDAR of a bag that is read; of its 2-D laser in a bag of lasers alone.
+    Empty = chosen by content, or by the rig."""
     imu_gyro_unit: Literal["auto", "rad_s", "deg_s"] = "auto"
     """Unit of the angular rates of the IMU in the recording: rad/s or deg/s. auto = by content."""
     imu_topic: str = ""
@@ -37,8 +38,6 @@ class IngestSettings(Checked):
     """Topic of the positions in a bag. Empty = that of the rig file, else chosen by content."""
     odometry_topic: str = ""
     """Topic of the poses in a bag. Empty = chosen by content."""
-    laser_topic: str = ""
-    """Topic of the 2-D laser in a bag of one alone. Empty = chosen by content."""
 
     def check(self) -> None:
         """Limits of the range in their order; multiframes not longer than the times of points."""

@@ -23,8 +23,9 @@ RENAMED = {
     ("scans", "sure_share"): "confident_inlier_ratio",
     ("graph", "drift_share"): "drift_ratio",
     ("graph", "min_share"): "min_match_ratio",
+    ("ingest", "laser_topic"): "lidar_topic",
 }
-"""Group and name in format 1 -> current name."""
+"""Group and name in an earlier version -> current name."""
 
 Value = bool | int | float | str
 
@@ -60,9 +61,22 @@ def retired() -> Mapping[tuple[str, str], Retired]:
     }
 
 
-def current_name(group: str, name: str) -> str:
+def _current_name(group: str, name: str) -> str:
     """Current name of a setting in a file of any version."""
     return RENAMED.get((group, name), name)
+
+
+def current_values(group: str, values: Mapping[str, object]) -> dict[str, object]:
+    """Recorded values of a group under their current names.
+
+    Of two names that are one setting now, the topic that somebody named counts.
+    """
+    found: dict[str, object] = {}
+    for name, value in values.items():
+        current = _current_name(group, name)
+        if value != "" or current not in found:
+            found[current] = value
+    return found
 
 
 def changed_retired(recorded: Mapping[str, Mapping[str, object]]) -> list[str]:
@@ -74,7 +88,7 @@ def changed_retired(recorded: Mapping[str, Mapping[str, object]]) -> list[str]:
     found = []
     for group, values in recorded.items():
         for name, value in values.items():
-            fixed = retired().get((group, current_name(group, name)))
+            fixed = retired().get((group, _current_name(group, name)))
             text = fixed.changed(f"{group}.{name}", value) if fixed else ""
             found += [text] if text else []
     return found

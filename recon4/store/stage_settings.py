@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from recon4.settings import Settings, changed_retired, current_name
+from recon4.settings import Settings, changed_retired, current_values
 from recon4.store.seal import check_sealed
 from recon4.store.stage import Stage, read_manifest
 
@@ -59,7 +59,7 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
         group = getattr(settings, name, None)
         if group is not None:
             known = {f.name for f in fields(group)}
-            current = {current_name(name, n): value for n, value in values.items()}
+            current = current_values(name, values)
             groups[name] = replace(group, **{n: v for n, v in current.items() if n in known})
     return replace(settings, **groups)
 

@@ -22,7 +22,7 @@ from recon4.registration.tuning import (
 )
 from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json, values_by_group
 from recon4.settings.help import describe_settings, differences, markdown
-from recon4.settings.renamed import RENAMED, retired
+from recon4.settings.renamed import RENAMED, current_values, retired
 from recon4.slam2d.tuning import HectorTuning
 from tests.tuned import COMPLETE_RECORDS
 
@@ -162,6 +162,18 @@ def test_every_retired_setting_has_a_text_and_is_no_setting():
     assert all(fixed.text for fixed in retired().values())
     assert not now & retired().keys()
     assert all((group, new) in {*now, *retired()} for (group, _), new in RENAMED.items())
+
+
+@pytest.mark.parametrize(
+    ("recorded", "topic"),
+    [
+        ({"lidar_topic": "", "laser_topic": "/scan"}, "/scan"),
+        ({"lidar_topic": "/points", "laser_topic": ""}, "/points"),
+        ({"laser_topic": "", "lidar_topic": ""}, ""),
+    ],
+)
+def test_of_two_settings_that_are_one_now_the_named_topic_counts(recorded, topic):
+    assert current_values("ingest", recorded) == {"lidar_topic": topic}
 
 
 def test_there_are_at_most_sixty_settings_and_each_is_varied_by_a_preset_or_a_test():

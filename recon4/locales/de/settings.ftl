@@ -9,12 +9,11 @@ about-ingest-max_range_m = Fernere Echos werden verworfen [m].
 about-ingest-deskewed = Die Punktwolken sind schon entzerrt, oder der Sensor stand still: alle Punkte gelten als zum Zeitstempel der Wolke gemessen. Für terrestrische Laserscans und Wolken anderer Programme.
 about-ingest-as_measured = Die Punktwolken sind, wie ihr Sensor sie gemessen hat, obwohl sie wie solche aussehen, die ein Programm in das Koordinatensystem seiner Karte gesetzt hat: sie werden deshalb nicht abgelehnt.
 about-ingest-points_unit_m = Einheit der Punkte von Wolken [m]: 0.001, wenn sie in Millimetern sind.
-about-ingest-lidar_topic = Topic des einzigen LiDARs einer Bag, das gelesen wird. Leer = nach Inhalt oder durch das Rig gewählt.
+about-ingest-lidar_topic = Topic des einzigen LiDARs einer Bag, das gelesen wird; in einer Bag, die nur 2-D-Laser hat, das des Lasers. Leer = nach Inhalt oder durch das Rig gewählt.
 about-ingest-imu_gyro_unit = Einheit der Drehraten der IMU in der Aufzeichnung: rad/s oder deg/s. auto = nach Inhalt.
 about-ingest-imu_topic = Topic der IMU in einer Bag. Leer = das der Rig-Datei, sonst nach Inhalt gewählt.
 about-ingest-gnss_topic = Topic der Positionen in einer Bag. Leer = das der Rig-Datei, sonst nach Inhalt gewählt.
 about-ingest-odometry_topic = Topic der Posen in einer Bag. Leer = nach Inhalt gewählt.
-about-ingest-laser_topic = Topic des 2-D-Lasers in einer Bag, die nur ihn hat. Leer = nach Inhalt gewählt.
 
 ## registration
 

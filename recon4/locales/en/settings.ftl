@@ -9,12 +9,11 @@ about-ingest-max_range_m = Farther returns are dropped [m].
 about-ingest-deskewed = The clouds are undistorted already, or the sensor stood still: all points are taken as measured at the cloud's stamp. For terrestrial laser scans and clouds of other programs.
 about-ingest-as_measured = The clouds are as their sensor measured them, although they look like clouds that a program has put into the frame of its map: they are not refused for it.
 about-ingest-points_unit_m = Unit of the points of clouds [m]: 0.001 if they are in millimeters.
-about-ingest-lidar_topic = Topic of the only LiDAR of a bag that is read. Empty = chosen by content, or by the rig.
+about-ingest-lidar_topic = Topic of the only LiDAR of a bag that is read; of its 2-D laser in a bag of lasers alone. Empty = chosen by content, or by the rig.
 about-ingest-imu_gyro_unit = Unit of the angular rates of the IMU in the recording: rad/s or deg/s. auto = by content.
 about-ingest-imu_topic = Topic of the IMU in a bag. Empty = that of the rig file, else chosen by content.
 about-ingest-gnss_topic = Topic of the positions in a bag. Empty = that of the rig file, else chosen by content.
 about-ingest-odometry_topic = Topic of the poses in a bag. Empty = chosen by content.
-about-ingest-laser_topic = Topic of the 2-D laser in a bag of one alone. Empty = chosen by content.
 
 ## registration
 

@@ -104,7 +104,7 @@ def read_laser_recording(
         require_one_capture(files)
         return LaserRecording(in_meters(read_scan_captures(files, report), report))
     settings = settings or IngestSettings()
-    named = Named(settings.laser_topic, topic), Named(settings.odometry_topic)
+    named = Named(settings.lidar_topic, topic), Named(settings.odometry_topic)
     scans, mount = _of_bags(paths, named, report=report)
     return LaserRecording(in_meters(scans, report), mount, of_robot=True)
 

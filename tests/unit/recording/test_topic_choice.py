@@ -233,7 +233,7 @@ def test_a_laser_is_preferred_to_the_scans_of_a_depth_camera(tmp_path):
     assert "/scan (frame laser) is read, not /camera/scan. Its view has 58°." in text
     assert "not /silent. It has no returns." in text
     named = read_laser2d(
-        [path], ImportReport(), settings=IngestSettings(laser_topic="/camera/scan")
+        [path], ImportReport(), settings=IngestSettings(lidar_topic="/camera/scan")
     )
     assert np.rad2deg(90 * named.angle_step_rad) == pytest.approx(58.0)
     by_rig = read_laser_recording([path], ImportReport(), topic="/camera/scan").scans
