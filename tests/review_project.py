@@ -170,8 +170,8 @@ def _apart(T, i, j) -> Edge:
 
 def work(folder: JobFolder, progress: Progress) -> None:
     """A job's work, for servers in tests: makes the project again."""
-    root, inputs = folder.request()
-    (remake if inputs.remake else make)(root, progress=progress)
+    request = folder.request()
+    (remake if request.inputs.remake else make)(request.project, progress=progress)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from tests.project_builder import build_project
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
-    project, _ = folder.request()
+    project = folder.request().project
     progress.start("Everything", 1, "project")
     build_project(project, points=1000)
     progress.advance()

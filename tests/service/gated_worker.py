@@ -48,13 +48,13 @@ class Gated:
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
-    project, _ = folder.request()
+    project = folder.request().project
     process(folder, Gated(progress, project.parent / "gates"))
 
 
 def policy(folder: JobFolder) -> Policy:
     """It also reads the gates."""
-    project, _ = folder.request()
+    project = folder.request().project
     return worker_policy(folder).adding(read=(project.parent / "gates",))
 
 

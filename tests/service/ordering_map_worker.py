@@ -19,7 +19,8 @@ AGAIN = "again and again"
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
-    project, inputs = folder.request()
+    request = folder.request()
+    project, inputs = request.project, request.inputs
     progress.event(StageChanged(stage="map", state="running"))
     walk = full_inputs()
     for _ in takewhile(lambda k: k == 0 or inputs.title == AGAIN, count()):

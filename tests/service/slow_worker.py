@@ -83,7 +83,8 @@ DEEDS = {
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
-    root, inputs = folder.request()
+    request = folder.request()
+    root, inputs = request.project, request.inputs
     with titled(root, inputs.title):
         _process(root, Path(inputs.recordings[0]), progress)
 
@@ -127,8 +128,7 @@ def _note(recording: Path, what: str) -> None:
 
 def policy(folder: JobFolder) -> Policy:
     """It also starts processes, and notes in the recording what it did."""
-    _, inputs = folder.request()
-    recordings = [Path(path) for path in inputs.recordings]
+    recordings = [Path(path) for path in folder.request().inputs.recordings]
     return replace(worker_policy(folder), processes=True).adding(write=recordings)
 
 

@@ -35,7 +35,7 @@ def compare(folder: JobFolder, progress: Progress) -> ExportedFile:
     from recon4.comparison.run import MapPair
     from recon4.comparison.write import write_comparison
 
-    project, _ = folder.request()
+    project = folder.request().project
     order = _order(folder)
     make_folders(folder.made)
     path = folder.made / f"{project.name}-differences.laz"
@@ -53,16 +53,16 @@ def compare(folder: JobFolder, progress: Progress) -> ExportedFile:
 
 def policy(folder: JobFolder) -> Policy:
     """The sandbox policy: read both projects and who may approve them, write the job's folder."""
-    project, _ = folder.request()
+    project = folder.request().project
     allowed = export_policy(folder)
     return replace(allowed, read=(*allowed.read, _other_map(project, _order(folder))))
 
 
 def _order(folder: JobFolder) -> CompareOrder:
-    _, inputs = folder.request()
-    if inputs.compare is None:
+    order = folder.request().inputs.compare
+    if order is None:
         raise ConfigError(CodedText("comparison-no-order"))
-    return inputs.compare
+    return order
 
 
 def _other_map(project: Path, order: CompareOrder) -> Path:

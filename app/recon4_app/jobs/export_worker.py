@@ -33,17 +33,17 @@ def export(folder: JobFolder, progress: Progress) -> ExportedFile:
     """
     from recon4.delivery.exports import export_file
 
-    project, inputs = folder.request()
-    order = inputs.export
+    request = folder.request()
+    order = request.inputs.export
     if order is None:
         raise ConfigError(CodedText("export-no-order"))
-    free, reserve = shutil.disk_usage(folder.path).free, folder.limits().reserve_bytes
+    free, reserve = shutil.disk_usage(folder.path).free, request.limits.reserve_bytes
     if free < reserve:
         raise NoSpace(CodedText("export-disk-full", reserve_bytes=reserve, free_bytes=free))
     make_folders(folder.made)
     try:
         return export_file(
-            project, order.file, folder.made, options=order.options, progress=progress
+            request.project, order.file, folder.made, options=order.options, progress=progress
         )
     except MemoryError as error:
         raise Recon4Error(CodedText("export-out-of-memory")) from error
@@ -51,14 +51,13 @@ def export(folder: JobFolder, progress: Progress) -> ExportedFile:
 
 def policy(folder: JobFolder) -> Policy:
     """The sandbox policy: read the project and who may approve it, write the job's folder."""
-    project, _ = folder.request()
-    limits = folder.limits()
-    free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
+    request = folder.request()
+    free = shutil.disk_usage(folder.path).free - request.limits.reserve_bytes
     return Policy(
-        read=(project, *judging_folders(project.parent / STATE)),
+        read=(request.project, *judging_folders(request.project.parent / STATE)),
         write=(folder.path,),
         temporary=folder.temporary,
-        memory_bytes=limits.memory_bytes,
+        memory_bytes=request.limits.memory_bytes,
         cpu_s=WORKER_LIMITS.max_cpu_s,
         file_bytes=max(WORKER_LIMITS.min_file_bytes, free),
         open_files=WORKER_LIMITS.max_files,

@@ -79,6 +79,18 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class WorkerRequest:
+    """What a worker is to do."""
+
+    project: Path
+    """Its folder."""
+    inputs: Inputs
+    limits: Limits
+    near: tuple[Path, ...]
+    """Files beside the recordings, which the worker may read but not list."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class JobWorkers:
     """Who makes parts of a job that can be divided."""
 
@@ -124,19 +136,15 @@ class JobFolder:
         (self.path / "room").unlink(missing_ok=True)
         sweep_unfinished(self.path)
 
-    def request(self) -> tuple[Path, Inputs]:
-        """Project folder and inputs."""
+    def request(self) -> WorkerRequest:
+        """What the server wrote for the worker."""
         request = json.loads((self.path / "request.json").read_text("utf-8"))
-        return Path(request["project"]), msgspec.convert(request["inputs"], Inputs)
-
-    def near(self) -> tuple[Path, ...]:
-        """Files beside the recordings, which the worker may read but not list."""
-        request = json.loads((self.path / "request.json").read_text("utf-8"))
-        return tuple(map(Path, request["near"]))
-
-    def limits(self) -> Limits:
-        """Resource limits of the worker."""
-        return Limits(**json.loads((self.path / "request.json").read_text("utf-8"))["limits"])
+        return WorkerRequest(
+            project=Path(request["project"]),
+            inputs=msgspec.convert(request["inputs"], Inputs),
+            limits=msgspec.convert(request["limits"], Limits),
+            near=tuple(map(Path, request["near"])),
+        )
 
     @contextlib.contextmanager
     def try_lock(self) -> Iterator[int | None]:

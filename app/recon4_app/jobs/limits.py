@@ -29,15 +29,15 @@ def worker_policy(folder: JobFolder) -> Policy:
     ``RLIMIT_DATA`` limits written memory, not mapped memory: mapping a recording larger than the
     memory is harmless. One file may be as large as the free disk space.
     """
-    project, inputs = folder.request()
-    limits = folder.limits()
+    request = folder.request()
+    inputs, limits = request.inputs, request.limits
     rig = inputs.rig if os.path.isabs(inputs.rig) else ""  # else a shipped one
     given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss, rig) if path]
     times = [path.parent / "times.txt" for path in given if path.is_dir()]
     free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
     return Policy(
-        read=(*given, *folder.near(), *times, *judging_folders(project.parent / STATE)),
-        write=(project, folder.path),
+        read=(*given, *request.near, *times, *judging_folders(request.project.parent / STATE)),
+        write=(request.project, folder.path),
         temporary=folder.temporary,
         memory_bytes=limits.memory_bytes,
         cpu_s=WORKER_LIMITS.max_cpu_s,
@@ -51,7 +51,7 @@ def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     restart_with_one_thread()
     give_way()
     faulthandler.enable()  # a crash in native code writes its stack to the log
-    project, _ = folder.request()
+    project = folder.request().project
     project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
     compile_kernels_once(folder.path)
     cached = use_private_cache(folder.temporary / "caches")

@@ -45,7 +45,7 @@ def main(stop: StopSignals) -> int:
     logging.getLogger("distributed").setLevel(logging.WARNING)
     give_way()
     state = folder.path.parents[1]
-    project, _ = folder.request()
+    project = folder.request().project
     project.mkdir(parents=True, exist_ok=True)  # workers are asked whether they see it
     with ExitStack() as opened:
         try:

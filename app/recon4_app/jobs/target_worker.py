@@ -35,17 +35,18 @@ def search(folder: JobFolder, progress: Progress) -> ExportedFile:
     from recon4.store.atomic import write_json
     from recon4.store.project import read_artifacts
 
-    project, inputs = folder.request()
-    if inputs.targets is None:
+    request = folder.request()
+    order = request.inputs.targets
+    if order is None:
         raise ConfigError(CodedText("targets-no-order"))
     make_folders(folder.made)
-    map_folder = read_artifacts(project)["map"]
+    map_folder = read_artifacts(request.project)["map"]
     tiles = TileSet.open(map_folder)
-    found = listed(find_targets(tiles, radii_m=inputs.targets.radii_m, progress=progress))
+    found = listed(find_targets(tiles, radii_m=order.radii_m, progress=progress))
     path = folder.made / "targets.json"
     write_json(path, to_plain(found))
     text = f"{len(found.rows)} places like survey targets"
-    return ExportedFile.of(path, text, latest_state(project), map_key=map_folder.name)
+    return ExportedFile.of(path, text, latest_state(request.project), map_key=map_folder.name)
 
 
 if __name__ == "__main__":

@@ -58,8 +58,7 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         note = coded(stop)
         return Outcome(state="cancelled", note=str(note), reason=reason_of(note))
     except (RecordingError, ConfigError) as error:
-        project, _ = folder.request()
-        return failure(text_of(error), startable=is_project(project))
+        return failure(text_of(error), startable=is_project(folder.request().project))
     except Recon4Error as error:
         return failure(_to_people(error, folder), no_space=isinstance(error, NoSpace))
     except MemoryError:
@@ -83,9 +82,10 @@ def process(folder: JobFolder, progress: Progress) -> None:
     from recon4.recording.sources import Sources
     from recon4.settings import override, preset
 
-    project, inputs = folder.request()
+    request = folder.request()
+    project, inputs, limits = request.project, request.inputs, request.limits
     if inputs.remake:
-        refuse_if_full(project, [], reserve_bytes=folder.limits().reserve_bytes)
+        refuse_if_full(project, [], reserve_bytes=limits.reserve_bytes)
         remake(project, progress=progress)
         return
     sources = Sources(
@@ -93,10 +93,10 @@ def process(folder: JobFolder, progress: Progress) -> None:
         rig=load_rig(inputs.rig) if inputs.rig else None,
         imu=Path(inputs.imu) if inputs.imu else None,
         gnss=Path(inputs.gnss) if inputs.gnss else None,
-        near=folder.near(),
+        near=request.near,
     )
     settings = override(preset(inputs.preset), list(inputs.settings))
-    refuse_if_full(project, sources.paths, reserve_bytes=folder.limits().reserve_bytes)
+    refuse_if_full(project, sources.paths, reserve_bytes=limits.reserve_bytes)
     with titled(project, inputs.title):
         run_pipeline(sources, project, settings=settings, preset=inputs.preset, progress=progress)
 
@@ -123,7 +123,7 @@ def titled(project: Path, title: str) -> Iterator[None]:
 def _full(error: Exception, folder: JobFolder) -> str | None:
     """The message about a full disk, if that caused an error."""
     try:
-        raise_if_full(error, folder.request()[0])
+        raise_if_full(error, folder.request().project)
     except NoSpace as full:
         return _to_people(full, folder)
     return None
@@ -134,8 +134,8 @@ def _to_people(error: Recon4Error, folder: JobFolder) -> str:
 
     Who may only look at a project reads it, too.
     """
-    text, (project, _) = text_of(error), folder.request()
-    for hidden in (folder.made, project.parent):
+    text = text_of(error)
+    for hidden in (folder.made, folder.request().project.parent):
         text = _without(f"{hidden}{os.sep}", text)
     return text
 
