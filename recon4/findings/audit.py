@@ -20,7 +20,7 @@ from recon4.locales.coded import unreadable
 from recon4.model.figures import AuditFigures
 from recon4.model.finding import Finding, Level, worst_first
 from recon4.store.atomic import write_json
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
 
 FINDINGS = "findings.json"
@@ -59,7 +59,7 @@ def load_findings(folder: Path) -> tuple[Finding, ...]:
     Raises:
         StoreError: If it is missing or damaged.
     """
-    record = read_json_object(folder / FINDINGS, LIMITS.findings_bytes, failure=StoreError)
+    record = read_object(folder / FINDINGS, max_bytes=LIMITS.findings_bytes)
     try:
         return tuple(msgspec.convert(record.get("findings"), list[Finding]))
     except msgspec.ValidationError as error:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from recon4.errors import StoreError
 from recon4.findings.walk_record import path_length_m
 from recon4.findings.witnesses.planar import PlanarRecord
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
@@ -13,8 +12,8 @@ from recon4.model.import_notes import import_notes
 from recon4.pose_graph.files import load_graph
 from recon4.slam2d.steps import Steps2d
 from recon4.store.arrays import load_record, load_trajectory
+from recon4.store.json_files import read_object
 from recon4.store.stage import read_figures
-from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 
 
@@ -44,7 +43,7 @@ def read_planar(artifacts: Mapping[str, Path]) -> PlanarRecord:
 def import_report(artifacts: Mapping[str, Path]) -> Mapping[str, object]:
     """The parsed ``report.json`` of the import."""
     path = artifacts["scans_2d"] / "report.json"
-    return read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
+    return read_object(path, max_bytes=LIMITS.findings_bytes)
 
 
 def final_graph(artifacts: Mapping[str, Path]) -> Path:

@@ -33,9 +33,8 @@ from recon4.settings.reads import AuditReads
 from recon4.store.arrays import load_arrays, load_record, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 from recon4.store.frames import FrameStore, open_frames
+from recon4.store.json_files import read_object
 from recon4.store.stage import OfStage, read_figures, read_manifest
-from recon4.untrusted.bounded import read_json_object
-from recon4.untrusted.limits import LIMITS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -172,7 +171,7 @@ def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, obj
     if path is None:
         return {}
     try:
-        return read_json_object(path, LIMITS.json_bytes, failure=StoreError)
+        return read_object(path)
     except StoreError as error:
         raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
 

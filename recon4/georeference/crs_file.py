@@ -12,7 +12,7 @@ from recon4.georeference.site_grid import SiteGrid
 from recon4.locales.coded import CodedText
 from recon4.model.local_frame import LocalReason
 from recon4.model.site_control import SITE_GRID
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
 
 _WHY = {
@@ -38,7 +38,7 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | SiteGrid | None:
     """
     path = artifact / "georeference.json"
     try:
-        record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
+        record = read_object(path, max_bytes=LIMITS.findings_bytes)
         if not record["crs"]:
             if crs:
                 reason = record["georeference"]["reason"]

@@ -29,8 +29,8 @@ from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import load_uncertainty
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import copy_file
+from recon4.store.json_files import read_object
 from recon4.store.stage import read_figures
-from recon4.untrusted.bounded import read_json_object
 from recon4.untrusted.limits import LIMITS
 
 KEPT = ("trajectory.npz", "georeference.json", "mirrors.npz", "uncertainty.npz")
@@ -119,9 +119,7 @@ class _Georeference:
 
 def _has_same_place(leveled: LeveledMap, undecided: Path) -> bool:
     """Whether both are in the same CRS with the same origin, or both local."""
-    record = read_json_object(
-        undecided / "georeference.json", LIMITS.findings_bytes, failure=StoreError
-    )
+    record = read_object(undecided / "georeference.json", max_bytes=LIMITS.findings_bytes)
     own = to_plain({"crs": leveled.crs or {}, "georeference": leveled.georeference.record()})
     try:
         before, after = (msgspec.convert(one, _Georeference) for one in (record, own))

@@ -9,7 +9,7 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText, text_of
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
 
 
@@ -77,6 +77,6 @@ def read_map_list(path: Path) -> dict[str, Any]:
         StoreError: If it is missing or damaged.
     """
     try:
-        return read_json_object(path, LIMITS.tile_list_bytes, failure=StoreError)
+        return read_object(path, max_bytes=LIMITS.tile_list_bytes)
     except StoreError as error:
         raise StoreError(CodedText("map-list", file=str(path), why=text_of(error))) from error

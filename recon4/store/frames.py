@@ -34,8 +34,7 @@ from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.store.arrays import load_array, load_record, save_record
 from recon4.store.earlier_frames import EARLIER_INDEX, earlier_columns, is_earlier
-from recon4.untrusted.bounded import read_json_object
-from recon4.untrusted.limits import LIMITS
+from recon4.store.json_files import read_object
 
 INDEX = np.dtype(
     [
@@ -373,7 +372,7 @@ def _check_points(folder: Path, index: NDArray[np.void]) -> None:
 
 def _read_report(path: Path) -> dict[str, object]:
     try:
-        return read_json_object(path, LIMITS.json_bytes, failure=StoreError)
+        return read_object(path)
     except StoreError as error:
         if path.exists():
             raise StoreError(unreadable(path.name, error)) from error

@@ -235,30 +235,6 @@ def parse_json(
     return value
 
 
-def read_json_limited(path: Path, max_bytes: int, *, failure: Failure = CorruptFile) -> Any:
-    """Read and parse a JSON file of unknown origin, see `parse_json`.
-
-    Raises:
-        Recon4Error: Of the class ``failure``, if it is too large, damaged or cannot be read.
-    """
-    data = read_bytes_limited(path, max_bytes, failure=failure)
-    return parse_json(data, path.name, failure=failure)
-
-
-def read_json_object(
-    path: Path, max_bytes: int, *, failure: Failure = CorruptFile
-) -> dict[str, Any]:
-    """Read a JSON file whose outermost value must be an object.
-
-    Raises:
-        Recon4Error: Of the class ``failure``, as `read_json_limited`.
-    """
-    found = read_json_limited(path, max_bytes, failure=failure)
-    if not isinstance(found, dict):
-        raise failure(CodedText("json-no-object", file=path.name, got=type(found).__name__))
-    return found
-
-
 def _finite(text: str) -> float:
     value = float(text)
     if not math.isfinite(value):

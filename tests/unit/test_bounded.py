@@ -5,11 +5,11 @@ import os
 import pytest
 
 from recon4.errors import ConfigError, CorruptFile, StoreError
+from recon4.store.json_files import read_object
 from recon4.untrusted.bounded import (
     lines_limited,
     parse_json,
     read_bytes_limited,
-    read_json_object,
     read_text_limited,
     text_blocks,
 )
@@ -104,8 +104,11 @@ def test_json_of_usual_depth_and_paired_surrogates_pass():
     assert parse_json('"\\ud83d\\ude00"', "p.json") == "😀"
 
 
-def test_an_object_is_expected(tmp_path):
+@pytest.mark.parametrize(
+    ("text", "problem"), [("[1]", "expected an object, got list"), ('{"a": NaN}', "NaN")]
+)
+def test_a_file_of_ours_is_an_object_of_finite_numbers(tmp_path, text, problem):
     path = tmp_path / "p.json"
-    path.write_text("[1]")
-    with pytest.raises(StoreError, match="expected a JSON object, got list"):
-        read_json_object(path, 100, failure=StoreError)
+    path.write_text(text)
+    with pytest.raises(StoreError, match=problem):
+        read_object(path, max_bytes=100)

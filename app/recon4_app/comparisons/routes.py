@@ -13,7 +13,7 @@ from recon4.comparison.records import MapDifferences
 from recon4.comparison.tuning import PAGE_POINTS
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
@@ -158,7 +158,7 @@ def _view(server: ServerParts, job: Job, map_key: str, *, language: str) -> Comp
 def _figures(path: Path) -> MapDifferences | None:
     """What the worker wrote; None = it is damaged: a hostile map may have taken the worker over."""
     try:
-        record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
+        record = read_object(path, max_bytes=LIMITS.findings_bytes)
         return msgspec.convert(record, MapDifferences)
     except (StoreError, msgspec.ValidationError):
         return None

@@ -17,7 +17,7 @@ from recon4.delivery.kinds import KINDS, ExportEstimate
 from recon4.errors import StoreError
 from recon4.export.options import ExportOptions
 from recon4.locales.coded import CodedText, at
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
@@ -208,7 +208,7 @@ def _view(server: ServerParts, job: Job, map_key: str, *, language: str) -> Expo
 
 def _read_choices(path: Path) -> ExportChoices:
     try:
-        record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
+        record = read_object(path, max_bytes=LIMITS.findings_bytes)
         return _CHOICES.validate_python(record)
     except ValidationError as error:
         raise StoreError(at(path.name, str(error))) from error

@@ -16,7 +16,7 @@ from recon4.errors import StoreError
 from recon4.live.session import CaptureSession
 from recon4.locales.coded import CodedText, at
 from recon4.review.evidence import Evidence
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
@@ -256,7 +256,7 @@ def _kept_name(artifacts: dict[str, str], evidence: Evidence | None, ending: str
 
 def _read_index(path: Path) -> MapIndex:
     try:
-        record = read_json_object(path, MAP_CHUNKS.max_index_bytes, failure=StoreError)
+        record = read_object(path, max_bytes=MAP_CHUNKS.max_index_bytes)
         return MapIndex.model_validate(record)
     except ValidationError as error:
         raise StoreError(at(path.name, str(error))) from error

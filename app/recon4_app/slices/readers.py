@@ -11,7 +11,7 @@ from recon4.errors import StoreError
 from recon4.locales.coded import at, unreadable
 from recon4.slices.double_places import DoubleReport
 from recon4.slices.targets.named import TargetList
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 from recon4_app.slices.model import WindowSpec
 from recon4_app.slices.tuning import READERS
 
@@ -23,9 +23,7 @@ def read_window(path: Path) -> WindowSpec:
         StoreError: If it is damaged or too large.
     """
     try:
-        return WindowSpec.model_validate(
-            read_json_object(path, READERS.max_bytes, failure=StoreError)
-        )
+        return WindowSpec.model_validate(read_object(path, max_bytes=READERS.max_bytes))
     except ValidationError as error:
         raise StoreError(at(path.name, str(error))) from error
 
@@ -37,7 +35,7 @@ def read_double_walls(path: Path) -> DoubleReport:
         StoreError: If it is damaged or too large.
     """
     try:
-        record = read_json_object(path, READERS.max_bytes, failure=StoreError)
+        record = read_object(path, max_bytes=READERS.max_bytes)
         return msgspec.convert(record, DoubleReport)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error
@@ -50,7 +48,7 @@ def read_targets(path: Path) -> TargetList:
         StoreError: If it is damaged or too large.
     """
     try:
-        record = read_json_object(path, READERS.max_bytes, failure=StoreError)
+        record = read_object(path, max_bytes=READERS.max_bytes)
         return msgspec.convert(record, TargetList)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error

@@ -9,7 +9,6 @@ text-nul-at = { $file }: Zeile { $line }: erwartet wird Text, erhalten: ein NUL-
 text-not-utf8-at = { $file }: Zeile { $line }: erwartet wird Text in UTF-8, erhalten: Byte 0x{ $byte } an der Stelle { $offset }
 text-line-long = { $file }: Zeile { $line }: erwartet werden höchstens { $limit } Byte, die Zeile ist länger
 json-invalid = { $file }: erwartet wird JSON, erhalten: etwas anderes: { $why }
-json-no-object = { $file }: erwartet wird ein JSON-Objekt, erhalten: { $got }
 not-finite = erwartet wird eine endliche Zahl, erhalten: { $got }
 json-deep = { $file }: erwartet wird JSON mit höchstens { $limit } Ebenen, es sind mehr
 json-surrogate = { $file }: erwartet wird Text in Unicode, erhalten: ein einzelnes Surrogat: { $why }

@@ -9,7 +9,6 @@ text-nul-at = { $file }: line { $line }: expected text, got a NUL byte at offset
 text-not-utf8-at = { $file }: line { $line }: expected UTF-8 text, got byte 0x{ $byte } at offset { $offset }
 text-line-long = { $file }: line { $line }: expected at most { $limit } bytes, got a longer line
 json-invalid = { $file }: expected JSON, got something else: { $why }
-json-no-object = { $file }: expected a JSON object, got { $got }
 not-finite = expected a finite number, got { $got }
 json-deep = { $file }: expected JSON of at most { $limit } levels, got more
 json-surrogate = { $file }: expected Unicode text, got a lone surrogate: { $why }

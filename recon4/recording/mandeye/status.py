@@ -13,12 +13,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.errors import RecordingError
+from recon4.errors import StoreError
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.lidars import LIDARS
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.report import ImportReport
-from recon4.untrusted.bounded import read_json_object
+from recon4.store.json_files import read_object
 
 DEVICE_TYPES: Mapping[int, str] = {
     1: "Mid-40",
@@ -64,8 +64,8 @@ def read_status(paths: Iterable[Path], report: ImportReport) -> DeviceStatus:
         if not path.is_file():
             continue
         try:
-            found = _status(read_json_object(path, MANDEYE.status_bytes))
-        except RecordingError:
+            found = _status(read_object(path, max_bytes=MANDEYE.status_bytes))
+        except StoreError:
             report.count("status_files_damaged")
             continue
         if found.models:
