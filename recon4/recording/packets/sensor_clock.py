@@ -218,7 +218,8 @@ class SensorClock:
             self._say_free_running(offset)
         self._offset_ns = offset
         first = int(nearest_hour(t_us[:1], t_arrival_ns[:1] + offset)[0])
-        self._since_ns, self._last = first, (int(t_arrival_ns[0]), first)
+        self._since_ns = first
+        self._last = (int(t_arrival_ns[0]), int(t_arrival_ns[0]) + offset)
         self._report_ahead()
         return offset
 
@@ -329,7 +330,9 @@ class SensorClock:
         t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
         deviation = t_sensor - (arrival + self._offset_ns)
         stepped = self._stepped(np.array([arrival]), t_sensor, deviation)
-        if not (stepped | self._odd(stamp, t_sensor, deviation))[0]:
+        arrived, stamped = self._since_last(arrival, stamp)
+        goes_on = abs(arrived - stamped) <= CLOCKS.step_ns  # as late as the one before it
+        if goes_on or not (stepped | self._odd(stamp, t_sensor, deviation))[0]:
             self._run = 0
             return True
         off = int(deviation[0])
@@ -344,8 +347,8 @@ class SensorClock:
     def _jump(self, arrival: int, stamp: NDArray[np.integer], off_ns: int) -> None:
         """Adopt the new offset of the clocks; the one that continued evenly counts as correct."""
         assert self._offset_ns is not None
-        going_on = int(nearest_hour(stamp, self._last[1])[0])
-        arrived, stamped = arrival - self._last[0], going_on - self._last[1]
+        arrived, stamped = self._since_last(arrival, stamp)
+        going_on = self._last[1] + stamped
         stepped = abs(arrived) < CLOCKS.step_ns < abs(stamped)
         if abs(stamped) < CLOCKS.jump_ns and not stepped:
             jump_ns = arrived - stamped
@@ -353,6 +356,8 @@ class SensorClock:
             self._host_jump_ns += jump_ns
             self._report_jump("recorder", jump_ns)
         else:
+            if abs(arrived) < CLOCKS.step_ns:
+                off_ns -= self._early_ns()
             self._offset_ns += off_ns
             self._shift_ns = int(self._shift(going_on)) - off_ns
             self._rate = 0.0
@@ -360,6 +365,16 @@ class SensorClock:
         self._since_ns, self._window, self._run = going_on, [], 0
         self._block, self._filled, self._apart = [], 0, []
         self._report_ahead()
+
+    def _since_last(self, arrival: int, stamp: NDArray[np.integer]) -> tuple[int, int]:
+        """From the last packet to one that arrives: by the recorder's clock, by its stamp [ns]."""
+        going_on = int(nearest_hour(stamp, self._last[1])[0])
+        return arrival - self._last[0], going_on - self._last[1]
+
+    def _early_ns(self) -> int:
+        """How early the last packet arrived [ns]; negative = it was held up."""
+        assert self._offset_ns is not None
+        return self._last[1] - self._last[0] - self._offset_ns
 
     def _report_ahead(self) -> None:
         assert self._offset_ns is not None

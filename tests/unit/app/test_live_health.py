@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from recon4.live.findings import findings
 from recon4.live.mapper.import_notes import NotesWatch
 from recon4.live.newest_messages import Newest
 from recon4.live.session import CaptureSession
@@ -13,6 +14,7 @@ from recon4_app.live.current_capture import marks_of
 from recon4_app.live.health import lidars
 from recon4_app.live.power import Battery, Power, battery_findings, read_battery
 from recon4_app.live.rigs import rig_files, rigs_in, shipped_rigs
+from tests.live_messages import notes as notes_of
 from tests.live_messages import sender, status
 
 RIG = load_rig("4recon")
@@ -66,6 +68,14 @@ def test_what_went_wrong_before_the_first_message_is_reported_for_ten_seconds():
     recent = [notes.message(now_s).recent for now_s in (30.0, 39.0, 41.0)]
 
     assert recent == [{"clock_jumps": 1}, {"clock_jumps": 1}, {}]
+
+
+def test_a_jump_of_a_lidars_clock_is_not_said_of_the_scanners():
+    for recent, said in (({"packets": 900}, []), ({"scans": 90}, ["A clock of the scanners"])):
+        found = findings(RIG, newest(notes=notes_of(recent={**recent, "clock_jumps": 1})), "")
+
+        texts = [one.text for one in found if "clock" in one.text]
+        assert [text[:23] for text in texts] == said
 
 
 def test_without_data_and_for_a_silent_lidar_loss_and_clock_are_unknown():

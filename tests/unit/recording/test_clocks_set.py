@@ -162,3 +162,38 @@ def test_the_packets_before_which_clocks_went_back_are_marked_however_few_come_a
         order.is_set_back, last_ns = False, given[-1] if len(given) else last_ns
 
     assert sum(marked) == 1
+
+
+def falling_behind(arrival, late_s):
+    """Arrivals of a sender that falls behind for 2 s and then sends all that waited."""
+    since_ns = arrival - arrival[1000]
+    sent = arrival + (np.clip(since_ns / (2.0 * SECOND_NS), 0.0, 1.0) * late_s * 1e9).astype(int)
+    caught_up = arrival > arrival[1000] + 2.5 * SECOND_NS
+    sent[caught_up] = np.maximum(arrival, np.max(sent[~caught_up]) + 1000)[caught_up]
+    return sent
+
+
+@pytest.mark.parametrize("late_s", [0.9, 1.4, 4.0])
+def test_a_sender_that_falls_behind_loses_no_packets_and_has_no_jump(late_s):
+    t_ns, arrival, stamps = packets(8000)
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), falling_behind(arrival, late_s), stamps)
+
+    assert kept.all() and not report.findings
+    np.testing.assert_array_equal(out, t_ns // 1000 * 1000)
+
+
+@pytest.mark.parametrize("jump_s", [-600.0, -0.3, 0.3, 900.0])
+def test_a_sensor_that_is_set_while_its_packets_come_late_goes_on(jump_s):
+    t_ns, arrival, stamps = packets(8000)
+    late = falling_behind(arrival, 0.8)
+    row = int(np.argmax(late - arrival))
+    stamps[row:] = (stamps[row:] + round(jump_s * 1e6)) % 3_600_000_000
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), late, stamps)
+
+    assert kept.sum() == len(kept) - 7
+    assert np.abs(out - t_ns)[kept].max() < 15_000_000
+    assert warned(report, K.CLOCK_JUMP, whose="sensor")
