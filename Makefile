@@ -70,7 +70,7 @@ lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .
 
 types: $(VENV)/installed-dev
-	$(BIN)/mypy
+	$(BIN)/pyrefly check
 
 unit: $(VENV)/installed-dev site kernels bytecode
 	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
@@ -148,7 +148,7 @@ wheel: $(VENV)/installed-dev
 		$(BIN)/python -m pip wheel -q --no-deps --no-build-isolation --wheel-dir out .
 
 clean:
-	rm -rf $(VENV) $(TOOLS) demo site out .cache .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(TOOLS) demo site out .cache .ruff_cache .pytest_cache
 
 $(VENV)/bin/python:
 	@test -n '$(PYTHON)' || { echo 'recon4: needs Python 3.11, 3.12 or 3.13 (found: '"$$(python3 --version 2>&1)"'); name one with make PYTHON=…' >&2; exit 1; }

@@ -67,10 +67,15 @@ class WebFiles(StaticFiles):
         return await super().get_response(name, scope)
 
     def file_response(
-        self, full_path: PathLike, stat_result: os.stat_result, scope: Scope, *more: int
+        self,
+        full_path: PathLike,
+        stat_result: os.stat_result,
+        scope: Scope,
+        *more: int,
+        **named: int,
     ) -> Response:
         """The response to a request that may be conditional."""
-        response = super().file_response(full_path, stat_result, scope, *more)
+        response = super().file_response(full_path, stat_result, scope, *more, **named)
         name = os.path.relpath(full_path, os.path.realpath(str(self.directory)))
         found = (stat_result.st_size, stat_result.st_mtime_ns)
         if scope.get(_KEPT) == self._key and self._known.get(name) == found:

@@ -379,4 +379,4 @@ def _restored_mode(name: str, mode: int) -> int:
 
 def to_json(found: BackedUp) -> dict[str, object]:
     """Plain JSON values."""
-    return asdict(found) | {"path": str(found.path)}
+    return {**asdict(found), "path": str(found.path)}

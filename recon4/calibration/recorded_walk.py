@@ -165,5 +165,4 @@ def _excitation(trajectory: Trajectory, t_mid_ns: Times, length: int) -> Array:
         [np.zeros((1, 3, 3)), np.cumsum(turn[:, :, None] * turn[:, None, :], axis=0)]
     )
     sums = squares[length - 1 :] - squares[: len(squares) - length + 1]
-    smallest: Array = np.linalg.eigvalsh(sums)[:, 0]
-    return smallest
+    return np.asarray(np.linalg.eigvalsh(sums)[:, 0], np.float64)

@@ -122,4 +122,4 @@ def _leaders(place: NDArray[np.intp], weight: Array, places: int) -> NDArray[np.
 
 def _sums(group: NDArray[np.intp], values: Array, groups: int = 0) -> Array:
     columns = [np.bincount(group, column, groups) for column in values.T]
-    return np.stack(columns, axis=1)
+    return np.stack(columns, axis=1, dtype=np.float64)

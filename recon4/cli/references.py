@@ -67,7 +67,7 @@ def open_reference(
     columns, unit, asked = reading
     if asked not in ("auto", "map", "crs"):
         raise ConfigError(CodedText("reference-frame", asked=asked[:40]))
-    read_as = ReadAs(asked, parse_choice(columns, unit))  # type: ignore[arg-type]
+    read_as = ReadAs(asked, parse_choice(columns, unit))
     with TemporaryDirectory(prefix="recon4-reference-") as scratch:
         out = Path(scratch) / "reference"
         facts = import_reference(path, out, read_as=read_as, place=MapPlace(frame, tiles.bounds_m))

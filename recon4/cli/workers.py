@@ -121,7 +121,7 @@ def _arguments(context: typer.Context) -> Iterator[str]:
         value = context.params.get(parameter.name or "")
         if parameter.name in _OF_WORKERS or not value:
             continue
-        values = [str(one) for one in (value if isinstance(value, list | tuple) else [value])]
+        values = [str(one) for one in (value if isinstance(value, (list, tuple)) else [value])]
         if parameter.param_type_name == "argument":
             behind += values
         else:

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import laspy
-import lazrs  # type: ignore[import-untyped]
+import lazrs
 import numpy as np
 
 from recon4.errors import StoreError

@@ -132,8 +132,8 @@ def _write_systems(file: sqlite3.Connection, place: MapSystem | None) -> int:
         authority, _, code = place.crs.partition(":")
         is_code = isinstance(place, CrsTransform) and authority.upper() == "EPSG" and code.isdigit()
         srs_id = int(code) if is_code else GEOPACKAGES.own_system
-        owner = ("EPSG", srs_id) if is_code else ("NONE", srs_id)
-        rows.append((place.crs, srs_id, *owner, place.wkt, place.operation))
+        owner = "EPSG" if is_code else "NONE"
+        rows.append((place.crs, srs_id, owner, srs_id, place.wkt, place.operation))
     unique = {row[1]: row for row in rows}
     file.executemany("INSERT INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, ?, ?)", unique.values())
     return srs_id

@@ -12,13 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import chain, groupby, pairwise
 from pathlib import Path
 from typing import Any
 
 import laspy
-import lazrs  # type: ignore[import-untyped]
+import lazrs
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,7 +39,7 @@ from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import LAZ, POINT_EXPORT, REREAD
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
-from recon4.mapping.threads import Each, in_order
+from recon4.mapping.threads import Each, InThreads
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
@@ -149,7 +148,7 @@ def export_map_laz(
 def _export(source: PointSource, path: Path, progress: Progress | None, *, whole: bool) -> int:
     """Write and check a file; ``whole`` = all of its points are expanded again."""
     with ThreadPoolExecutor(LAZ.workers) as pool, atomic_file(path) as temporary:
-        each = partial(in_order, pool)
+        each = InThreads(pool)
         source = replace(source, each=each)
         header = las_header(source, scale_m=LAZ.scale_m)
         meant = PointAccount(crs=crs_text(header))

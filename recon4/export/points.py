@@ -184,9 +184,8 @@ class PointSource:
     def count_of(self, tile: Tile, *, limit: int) -> int:
         """How many of the first points of a tile are wanted; these are an even sample."""
         fields = ["xyz", *(["classification"] if "classification" in tile.fields else [])]
-        columns = tile.read(fields, limit=limit)
-        unknown = np.zeros(len(columns["xyz"]), np.uint8)
-        columns = {"classification": unknown, **columns}
+        read = tile.read(fields, limit=limit)
+        columns: Columns = {"classification": np.zeros(len(read["xyz"]), np.uint8), **read}
         origin_m = np.array(tile.origin_m)
         rows = self.selection.rows(columns, origin_m)
         if self.selection.box_m is None:

@@ -162,7 +162,7 @@ class SE3:
         """Twists, rotation first, (..., 6); the inverse of `exp`."""
         omega = so3_log(self.R)
         v = np.linalg.solve(_left_jacobian(omega), self.t[..., None])[..., 0]
-        return np.concatenate([omega, v], axis=-1)
+        return np.concatenate([omega, v], axis=-1, dtype=np.float64)
 
     def quat_xyzw(self) -> Array:
         """Unit quaternions (x, y, z, w), w >= 0, (..., 4)."""

@@ -283,7 +283,7 @@ def _scale(fit: _RigidFit) -> tuple[float, float]:
 
 def _inverse_root(one: MeasuredTarget) -> Array:
     cov = one.along @ one.cov @ one.along.T
-    return np.asarray(np.linalg.inv(np.linalg.cholesky(cov)))
+    return np.asarray(np.linalg.inv(np.linalg.cholesky(cov)), np.float64)
 
 
 def _residuals(targets: Sequence[MeasuredTarget], T_map_site: SE3) -> Array:

@@ -189,7 +189,8 @@ def _fit_gravity(force: Array, R_mean: Array) -> tuple[Array, Array]:
     J = np.concatenate([np.broadcast_to(np.eye(3), R_mean.shape), R_mean], axis=2).reshape(-1, 6)
     H = J.T @ J / LEVELING.window_sd_m_s2**2
     H[3:, 3:] += np.eye(3) / LEVELING.bias_sd_m_s2**2
-    x = np.linalg.solve(H, J.T @ force.reshape(-1) / LEVELING.window_sd_m_s2**2)
+    b = J.T @ force.reshape(-1) / LEVELING.window_sd_m_s2**2
+    x = np.asarray(np.linalg.solve(H, b), np.float64)
     return x[:3], x[3:]
 
 

@@ -37,7 +37,7 @@ class Kernel:
     def compile(self) -> None:
         """Compile it into Numba's cache; what is there already is only loaded."""
         for signature in self.signatures:
-            self.dispatcher.compile(signature)
+            self.dispatcher.compile(signature)  # pyrefly: ignore[missing-attribute]
 
 
 @cache

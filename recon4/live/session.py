@@ -108,7 +108,7 @@ def load_session(project: Path) -> CaptureSession:
     path = project / "live" / "session.json"
     facts = read_object(path, max_bytes=LIMITS.session_bytes)
     try:
-        session = CaptureSession(**{**facts, "project": project})
+        session = CaptureSession(**facts | {"project": project})
     except TypeError as error:
         raise StoreError(unreadable(str(path), error)) from error
     for name, kind in _TYPES.items():

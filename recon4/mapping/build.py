@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import partial
 from itertools import chain
 from pathlib import Path
 from typing import Protocol
@@ -32,7 +31,7 @@ from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.structure import find_structure
 from recon4.mapping.structure_tuning import STRUCTURE
-from recon4.mapping.threads import in_order
+from recon4.mapping.threads import InThreads, in_order
 from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
@@ -238,7 +237,7 @@ def _finish_tiles(
         if means.workers is None:
             finished = finished_tiles(buckets, rest, pool, recipe=recipe, writer=writer)
         else:
-            each = partial(in_order, pool)
+            each = InThreads(pool)
             ordered = OrderedTiles(buckets, rest, means.workers, each, progress)
             finished = ordered.finished(recipe, writer)
         made = chain(log.earlier(), map(log.kept, finished))

@@ -11,7 +11,7 @@ from itertools import zip_longest
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.made_tiles import Finished, TileCounts
 from recon4.mapping.records import Records, Tile
-from recon4.mapping.threads import in_order
+from recon4.mapping.threads import InThreads
 from recon4.mapping.tile import Recipe, make_tile
 from recon4.mapping.tile_memory import Scratch, TileMeans
 from recon4.mapping.tile_writer import TileWriter
@@ -77,7 +77,7 @@ def finished_tiles(
         writer: Of the map.
     """
     finish = partial(finish_tile, recipe=recipe, writer=writer)
-    small, large = TileMeans(Scratch()), TileMeans(None, partial(in_order, pool))
+    small, large = TileMeans(Scratch()), TileMeans(None, InThreads(pool))
     waiting: deque[Future[Finished]] = deque()
     try:
         read = read_tiles(buckets, tiles, pool)

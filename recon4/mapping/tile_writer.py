@@ -239,7 +239,7 @@ def _rows_of(columns: Columns, rows: NDArray[np.intp]) -> Columns:
 def _listed(rows: Iterable[TileRow]) -> Iterator[dict[str, object]]:
     """Entries of ``tiles.json``; the number of stray returns only where there are some."""
     for row in rows:
-        listed = asdict(row)
+        listed: dict[str, object] = {**asdict(row)}
         if not row.strays:
             del listed["strays"]
         yield listed

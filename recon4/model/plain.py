@@ -31,7 +31,7 @@ def finite_or_none(number: float, digits: int | None = None) -> float | None:
 def _without_nan(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _without_nan(item) for name, item in value.items()}
-    if isinstance(value, list | tuple):
+    if isinstance(value, (list, tuple)):
         return [_without_nan(item) for item in value]
     return finite_or_none(value) if isinstance(value, float) else value
 

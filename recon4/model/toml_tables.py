@@ -66,7 +66,7 @@ class TomlTable:
         """Finite numbers, (size,)."""
         value = self.get(key, default)
         if (
-            not isinstance(value, list | tuple)
+            not isinstance(value, (list, tuple))
             or len(value) != size
             or not all(map(_is_usable, value))
         ):

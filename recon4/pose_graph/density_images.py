@@ -116,9 +116,9 @@ def overlays(target: DensityImage, source: TurnedImage, *, yaws: Array, most: in
 def yaws_within(bound_rad: float) -> Array:
     """Rotations to try: up to a bound on either side, at most a full turn, (Y,)."""
     if bound_rad >= np.pi:
-        return np.arange(-np.pi, np.pi, DENSITY.yaw_step_rad)
+        return np.arange(-np.pi, np.pi, DENSITY.yaw_step_rad, dtype=np.float64)
     steps = int(np.ceil(bound_rad / DENSITY.yaw_step_rad))
-    return np.asarray(np.arange(-steps, steps + 1) * DENSITY.yaw_step_rad)
+    return np.asarray(np.arange(-steps, steps + 1) * DENSITY.yaw_step_rad, np.float64)
 
 
 def _correlate(target: DensityImage, source: TurnedImage, yaws: Array) -> NDArray[np.float32]:

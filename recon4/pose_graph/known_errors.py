@@ -59,7 +59,7 @@ class RigError:
         size = np.sqrt((since**2).sum(axis=(1, 2)) / 3.0)[:, None, None]
         spread = self.turn_rad * size * np.eye(3)
         every = np.concatenate([since, spread], axis=2)
-        modes = np.kron(np.diag([self.turn_rad, self.shift_m]), every)
+        modes = np.asarray(np.kron(np.diag([self.turn_rad, self.shift_m]), every), np.float64)
         if self.of_body and not on_earth:
             arm = T_map_body.t - T_map_body.t[0]
             modes[:, TRANSLATION, ROTATION] = self.turn_rad * skew(arm) @ R[0]

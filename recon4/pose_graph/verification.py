@@ -83,17 +83,16 @@ class Verification:
     def to_json(self) -> dict[str, object]:
         """Plain JSON values for ``verification.json``."""
         edges = self.graph.edges
-        return asdict(
-            VerificationRecord(
-                edges=self.graph.verdict_counts(),
-                rounds=[[_judged(edges[row], row) for row in rows] for rows in self.rounds],
-                flagged=[_judged(edges[row], row) for row in self.flagged],
-                outliers=[_judged(edges[row], row) for row in self.outliers],
-                duplicates=self.duplicates,
-                chi2_before=self.chi2_before,
-                chi2_after=self.chi2_after,
-            )
+        record = VerificationRecord(
+            edges=self.graph.verdict_counts(),
+            rounds=[[_judged(edges[row], row) for row in rows] for rows in self.rounds],
+            flagged=[_judged(edges[row], row) for row in self.flagged],
+            outliers=[_judged(edges[row], row) for row in self.outliers],
+            duplicates=self.duplicates,
+            chi2_before=self.chi2_before,
+            chi2_after=self.chi2_after,
         )
+        return {**asdict(record)}
 
 
 def verify(

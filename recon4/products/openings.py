@@ -102,7 +102,8 @@ def _closed(solid: NDArray[np.bool_]) -> NDArray[np.bool_]:
 def _runs(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Where runs of True begin and end."""
     steps = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
-    return list(zip(np.flatnonzero(steps > 0), np.flatnonzero(steps < 0), strict=True))
+    begin, end = (np.flatnonzero(steps == step).tolist() for step in (1, -1))
+    return list(zip(begin, end, strict=True))
 
 
 def _pierced(face: Face, rays: Rays, storey: BuildingStorey) -> NDArray[np.bool_]:

@@ -75,7 +75,7 @@ def _of_tile(columns: dict[str, NDArray[np.float32]], origin_m: Array) -> tuple[
     p = columns["xyz"][level].astype(np.float64) + origin_m
     cell = np.floor(p[:, :2] / STOREYS.cell_m).astype(np.int64)
     z = np.floor(p[:, 2] / STOREYS.bin_m).astype(np.int64)
-    cells, _ = _unique_rows(np.column_stack([cell, z, vertical[level] > 0.0]))
+    cells, _ = _unique_rows(np.column_stack([cell, z, (vertical[level] > 0.0).astype(np.int64)]))
     cells[:, :2] //= round(STOREYS.column_m / STOREYS.cell_m)
     rows, inverse = _unique_rows(cells)
     count = np.bincount(inverse, minlength=len(rows)).astype(np.float64)

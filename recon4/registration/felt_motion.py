@@ -265,7 +265,7 @@ class _MeasuredShifts:
 def _measured(steps: WalkSteps) -> _MeasuredShifts:
     shifts_m, along = np.diff(steps.T_odom_body.t, axis=0), steps.column("weak_direction")
     lost, still, piece = (steps.column(name) for name in ("lost", "stationary", "piece"))
-    finite = np.isfinite(along).all(axis=1)
+    finite = np.asarray(np.isfinite(along).all(axis=1))
     unknown = lost[1:] | lost[:-1] | steps.column("bridged")[1:] | (piece[1:] != piece[:-1])
     unknown |= ~finite[1:]
     sd_m = np.where(unknown, FELT.unknown_m, FELT.shift_sd_m)

@@ -59,8 +59,8 @@ def _of_sensor(
     sensor = rig.sensors[row]
     if not sensor.enabled:
         return None
-    columns = map(np.ascontiguousarray, (frame.sensor, frame.xyz, frame.ring, frame.dt_ns))
-    of, p, rings, t_ns = columns
+    of, p = np.ascontiguousarray(frame.sensor), np.ascontiguousarray(frame.xyz)
+    rings, t_ns = np.ascontiguousarray(frame.ring), np.ascontiguousarray(frame.dt_ns)
     xyz, ring, dt_ns = points_of_sensor(of, row, p, rings, t_ns)
     if len(xyz) < 2:
         return None

@@ -134,7 +134,7 @@ def _of_bias(extra: Array, upward: Array) -> Array:
         H = (
             tilted * weight[:, None]
         ).T @ tilted + RIDES.bias_noise_m_s2 / RIDES.bias_sd_m_s2**2 * np.eye(3)
-        bias = np.asarray(np.linalg.solve(H, tilted.T @ (weight * (extra - level))))
+        bias = np.asarray(np.linalg.solve(H, tilted.T @ (weight * (extra - level))), np.float64)
         level = float(np.median(extra - tilted @ bias))
     return np.asarray(level + tilted @ bias)
 

@@ -201,7 +201,7 @@ def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:
             _flat(item, f"{prefix}.{key}" if prefix else str(key)) for key, item in value.items()
         ]
         return [row for rows in pairs for row in rows]
-    if isinstance(value, list | tuple) and len(value) > 6:
+    if isinstance(value, (list, tuple)) and len(value) > 6:
         return [(prefix, f"{len(value)} entries")]
     return [(prefix, _short(value))]
 

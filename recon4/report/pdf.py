@@ -94,7 +94,7 @@ def _printable(value: Any) -> Any:
     """
     if isinstance(value, dict):
         return {k: one if k == "svg" else _printable(one) for k, one in value.items()}
-    if isinstance(value, list | tuple):
+    if isinstance(value, (list, tuple)):
         return [_printable(one) for one in value]
     if isinstance(value, str) and not value.isascii():
         return "".join(_shown(one) for one in value)

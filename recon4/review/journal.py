@@ -259,9 +259,7 @@ def _next(rows: Sequence[JournalRow], decision: Decision) -> JournalRow:
         prev_hash=head(rows),
         hash="",
     )
-    return JournalRow(
-        **{name: getattr(row, name) for name in _COLUMNS.split(", ")} | {"hash": row.sealed()}
-    )
+    return replace(row, hash=row.sealed())
 
 
 def _rows(db: sqlite3.Connection) -> list[JournalRow]:

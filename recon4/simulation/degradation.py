@@ -283,7 +283,7 @@ class Degradation:
         }
 
     def _drawn(self, name: str) -> dict[str, object]:
-        drawn = {
+        drawn: dict[str, dict[str, object]] = {
             "extrinsics": {"axis_body": self.axis_lidar.tolist()},
             "mount-shift": {"direction_body": self.axis_lidar.tolist()},
             "imu-rotation": {"axis_body": self.axis_imu.tolist()},

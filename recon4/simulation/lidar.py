@@ -163,7 +163,7 @@ class Lidar:
             + pattern.offset_ns
         )
         count = t_ns.size
-        t_s = 1e-9 * t_ns.ravel()
+        t_s = np.asarray(1e-9 * t_ns.ravel(), np.float64)
         turn = self._turn_rad(t_s)
         shot, laser = self._shots(turn)
         half = 0.5 * self.model.divergence_rad

@@ -134,7 +134,8 @@ def _read(folder: Path, name: str) -> TrinaryMap:
     text = read_text_limited(
         folder / f"{name}.yaml", MAP_FILES_2D.max_yaml_bytes, failure=StoreError
     )
-    facts = dict(line.partition(": ")[::2] for line in text.splitlines())
+    lines = (line.partition(": ") for line in text.splitlines())
+    facts = {name: value for name, _, value in lines}
     try:
         x, y = facts["origin"].strip("[]").split(",")[:2]
         cell_m, origin_m = float(facts["resolution"]), (float(x), float(y))

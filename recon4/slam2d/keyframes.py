@@ -99,6 +99,6 @@ def make_keyframes(
         pose=pose,
         information=information,
         scans=points,
-        run=np.cumsum(loose | steps.resets[rows]),
+        run=np.cumsum(loose | steps.resets[rows], dtype=np.intp),
         path_m=np.concatenate([[0.0], np.cumsum(moved_m)]),
     )

@@ -23,6 +23,10 @@ class AcceptanceText:
     """Who approved the map, or `Not approved`."""
 
 
+def _in_cm(length_m: float | None) -> str:
+    return UNKNOWN if length_m is None else f"{100.0 * length_m:.1f}"
+
+
 def render_acceptance(report: ControlReport, text: AcceptanceText) -> str:
     """The sheet as one HTML file without scripts; all names are escaped."""
     environment = Environment(
@@ -32,8 +36,6 @@ def render_acceptance(report: ControlReport, text: AcceptanceText) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["cm"] = lambda length_m: (
-        UNKNOWN if length_m is None else f"{100.0 * length_m:.1f}"
-    )
+    environment.filters["cm"] = _in_cm
     template = environment.get_template("acceptance.html.jinja")
     return template.render(report=report, text=text)

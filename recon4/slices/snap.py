@@ -173,7 +173,8 @@ def _corner(planes: tuple[_Plane, _Plane, _Plane], pick: PickRay) -> Snapped | N
     normals = np.stack([one.normal for one in planes])
     if abs(np.linalg.det(normals)) < 1.0 - SNAPS.apart:
         return None
-    p = np.linalg.solve(normals, np.array([one.offset_m for one in planes]))
+    offset_m = np.array([one.offset_m for one in planes])
+    p = np.asarray(np.linalg.solve(normals, offset_m), np.float64)
     return _met("corner", p, planes, pick=pick)
 
 
@@ -182,7 +183,8 @@ def _edge(a: _Plane, b: _Plane, pick: PickRay) -> Snapped | None:
     along = np.cross(a.normal, b.normal)
     along /= np.linalg.norm(along)
     normals = np.stack([a.normal, b.normal, along])
-    base = np.linalg.solve(normals, np.array([a.offset_m, b.offset_m, along @ pick.hit_m]))
+    offset_m = np.array([a.offset_m, b.offset_m, along @ pick.hit_m])
+    base = np.asarray(np.linalg.solve(normals, offset_m), np.float64)
     cosine = float(along @ pick.direction)
     if 1.0 - cosine**2 < SNAPS.grazing**2:
         return _met("edge", base, (a, b), pick=pick)

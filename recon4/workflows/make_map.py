@@ -126,7 +126,7 @@ def _map(
         store,
         trajectory,
         load_intensity_table(intensity / "table.npz"),
-        covariances=covariances_at and covariances_at(store.t_mid_ns),
+        covariances=None if covariances_at is None else covariances_at(store.t_mid_ns),
         classes=StoredClasses.open(classes),
         corrections=placed.volumes,
     )

@@ -115,13 +115,13 @@ class AuditLog:
         if before_number is not None:
             query = query.where(AUDIT.c.number < before_number)
         with self._engine.connect() as connection:
-            return [Entry(**row) for row in connection.execute(query).mappings()]
+            return [Entry(**row._asdict()) for row in connection.execute(query)]
 
     def verify(self) -> ChainCheck:
         """Verify the hash chain: compute every hash again."""
         with self._engine.connect() as connection:
-            rows = connection.execute(AUDIT.select().order_by(AUDIT.c.number)).mappings()
-            return verify_chain(Entry(**row) for row in rows)
+            rows = connection.execute(AUDIT.select().order_by(AUDIT.c.number))
+            return verify_chain(Entry(**row._asdict()) for row in rows)
 
     def _counted(self, what: str) -> str:
         """The object of a failure with the number left out before it; empty = leave it out."""

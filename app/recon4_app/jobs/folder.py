@@ -127,8 +127,7 @@ class JobFolder:
             (self.path / name).unlink(missing_ok=True)
         near = [str(file) for path in inputs.recordings for file in files_near(Path(path))]
         request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
-        request["near"] = near
-        write_json(self.path / "request.json", request)
+        write_json(self.path / "request.json", {**request, "near": near})
 
     def sweep(self) -> None:
         """Remove the temporary files of a worker that has ended."""

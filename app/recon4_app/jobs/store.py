@@ -175,7 +175,7 @@ class JobStore:
 
     def _select(self, query: sa.Select[Any]) -> list[Job]:
         with self._engine.connect() as connection:
-            return [_job(row) for row in connection.execute(query).mappings()]
+            return [_job(row) for row in connection.execute(query)]
 
 
 def _restore(copies: StateCopies) -> str:
@@ -190,34 +190,32 @@ def _restore(copies: StateCopies) -> str:
 
 
 def _row(job: Job) -> dict[str, object]:
-    row = asdict(job)
+    row: dict[str, object] = {**asdict(job)}
     row |= {"inputs": json.dumps(row["inputs"]), "kind": job.kind}
     return row | {name: json.dumps(row[name]) if row[name] else "" for name in ("made", "reason")}
 
 
-def _job(row: sa.RowMapping) -> Job:
+def _job(row: sa.Row[Any]) -> Job:
     """A row as a job; a damaged row is a failed job with a note."""
     try:
         return _whole_job(row)
     except (ValueError, KeyError, TypeError, StoreError, msgspec.ValidationError) as error:
         note = CodedText("job-row-damaged", detail=visible(repr(error)))
         return Job(
-            id=visible(str(row["id"])),
-            project=visible(str(row["project"])),
+            id=visible(str(row.id)),
+            project=visible(str(row.project)),
             inputs=Inputs(recordings=()),
-            created=visible(str(row["created"])),
+            created=visible(str(row.created)),
             state=JobState.FAILED,
             note=str(note),
             reason=reason_of(note),
         )
 
 
-def _whole_job(row: sa.RowMapping) -> Job:
-    inputs = msgspec.convert(parse_object(row["inputs"], "inputs"), Inputs)
-    made = msgspec.convert(parse_object(row["made"], "made"), ExportedFile) if row["made"] else None
-    reason = (
-        msgspec.convert(parse_object(row["reason"], "reason"), JobReason) if row["reason"] else None
-    )
+def _whole_job(row: sa.Row[Any]) -> Job:
+    inputs = msgspec.convert(parse_object(row.inputs, "inputs"), Inputs)
+    made = msgspec.convert(parse_object(row.made, "made"), ExportedFile) if row.made else None
+    reason = msgspec.convert(parse_object(row.reason, "reason"), JobReason) if row.reason else None
     ours = ("number", "inputs", "state", "kind", "made", "reason")
-    fields = {name: row[name] for name in row if name not in ours}
-    return Job(**fields, inputs=inputs, made=made, reason=reason, state=JobState(row["state"]))
+    fields = {name: value for name, value in row._asdict().items() if name not in ours}
+    return Job(**fields, inputs=inputs, made=made, reason=reason, state=JobState(row.state))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Literal
 
 from recon4.recording.tables.column_names import Meaning, Unit
@@ -37,12 +37,20 @@ class ListedReference:
     @staticmethod
     def of(reference_id: str, facts: ReferenceFacts, language: str) -> ListedReference:
         """A reference whose files are all right."""
-        shown = asdict(facts)
-        can_undo = shown.pop("earlier") is not None
-        shown |= {
-            "alignment": alignment_text(facts.alignment, language),
-            "fit": " ".join(one.said(language) for one in facts.fit),
-            "fits": facts.fits,
-            "notes": tuple(one.said(language) for one in facts.notes),
-        }
-        return ListedReference(id=reference_id, can_undo=can_undo, **shown)
+        return ListedReference(
+            id=reference_id,
+            name=facts.name,
+            file=facts.file,
+            frame=facts.frame,
+            T_map_reference=facts.T_map_reference,
+            alignment=alignment_text(facts.alignment, language),
+            fit=" ".join(one.said(language) for one in facts.fit),
+            fits=facts.fits,
+            can_undo=facts.earlier is not None,
+            kind=facts.kind,
+            points=facts.points,
+            triangles=facts.triangles,
+            columns=facts.columns,
+            unit=facts.unit,
+            notes=tuple(one.said(language) for one in facts.notes),
+        )

@@ -296,9 +296,8 @@ class UploadStore:
         sweep(folder / "parts")
         for path in sorted((folder / "parts").glob("*.json"), key=lambda p: int(p.stem)):
             note = read_object(path)
-            file = UploadedFile(
-                number=int(path.stem), **{**note, "path": PurePosixPath(note["path"])}
-            )
+            note |= {"number": int(path.stem), "path": PurePosixPath(note["path"])}
+            file = UploadedFile(**note)
             file.offset = file.bytes if moved else self._data(upload, file).stat().st_size
             upload.announced[file.name] = file
         known = {self._data(upload, file) for file in upload.announced.values()}

@@ -36,4 +36,4 @@ class _Buffer(AsyncMessageBuffer):
 
 def wake_every_browser() -> None:
     """Have servers of viser that are made from now on use such events."""
-    _infra.AsyncMessageBuffer = _Buffer  # type: ignore[attr-defined]
+    _infra.AsyncMessageBuffer = _Buffer

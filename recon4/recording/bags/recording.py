@@ -78,7 +78,7 @@ Item = Shots | ImuSamples | GnssSamples | Trajectory
 class TopicReader(Protocol):
     """Decodes the messages of one topic of a LiDAR."""
 
-    def push(self, message: BagMessage, content: Any) -> Iterator[Item]:
+    def push(self, message: BagMessage, content: Any, /) -> Iterator[Item]:
         """What a message gives."""
         ...
 

@@ -150,7 +150,7 @@ def _on_one_clock(times: FrameTimes, files: Sequence[Path]) -> FrameTimes:
     if len(first_words(files)) > 1:
         return times
     order = np.arange(len(files)) if times.order is None else times.order
-    clock = clock_by_time(times.t_ns, lambda: [files[row].stat().st_size for row in order])
+    clock = clock_by_time(times.t_ns, lambda: [files[row].stat().st_size for row in order.tolist()])
     if clock is None:
         return times
     there = replace(clock, order=order[clock.order])

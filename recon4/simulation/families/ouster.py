@@ -8,7 +8,7 @@ metadata file here.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -84,9 +84,8 @@ def _of_sensor(lidar: Lidar) -> OusterMetadata:
     model, sensor = lidar.pattern.model, lidar.sensor
     serial = "".join(part.zfill(3) for part in sensor.address.split("."))
     known = _metadata(model)
-    values = {name: getattr(known, name) for name in OusterMetadata.__slots__}
-    ports = {"port": sensor.port, "imu_port": lidar_model(model).sample_ports[0]}
-    return OusterMetadata(**values | ports | {"serial": serial.lstrip("0")})
+    imu_port = lidar_model(model).sample_ports[0]
+    return replace(known, port=sensor.port, imu_port=imu_port, serial=serial.lstrip("0"))
 
 
 @cache

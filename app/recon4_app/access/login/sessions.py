@@ -278,8 +278,8 @@ class Sessions:
         )
         query = query.select_from(join).where(condition, ~PEOPLE.c.disabled, ~guest | LINK_OPENS)
         with self._engine.connect() as connection:
-            rows = connection.execute(query.order_by(SESSIONS.c.began_s.desc())).mappings()
-            return [Session(**{**row, "role": Role(row["role"])}) for row in rows]
+            rows = connection.execute(query.order_by(SESSIONS.c.began_s.desc()))
+            return [Session(**row._asdict() | {"role": Role(row.role)}) for row in rows]
 
     def _write(self, statement: sa.Update | sa.Delete) -> int:
         with self._lock, writing(self._engine) as connection:

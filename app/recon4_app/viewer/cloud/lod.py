@@ -31,7 +31,7 @@ class Rows:
         return len(range(self.start, self.stop, self.step))
 
     @property
-    def slice(self) -> slice:
+    def index(self) -> slice:
         """The same for indexing."""
         return slice(self.start, self.stop, self.step)
 

@@ -165,7 +165,7 @@ class Cloud:
     def _rows(self, field: str, chunk: Chunk) -> NDArray[Any]:
         row, number = chunk
         rows: Rows = self._chunks[row][number]
-        return self.tiles.tiles[row].read([field], rows=rows.slice)[field]
+        return self.tiles.tiles[row].read([field], rows=rows.index)[field]
 
     def _base_values(self, color_by: ColorBy) -> NDArray[Any]:
         kept: dict[ColorBy, NDArray[Any]] = self.__dict__.setdefault("_base", {})

@@ -89,7 +89,7 @@ def _elevations(payload: NDArray[np.uint8], model: RoboSenseModel) -> NDArray[np
     """Elevation of each laser, with azimuth 0 [0.01°], (L, 2): the first half looks down."""
     lasers = model.lasers
     digits = payload[ELEVATIONS_AT : ELEVATIONS_AT + 3 * lasers].reshape(lasers, 3)
-    elevation = 0.01 * (digits.astype(np.int64) @ np.array([1 << 16, 1 << 8, 1]))
+    elevation = 0.01 * (digits.astype(np.float64) @ np.array([1 << 16, 1 << 8, 1]))
     elevation[: lasers // 2] *= -1.0
     return np.column_stack([elevation, np.zeros(lasers)])
 

@@ -209,7 +209,7 @@ _RS32 = replace(
     factory_cdeg=None,
 )
 
-_BPEARL_US = 2.56 * np.arange(8)
+_BPEARL_US = 2.56 * np.arange(8.0)
 _BPEARL = RoboSenseModel(
     name="Bpearl",
     data_id=OLD_DATA_ID,

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.velodyne.models import (
-    BLOCKS,
     CHANNELS,
     DATA_PACKET,
     DATA_SIZE,
@@ -53,5 +52,4 @@ def encode_wide(
     if model is VLS128:
         packets["return_mode"] = DUAL if dual else STRONGEST
         packets["product"] = VLS128_PRODUCT
-    assert blocks.shape[1] == BLOCKS
     return packets.view(np.uint8).reshape(-1, DATA_SIZE)
