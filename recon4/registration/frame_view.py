@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.point_map import FramePoints, frame_points
-from recon4.registration.scan_chain import body_points
+from recon4.registration.scan_chain import ScanChain, body_points, times_located
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.tuning import SEGMENTS, SegmentTuning
+from recon4.registration.tuning_matching import SCAN_CHAIN
 
 
 class FrameView:
@@ -43,3 +44,16 @@ class FrameView:
     def scan(self) -> Array:
         """All points, in the body [m], (N, 3)."""
         return body_points(self.frame, self._rig)
+
+    def locate_in(self, chain: ScanChain) -> SE3 | None:
+        """Pose in the last good scan of a chain, or None; what was distorted is undistorted."""
+        before = chain.motion
+        for _ in range(times_located(self._rig)):
+            points = body_points(self.frame, self._rig, before)
+            found = chain.locate(points, self.frame.t_mid_ns)
+            if found is None or not (before.inverse() @ found).moves_more_than(
+                SCAN_CHAIN.settled_m
+            ):
+                break
+            before = found
+        return found

@@ -7,7 +7,8 @@ from statistics import median
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3
+from recon4.registration.frame_view import FrameView
 from recon4.registration.plane_map import Match
 from recon4.registration.scan_chain import ScanChain
 from recon4.registration.tuning import SCANS, OdometryTuning, ScanTuning
@@ -72,15 +73,10 @@ class FreshChain:
         self._chain = ScanChain(settings)
         self._T_begin_now = SE3.identity()
 
-    def push(self, points_body: Array, t_ns: int) -> bool:
-        """Add a lost scan; whether the scans are sure of their motion now.
-
-        Args:
-            points_body: Points in the body [m], (N, 3).
-            t_ns: Middle of the scan [ns].
-        """
-        found = self._chain.locate(points_body, t_ns)
+    def push(self, view: FrameView) -> bool:
+        """Add a lost scan; whether the scans are sure of their motion now."""
+        found = view.locate_in(self._chain)
         if found is not None and self._chain.is_sure:
             self._T_begin_now = self._T_begin_now @ found
-        self._chain.keep(self._T_begin_now, t_ns)
+        self._chain.keep(self._T_begin_now, view.frame.t_mid_ns)
         return self._chain.sure_scans >= self._settings.sure_scans

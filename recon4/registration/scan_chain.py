@@ -8,8 +8,10 @@ import numpy as np
 from msgspec import structs
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.imu import place_points
+from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import Multiframe
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, Sensor
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.in_body import in_body
@@ -63,6 +65,11 @@ class ScanChain:
     def located(self) -> SE3:
         """Pose of the newest scan in the last good one, as estimated by `locate`."""
         return self._located
+
+    @property
+    def motion(self) -> SE3:
+        """From the last good scan but one to the last."""
+        return self._motion
 
     @property
     def last(self) -> tuple[SE3, int]:
@@ -144,10 +151,44 @@ class ScanChain:
         self._last, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
 
 
-def body_points(frame: Multiframe, rig: Rig) -> Array:
-    """Points of the enabled sensors, in the body [m], (N, 3)."""
+def body_points(frame: Multiframe, rig: Rig, motion: SE3 | None = None) -> Array:
+    """Points of the enabled sensors, in the body [m], (N, 3).
+
+    Args:
+        frame: Of the points.
+        rig: Their sensors.
+        motion: Of the body over the frame. Two scans of a LiDAR that spins are distorted alike, but
+            a rosette sees each place at other times of its frames: its points are undistorted.
+    """
     parts = [np.empty((0, 3))]
     for row, sensor in enumerate(rig.sensors):
         if sensor.enabled:
-            parts.append(in_body(sensor, frame.xyz[frame.sensor == row]))
+            own = frame.sensor == row
+            points = in_body(sensor, frame.xyz[own])
+            if motion is not None and _is_rosette(sensor):
+                points = _undistorted(points, frame.dt_ns[own] / frame.duration_ns, motion)
+            parts.append(points)
     return np.concatenate(parts)
+
+
+def times_located(rig: Rig) -> int:
+    """How often a scan of a rig is located, each time undistorted by the motion found before."""
+    rosettes = any(_is_rosette(sensor) for sensor in rig.sensors if sensor.enabled)
+    return SCAN_CHAIN.undistorted if rosettes else 1
+
+
+def _is_rosette(sensor: Sensor) -> bool:
+    return lidar_model(sensor.model).scanning == "rosette"
+
+
+def _undistorted(points: Array, fraction: Array, motion: SE3) -> Array:
+    """Points as the body would see them in the middle of a frame, (N, 3).
+
+    Args:
+        points: In the body at their times [m], (N, 3).
+        fraction: These times, 0..1 from start to end, (N,).
+        motion: Over the frame.
+    """
+    ends = np.array([0.0, 0.5, 1.0])
+    T_middle_body = SE3.exp((ends[:, None] - 0.5) * motion.log())
+    return place_points(ends, T_middle_body.R, T_middle_body.t, fraction, points)

@@ -83,7 +83,7 @@ class ScanStrategy:
         scans of a tilted LiDAR share too little, and the local map has all of it.
         """
         self._goes_on = False
-        found = self._chain.locate(view.scan(), view.frame.t_mid_ns)
+        found = view.locate_in(self._chain)
         if state is None:
             state = self._free.initial(view.start_ns)
             state, self._fixes = start_at_fixes(
@@ -160,7 +160,7 @@ class ScanStrategy:
         """See `MotionStrategy.after_loss`."""
         if self._fresh is None:
             self._fresh = FreshChain(tuned(OdometryTuning, self._settings.odometry).scans)
-        sure = self._fresh.push(view.scan(), view.frame.t_mid_ns)
+        sure = self._fresh.push(view)
         return Seen.SURE_AGAIN if sure else None
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:

@@ -199,6 +199,11 @@ class ScanChainTuning(Struct, frozen=True, kw_only=True):
 
     source_points: int = 3000
     """Number of points of a new scan; the registration to the plane map uses all segments."""
+    undistorted: int = 4
+    """How often a scan of a rosette is located, each time undistorted by the motion found before:
+    each halves the error of the motion …"""
+    settled_m: float = 0.005
+    """… until it moves by less than this [m, rotation as at 5 m]."""
 
 
 SCAN_CHAIN = ScanChainTuning()

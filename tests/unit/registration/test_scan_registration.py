@@ -1,11 +1,15 @@
 """Registration of two single scans: a room with known walls, turned and moved."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from msgspec import structs
 
 from recon4.geometry.se3 import SE3
 from recon4.kernels.scans import accumulate_symmetric, neighbor_normals
+from recon4.model.multiframe import Multiframe
+from recon4.registration.frame_view import FrameView
 from recon4.registration.result import StopReason
 from recon4.registration.scan_chain import ScanChain
 from recon4.registration.scan_registration import (
@@ -15,6 +19,7 @@ from recon4.registration.scan_registration import (
     search_scans,
 )
 from recon4.registration.tuning import ScanTuning
+from tests.benchmarks.loaders import one_sensor
 
 SCANS = ScanTuning(voxel_m=0.2)
 
@@ -168,3 +173,37 @@ def test_the_chain_keeps_the_last_good_scan_as_target():
     assert again is not None
     assert apart(again, T_true) < 0.03
     assert chain.last[1] == 0
+
+
+def turning(from_rad, to_rad, *, number):
+    """A multiframe of 0.1 s of a body that turns in the room and sees each point at any time."""
+    p, rng = room(number + 1), np.random.default_rng(number)
+    fraction = rng.uniform(size=len(p))
+    heading = from_rad + fraction * (to_rad - from_rad)
+    c, s = np.cos(heading), np.sin(heading)
+    xyz = np.column_stack([c * p[:, 0] + s * p[:, 1], c * p[:, 1] - s * p[:, 0], p[:, 2]])
+    columns = {name: np.zeros(len(p), np.uint8) for name in ("intensity", "ring", "sensor", "echo")}
+    start_ns, long_ns = number * 100_000_000, 100_000_000
+    dt_ns = (fraction * long_ns).astype(np.int32)
+    return Multiframe(number, start_ns, long_ns, xyz.astype(np.float32), dt_ns=dt_ns, **columns)
+
+
+def heading_of_the_chain(model, ends_rad):
+    """Heading that a chain of scans adds up, from the middle of the first to that of the last."""
+    chain, T = ScanChain(), SE3.identity()
+    for number, (from_rad, to_rad) in enumerate(pairwise(ends_rad)):
+        view = FrameView(turning(from_rad, to_rad, number=number), one_sensor(model))
+        T = T @ (view.locate_in(chain) or SE3.identity())
+        chain.keep(T, view.frame.t_mid_ns)
+    return float(T.rpy()[2])
+
+
+def test_scans_of_a_rosette_are_undistorted_by_the_turn_that_they_show():
+    ends_rad = [0.0, 0.0, 0.2, 0.6, 1.05, 1.5]
+
+    as_of_a_rosette, as_measured = (
+        heading_of_the_chain(m, ends_rad) for m in ("Mid-360", "VLP-16")
+    )
+
+    assert as_of_a_rosette == pytest.approx(1.275, abs=0.02)
+    assert abs(as_measured - 1.275) > 0.3
