@@ -23,7 +23,7 @@ export const FIELD_OF_VIEW = Math.PI / 3; // from the lower to the upper rim
 const STEEPEST = Math.PI / 2;
 const NEAREST_M = 0.05;
 const FARTHEST_M = 100_000;
-const MARGIN = 1.03; // around what is fitted into the image
+const MARGIN = 1.04; // around what is fitted into the image: points are drawn larger than they are
 
 /** @returns {Xyz} */
 export const add = (/** @type {number[]} */ a, /** @type {number[]} */ b, times = 1) => [

@@ -1,6 +1,6 @@
 // Another map on the other side of a divider: its points in a scene of their own.
 
-import { giveLook, pointMaterial } from "./materials.js";
+import { drawDiscs, giveLook, pointMaterial } from "./materials.js";
 import { nodesOf } from "./nodes.js";
 import { MapTiles } from "./tiles.js";
 import { Matrix4, Scene, Vector2 } from "../shared/vendor/three/three.module.min.js";
@@ -8,8 +8,7 @@ import { Matrix4, Scene, Vector2 } from "../shared/vendor/three/three.module.min
 /**
  * @import {MapIndex} from "../shared/http_types"
  * @import {Reader} from "./tiles.js"
- * @import {Points} from "../shared/vendor/three/three.module.min.js"
- * @typedef {Record<string, {value: any}>} Uniforms
+ * @import {Points, RawShaderMaterial} from "../shared/vendor/three/three.module.min.js"
  */
 
 /**
@@ -64,11 +63,12 @@ export class MapBeside {
   }
 
   /**
-   * Takes the colors, the camera and the clip of this map.
-   * @param {Uniforms} of its material
+   * Takes the colors, the camera and the clip of this map, and the shape of its points.
+   * @param {RawShaderMaterial} material its own
    * @param {{color: string, ends: [number, number]}} drawing
    */
-  follow(of, { color, ends }) {
+  follow({ uniforms: of, defines }, { color, ends }) {
+    drawDiscs(this.#material, "DISCS" in defines);
     const { uniforms } = this.#material;
     const { thinned, known, turn } = uniforms;
     Object.assign(uniforms, of, { thinned, known, turn });

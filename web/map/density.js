@@ -2,7 +2,7 @@
 
 const WANTED = 10; // points of a part in a cell, on the average
 const MOST_CELLS = 40; // along an edge of a tile
-const FARTHER = 5; // than usual in the tile: lonely points stay small
+const FARTHER = 3; // than usual in the tile: lonely points stay small
 const FINEST_M = 0.001;
 const OCTAVES = 12;
 

@@ -9,6 +9,7 @@ import {
   MOST_PLANES,
   PLAIN,
   boundsOf,
+  drawDiscs,
   drawingTarget,
   giveLook,
   pointMaterial,
@@ -310,6 +311,7 @@ export class MapCanvas {
     const view = { screen: this.screen, bounds: boundsOf(nodes.filter(({ cube }) => cube < 0)) };
     const { near, far, turn } = placeCamera(this.#camera, drawing.camera, view);
     this.#material.uniforms.turn.value = turn;
+    drawDiscs(this.#material, into === this.#fine);
     this.#look(drawing, ratio);
     const { uniforms } = this.#screen;
     if (drawing.camera.parallel) uniforms.nearness.value.set(-near, near - far);
@@ -353,7 +355,7 @@ export class MapCanvas {
     });
     uniforms.planeCount.value = Math.min(planes.length, MOST_PLANES);
     this.#material.uniformsNeedUpdate = true;
-    this.#beside?.follow(uniforms, { color, ends });
+    this.#beside?.follow(this.#material, { color, ends });
     if (this.#layers.walk) this.#layers.walk.visible = layers.walk;
     if (this.#layers.nodes) this.#layers.nodes.visible = layers.nodes;
   }

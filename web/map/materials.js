@@ -80,6 +80,7 @@ export function pointMaterial() {
     glslVersion: GLSL3,
     vertexShader: POINT_VERTEX,
     fragmentShader: POINT_FRAGMENT,
+    defines: {},
     blending: NoBlending,
     uniforms: {
       thinned: { value: new Float32Array(CUBE_TILES).fill(1) },
@@ -98,6 +99,17 @@ export function pointMaterial() {
       planeCount: { value: 0 },
     },
   });
+}
+
+/**
+ * Has large points drawn as discs, or as squares, which are quicker: while the camera moves.
+ * @param {RawShaderMaterial} material
+ * @param {boolean} discs
+ */
+export function drawDiscs(material, discs) {
+  if ("DISCS" in material.defines === discs) return;
+  material.defines = discs ? { DISCS: "" } : {};
+  material.needsUpdate = true;
 }
 
 export const screenMaterial = () =>

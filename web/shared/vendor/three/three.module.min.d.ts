@@ -88,6 +88,8 @@ export class RawShaderMaterial extends Material {
   constructor(options: object);
   uniforms: Record<string, { value: any }>;
   uniformsNeedUpdate: boolean;
+  defines: Record<string, string>;
+  needsUpdate: boolean;
 }
 export class LineBasicMaterial extends Material {
   constructor(options: object);
