@@ -20,10 +20,11 @@ import {
   shareWork,
   undoDecision,
 } from "../shared/api.js";
-import { attempt, byId, detailOf, only, say, showError, within } from "../shared/dom.js";
+import { attempt, byId, detailOf, only, say, showError, succeeds, within } from "../shared/dom.js";
 import { askForFrames, showKeys } from "./dialogs.js";
 import { journalNews, showApproval, showEffect, showJournal, showPair } from "./panels.js";
 import { keyOf } from "./captions.js";
+import { Draft } from "./drafts.js";
 import { PairLoader } from "./loader.js";
 import { askToSign } from "./signing.js";
 import { ReviewState } from "./state.js";
@@ -37,7 +38,7 @@ import { t } from "../shared/texts.js";
 import "./queue.js";
 import "./view.js";
 
-/** @import {Effect, NewDecision, ReviewView} from "../shared/http_types" */
+/** @import {Effect, NewDecision, ReviewView, StandingView} from "../shared/http_types" */
 
 const id = idHere();
 const queue = only("review-queue");
@@ -46,6 +47,7 @@ const message = byId("message");
 const state = new ReviewState();
 const team = new Team(id, byId("team"), (kind, more) => share(kind, more));
 const loader = new PairLoader(id);
+const reason = new Draft(() => byId("decision").querySelector("input"));
 const effects = { requested: 0, shown: 0 };
 /**
  * The requests that change something, one after the other, and the row of the journal after the
@@ -63,6 +65,7 @@ document.title = t("title-of", { project: id });
 async function select(/** @type {[number, number]} */ pair) {
   const selected = state.select(pair, queue.get(keyOf(pair)) ?? state.newRow(pair));
   drawSelected();
+  reason.show(keyOf(pair));
   view.clear(t("reading-points"));
   say(message, "");
   try {
@@ -104,19 +107,24 @@ function drawSelected() {
 
 // -- decisions, sent in the order of the keys
 
+/** Resolves to whether it was done; why not is on the page. */
 function inTurn(/** @type {() => unknown} */ action) {
-  turns.last = turns.last.then(async () => {
+  const turn = turns.last.then(async () => {
     byId("news").textContent = "";
-    await attempt(message, action);
-    if (message.textContent) update(await readReview(id).catch(() => null)); // others decided
+    const done = await succeeds(message, action);
+    if (!done) update(await readReview(id).catch(() => null)); // others decided
+    return done;
   });
-  return turns.last;
+  turns.last = turn;
+  return turn;
 }
 
-function update(/** @type {ReviewView | null | undefined} */ server) {
+function update(/** @type {ReviewView | null | undefined} */ server, mine = false) {
   if (!server) return;
   const before = state.server;
+  const decided = state.activeDecision;
   for (const row of state.update(server)) queue.add(row);
+  follow(decided, mine);
   if (state.refreshRows().length) queue.refresh();
   only("map-verdict").facts = server.map;
   showApproval(byId("signing"), server, { remake, approve });
@@ -125,6 +133,15 @@ function update(/** @type {ReviewView | null | undefined} */ server) {
   if (before && ((before.busy && !server.busy) || (!before.in_map && server.in_map)))
     updateHistory();
   if (byId("journal", HTMLDetailsElement).open) drawJournal();
+}
+
+/** The selected pair was decided: what others decided can be decided again; its pose is shown. */
+function follow(/** @type {StandingView | undefined} */ before, /** @type {boolean} */ mine) {
+  const { selected, activeDecision: now } = state;
+  if (!selected || JSON.stringify(before) === JSON.stringify(now)) return;
+  if (!mine) selected.decided = false;
+  const shown = !selected.drawn || selected.moved || selected.found;
+  if (!shown && String(before?.T_i_j) !== String(now?.T_i_j)) view.pose = state.poseOf(selected);
 }
 
 /** Another map was made: who judged the selected pair in it. */
@@ -168,9 +185,7 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
     say(message, t("not-registered-yet"));
     return undefined;
   }
-  const reason = reasonField();
-  const why = reason.value.trim();
-  reason.value = "";
+  const why = reason.take();
   const T_i_j = row.measured ? (facts?.measured ?? []) : [];
   const seen = state.server.seq;
   const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j, why, ...more };
@@ -180,9 +195,10 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
       const seen_seq = Math.max(seen, turns.own.get(row.key) ?? 0); // this page knows its own
       const server = await decide(id, { ...body, seen_seq });
       turns.own.set(row.key, server.seq);
-      update(server);
+      update(server, true);
     } catch (error) {
       selected.decided = false;
+      reason.giveBack(keyOf(pair), why);
       drawSelected();
       throw error;
     }
@@ -198,7 +214,7 @@ function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
  */
 async function share(kind, more = {}) {
   const { selected } = state;
-  if (!selected || !state.server?.may_review) return undefined;
+  if (!selected || !state.server?.may_review) return false;
   const [frame_i, frame_j] = selected.pair;
   const sent = inTurn(async () => update(await shareWork(id, { kind, frame_i, frame_j, ...more })));
   if (kind === "skip") queue.step(1);
@@ -209,11 +225,7 @@ function step(
   /** @type {(id: string, after_seq: number | undefined) => Promise<ReviewView>} */ through,
 ) {
   if (!state.server?.may_review) return;
-  inTurn(async () => {
-    const server = await through(id, state.server?.seq);
-    if (state.selected) state.selected.decided = false;
-    update(server);
-  });
+  inTurn(async () => update(await through(id, state.server?.seq)));
 }
 
 /** Registers from the pose on the screen; once registered and not moved since, creates the edge. */

@@ -156,6 +156,11 @@ export class ReviewState {
     return this.server?.standing.find((one) => one.frame_i === i && one.frame_j === j);
   }
 
+  /** That of the selected pair. */
+  get activeDecision() {
+    return this.selected ? this.activeDecisionOf(this.selected.pair) : undefined;
+  }
+
   /** What people do with a pair besides deciding. */
   workOf(/** @type {[number, number]} */ [i, j]) {
     return this.server?.work.find((one) => one.frame_i === i && one.frame_j === j);

@@ -2,15 +2,17 @@
 // and who is looking now.
 
 import { look, readComments, readReviewers } from "../shared/api.js";
-import { html, nothing, render, targetOf, within } from "../shared/dom.js";
+import { html, nothing, render, targetOf } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { t } from "../shared/texts.js";
+import { keyOf } from "./captions.js";
+import { Draft } from "./drafts.js";
 import { NO_WORK, agreementText, lookersText } from "./team_captions.js";
 
 /**
  * @import {CommentView, LookerView, NewWork, WorkView} from "../shared/http_types"
- * @typedef {(kind: NewWork["kind"], more?: {why?: string, assignee?: string}) => Promise<unknown>}
- *   Share
+ * @typedef {(kind: NewWork["kind"], more?: {why?: string, assignee?: string}) => Promise<boolean>}
+ *   Share resolves to whether it was done
  * @typedef {object} Shown the selected pair for the panel
  * @property {[number, number]} pair
  * @property {WorkView | undefined} work
@@ -22,6 +24,7 @@ export class Team {
   #id;
   #panel;
   #share;
+  #comment;
   #state = {
     may: false,
     people: /** @type {string[]} */ ([]), // who may review
@@ -40,6 +43,7 @@ export class Team {
     this.#id = id;
     this.#panel = panel;
     this.#share = share;
+    this.#comment = new Draft(() => panel.querySelector("input"));
   }
 
   /** Reads to whom pairs can be assigned, if this person may. */
@@ -51,10 +55,10 @@ export class Team {
 
   /** The selected pair has changed, or what people do with it. */
   show(/** @type {Shown | null} */ shown) {
-    const before = this.#state.shown;
+    const before = pairKey(this.#state.shown);
     this.#state.shown = shown;
-    const key = shown ? `${shown.pair.join("-")} ${shown.work?.comments ?? 0}` : "";
-    if (before?.pair.join() !== shown?.pair.join()) {
+    const key = shown ? `${pairKey(shown)} ${shown.work?.comments ?? 0}` : "";
+    if (before !== pairKey(shown)) {
       this.#state.comments = [];
       this.look();
     }
@@ -63,6 +67,7 @@ export class Team {
       if (shown?.work?.comments) this.#readComments(shown.pair, key);
     }
     this.#draw();
+    this.#comment.show(pairKey(shown));
   }
 
   /** Says what this page shows, and learns who else is here. */
@@ -144,8 +149,11 @@ export class Team {
   #assignment(/** @type {string} */ assignee) {
     const { people } = this.#state;
     const names = assignee && !people.includes(assignee) ? [...people, assignee] : people;
-    const choose = (/** @type {Event} */ event) =>
-      this.#share("assign", { assignee: targetOf(event).value });
+    const choose = async (/** @type {Event} */ event) => {
+      const select = targetOf(event);
+      const done = await this.#share("assign", { assignee: select.value });
+      if (!done) select.value = assignee;
+    };
     return html`<label
       ><span>${t("assigned-to")}</span
       ><select @change=${choose}>
@@ -160,11 +168,9 @@ export class Team {
   #commentForm() {
     const submit = async (/** @type {SubmitEvent} */ event) => {
       event.preventDefault();
-      const field = within(targetOf(event), "input", HTMLInputElement);
-      const why = field.value.trim();
-      if (!why) return;
-      field.value = "";
-      await this.#share("comment", { why });
+      const pair = pairKey(this.#state.shown);
+      const why = this.#comment.take();
+      if (why && !(await this.#share("comment", { why }))) this.#comment.giveBack(pair, why);
     };
     return html`<form class="comment" @submit=${submit}>
       <label
@@ -174,6 +180,8 @@ export class Team {
     </form>`;
   }
 }
+
+const pairKey = (/** @type {Shown | null} */ shown) => (shown ? keyOf(shown.pair) : "");
 
 const assigned = (/** @type {string} */ assignee) =>
   assignee ? html`<p class="quiet">${t("assigned-to-person", { who: assignee })}</p>` : nothing;

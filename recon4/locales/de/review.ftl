@@ -224,8 +224,8 @@ approve-map = Karte freigeben…
 approval-obstacle = Freigabe: { $obstacle }
 meanwhile = Inzwischen: { $who } { $did }
 meanwhile-after = { $others ->
-    [one] Inzwischen: { $who } { $did }, nach { $others } anderen Entscheidung
-   *[other] Inzwischen: { $who } { $did }, nach { $others } anderen Entscheidungen
+    [one] Inzwischen: { $who } { $did }, nach { $others } anderen Eintrag im Journal
+   *[other] Inzwischen: { $who } { $did }, nach { $others } anderen Einträgen im Journal
 }
 
 ## Warteschlange

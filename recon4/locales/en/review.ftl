@@ -224,8 +224,8 @@ approve-map = Approve map…
 approval-obstacle = Approval: { $obstacle }
 meanwhile = Meanwhile { $who } { $did }
 meanwhile-after = { $others ->
-    [one] Meanwhile { $who } { $did }, after { $others } other decision
-   *[other] Meanwhile { $who } { $did }, after { $others } other decisions
+    [one] Meanwhile { $who } { $did }, after { $others } other entry of the journal
+   *[other] Meanwhile { $who } { $did }, after { $others } other entries of the journal
 }
 
 ## Queue
