@@ -12,11 +12,12 @@ import { t } from "./texts.js";
  * @param {HTMLElement} element where the page says what happens
  * @param {object} page
  * @param {() => boolean} page.hasMap whether it shows one
+ * @param {Promise<unknown>} [page.opening] ends once it is known whether it shows one
  * @param {() => Promise<boolean>} page.isNewest whether the map is still the one it shows
  * @param {() => boolean} page.isBusy whether something is being done that a new page would lose
  * @param {() => void} page.reload shows the new map
  */
-export function followMap(element, { hasMap, isNewest, isBusy, reload }) {
+export function followMap(element, { hasMap, opening, isNewest, isBusy, reload }) {
   const id = idHere();
   let open = "";
 
@@ -29,8 +30,9 @@ export function followMap(element, { hasMap, isNewest, isBusy, reload }) {
     );
   }
 
-  const onJob = (/** @type {JobView} */ { job }) => {
+  const onJob = async (/** @type {JobView} */ { job }) => {
     if (job.project !== id) return;
+    await opening; // jobs go on meanwhile
     if (!job.finished) {
       open = job.id;
       render(t(hasMap() ? "being-remade" : "being-made"), element);

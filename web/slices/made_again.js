@@ -1,7 +1,7 @@
 // The page while the map of its slices is made, or made again.
 
 import { idHere } from "../shared/address.js";
-import { readSliceFacts } from "../shared/api.js";
+import { isGuest, readCurrentUser, readSliceFacts } from "../shared/api.js";
 import { byId } from "../shared/dom.js";
 import { followMap } from "../shared/followed_map.js";
 import { page } from "./drawing.js";
@@ -19,10 +19,16 @@ const isBusy = () =>
   page.measured.length > 0 ||
   byId("findings").contains(document.activeElement);
 
-/** Follows the jobs of the project; the address keeps what is shown. */
-export function followJobs() {
+/**
+ * Follows the jobs of the project; the address keeps what is shown.
+ * @param {Promise<unknown>} opening ends once it is known whether there is a map
+ */
+export async function followJobs(opening) {
+  const me = await readCurrentUser().catch(() => null);
+  if (!me || isGuest(me)) return;
   followMap(byId("news"), {
     hasMap: () => Boolean(page.facts),
+    opening,
     isNewest,
     isBusy,
     reload: () => location.reload(),

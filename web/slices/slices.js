@@ -369,10 +369,9 @@ async function begin() {
     change(state.kind === "vertical" ? ends : unframed({ ...state, kind: "vertical", ...ends }));
   });
   dark.addEventListener("change", load);
-  const begun = await attempt(byId("message"), async () => {
+  const opening = attempt(byId("message"), async () => {
     const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
     if (!isGuest(me)) Object.assign(found, fillFindings());
-    if (!isGuest(me)) followJobs();
     only("page-head").name = project.name;
     only("map-verdict").facts = factsIn(project.summary);
     document.title = t("title-of", { project: project.name });
@@ -393,7 +392,8 @@ async function begin() {
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
     return true;
   });
-  document.body.classList.toggle("no-slices", !begun && !page.facts);
+  followJobs(opening);
+  document.body.classList.toggle("no-slices", !(await opening) && !page.facts);
 }
 
 addEventListener("popstate", () => change(parse(location.search)));
