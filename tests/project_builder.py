@@ -18,6 +18,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.rig import Rig, Sensor
+from recon4.model.site_control import SITE_GRID
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Silent
@@ -312,3 +313,10 @@ def _columns(xyz: np.ndarray, rng: np.random.Generator) -> dict[str, np.ndarray]
         for name, (dtype, width) in FIELDS.items()
     }
     return empty | {name: values.astype(FIELDS[name][0]) for name, values in known.items()}
+
+
+def put_on_site_grid(project: Path, origin_m: tuple[float, float, float]) -> None:
+    """Place the map of a finished project in the grid of a site, as control points do."""
+    (file,) = (project / "artifacts").glob("*/georeference.json")
+    record = json.loads(file.read_text())
+    write_json(file, record | {"crs": {"name": SITE_GRID, "origin_m": origin_m}})

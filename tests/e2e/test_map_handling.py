@@ -1,5 +1,6 @@
 """How the tools of the map answer: with what was measured, once, and at the next key."""
 
+import csv
 import re
 
 import numpy as np
@@ -8,6 +9,7 @@ from playwright.sync_api import expect
 
 from tests.e2e.conftest import both_looks, looks
 from tests.e2e.test_map_page import TOP, at, opened, rested
+from tests.project_builder import build_project, put_on_site_grid
 from tests.served import office, served
 
 pytestmark = [pytest.mark.e2e, looks("desktop light")]
@@ -33,6 +35,22 @@ def test_what_is_read_of_a_pick_is_where_it_snapped_to_and_of_a_volume_its_figur
         page.mouse.click(*at(page, *corner))
     page.keyboard.press("Enter")
     expect(reading).to_have_text(re.compile(r"Volume 1: [\d.]+ m³ above.*area [34]\.", re.DOTALL))
+
+
+def test_measurements_of_a_link_have_their_places_in_the_crs(server, page):
+    build_project(server.root / "site", points=1000)
+    put_on_site_grid(server.root / "site", (1000.0, 2000.0, 100.0))
+    page.goto(f"{server.url}/projects/site/map/?m=distance;1,2,0.5;3.5,2,0.5;Wall")
+
+    with page.expect_download() as download:
+        page.get_by_role("button", name="Download CSV").click()
+
+    head, *rows = csv.reader(download.value.path().read_text().splitlines())
+    places = [tuple(row[head.index(name)] for name in ("crs", "e", "n", "h")) for row in rows]
+    assert places == [
+        ("site grid", "1001.0000", "2002.0000", "100.5000"),
+        ("site grid", "1003.5000", "2002.0000", "100.5000"),
+    ]
 
 
 def test_a_chosen_tool_leaves_the_image_where_it_is_and_keys_follow_a_number(server, page):

@@ -189,7 +189,7 @@ test("a measurement says its standard deviation only if it is stated", () => {
 
 test("a name cannot become a formula in a table", () => {
   const points = [[1, 2, 3]];
-  const rows = toCsv([{ kind: "point", name: '=1+"2"', points }], "").split("\r\n");
+  const rows = toCsv([{ kind: "point", name: '=1+"2"', points }], null).split("\r\n");
   assert.ok(rows[1].startsWith('"\'=1+""2""",point,1,1.0000,2.0000,3.0000'), rows[1]);
 });
 
@@ -302,7 +302,7 @@ test("a link says the standard deviation of a distance, and to what its ends sna
   const [opened] = parse(format({ ...parse(""), measurements: [made] })).measurements;
   assert.deepEqual(opened, made);
   assert.equal(resultOf(opened).parts, resultOf(made).parts);
-  assert.match(toCsv([opened], ""), /,edge,3.0000,3.0000,0.0000,0.0050,/);
+  assert.match(toCsv([opened], null), /,edge,3.0000,3.0000,0.0000,0.0050,/);
 });
 
 test("a link of before, with points only, is read; a wrong σ is none", () => {

@@ -261,7 +261,7 @@ const act = {
   notes,
   profile,
   compare,
-  csv: downloadMeasurements,
+  csv: () => void downloadMeasurements().catch(showProblem),
   change,
   goTo,
   choosePin: marking.choosePin,

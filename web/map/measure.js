@@ -4,14 +4,13 @@ import { decimal, t } from "../shared/texts.js";
 import { add, dot, lengthOf, minus } from "./camera.js";
 
 /**
- * @import {MapVolume} from "../shared/http_types"
+ * @import {MapVolume, PointsInCrs} from "../shared/http_types"
  * @typedef {"point" | "distance" | "height" | "angle" | "area" | "profile" | "volume"} MeasureKind
  * @typedef {object} Measurement
  * @property {MeasureKind} kind
  * @property {number[][]} points in the map [m]
  * @property {string} name
  * @property {number[]} [sd] standard deviations of the points' places [m]; NaN = not stated
- * @property {number[][]} [crs] the points in the map's CRS [m]
  * @property {string[]} [snaps] what each point snapped to; "" = nothing
  * @property {number | null} [figure] width of a profile, height of the base of a volume [m]
  */
@@ -160,23 +159,23 @@ function figuresOf(measurement, volume) {
 /**
  * All measurements as CSV: a row for each point, the figures in the first one of each.
  * @param {Measurement[]} measurements
- * @param {string} crs
+ * @param {PointsInCrs | null} there all their points in the map's CRS; null = it has none
  * @param {(one: Measurement) => MapVolume | null} [volumeOf] of a volume
  */
-export function toCsv(measurements, crs, volumeOf = () => null) {
-  const places = ["x_m", "y_m", "z_m", ...(crs ? ["crs", "e", "n", "h"] : [])];
-  const head = ["name", "kind", "point", ...places, "snapped_to", ...FIGURES];
+export function toCsv(measurements, there, volumeOf = () => null) {
+  const columns = ["x_m", "y_m", "z_m", ...(there ? ["crs", "e", "n", "h"] : [])];
+  const head = ["name", "kind", "point", ...columns, "snapped_to", ...FIGURES];
+  const places = there?.p_crs.values();
   const rows = measurements.flatMap((one) =>
     one.points.map((p, k) => {
       const figures = k ? {} : figuresOf(one, volumeOf(one));
-      const at = one.crs?.[k];
-      const there = crs ? [crs, ...(at ? at.map((x) => x.toFixed(4)) : ["", "", ""])] : [];
+      const at = places?.next().value ?? [];
       return [
         cell(one.name),
         one.kind,
         k + 1,
         ...p.map((x) => x.toFixed(4)),
-        ...there,
+        ...(there ? [there.crs, ...at.map((x) => x.toFixed(4))] : []),
         one.snaps?.[k] ?? "",
         ...FIGURES.map((name) => {
           const value = /** @type {Record<string, number>} */ (figures)[name];

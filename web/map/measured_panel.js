@@ -1,6 +1,7 @@
 // The list of measurements in the panel of the map, and as a file.
 
 import { idHere } from "../shared/address.js";
+import { putIntoCrs } from "../shared/api.js";
 import { html, nothing, repeat, targetOf } from "../shared/dom.js";
 import { t } from "../shared/texts.js";
 import { resultOf, toCsv } from "./measure.js";
@@ -16,8 +17,12 @@ import { volumeOf, volumeProblem } from "./volumes.js";
 const SAVED_MS = 1500; // until then a browser has begun to save
 
 /** Saves all measurements as CSV. */
-export function downloadMeasurements() {
-  const text = toCsv(page.state.measurements, page.index?.crs ?? "", volumeOf);
+export async function downloadMeasurements() {
+  const { index, state } = page;
+  const points = state.measurements.flatMap((one) => one.points);
+  const p_map = /** @type {[number, number, number][]} */ (points);
+  const there = index?.crs ? await putIntoCrs(idHere(), { key: index.key, p_map }) : null;
+  const text = toCsv(state.measurements, there, volumeOf);
   const file = document.createElement("a");
   file.href = URL.createObjectURL(new Blob([text], { type: "text/csv" }));
   file.download = `${idHere()}-measurements.csv`;

@@ -191,14 +191,12 @@ function finishMeasurement(/** @type {Stage} */ stage) {
   const { draft, measuring, state } = page;
   if (draft.length < KINDS[measuring].least) return;
   const same = state.measurements.filter(({ kind }) => kind === measuring).length + 1;
-  const crs = draft.map((one) => one.crs).filter((one) => one !== null);
   const made = {
     kind: measuring,
     points: draft.map(({ p }) => p),
     name: `${KINDS[measuring].text} ${same}`,
     sd: draft.map(({ sd }) => sd),
     snaps: draft.map(({ snap }) => snap),
-    ...(crs.length === draft.length ? { crs } : {}),
   };
   page.draft = [];
   page.reading = () => measuredText(made);

@@ -1256,6 +1256,16 @@ export interface PointPairs {
   p_j: Array<Array<number>>;
 }
 
+export interface PointsInCrs {
+  crs: string;
+  p_crs: Array<[number, number, number]>;
+}
+
+export interface PointsInMap {
+  key: string;
+  p_map: Array<[number, number, number]>;
+}
+
 export interface PredictedPose {
   frame_i: number;
   frame_j: number;
@@ -2564,6 +2574,11 @@ export interface Operations {
     path: { project_id: string };
     body: NewGuestLink;
     response: NewGuestLinkView;
+  };
+  "POST /api/projects/{project_id}/map/crs": {
+    path: { project_id: string };
+    body: PointsInMap;
+    response: PointsInCrs;
   };
   "POST /api/projects/{project_id}/map/pick": {
     path: { project_id: string };

@@ -29,6 +29,8 @@ from recon4_app.map_view.model import (
     HitPoint,
     MapVolume,
     MapWalk,
+    PointsInCrs,
+    PointsInMap,
     RayHit,
     RayRequest,
     SnapPoint,
@@ -151,6 +153,19 @@ def _snapped(artifacts: Artifacts, ask: RayRequest, ray: Ray, *, hit: Array) -> 
     to_crs = map_frame(artifacts).to_crs
     p_crs = _xyz(to_crs(found.p_map[None])[0]) if to_crs else None
     return SnapPoint(kind=found.kind, p_map=_xyz(found.p_map), p_crs=p_crs, sd_m=found.sd_m)
+
+
+def in_crs(artifacts: Artifacts, ask: PointsInMap) -> PointsInCrs:
+    """Points of the map in its CRS.
+
+    Raises:
+        ConfigError: If the map is not georeferenced.
+    """
+    frame = map_frame(artifacts)
+    if frame.to_crs is None:
+        raise ConfigError(CodedText("map-local"))
+    points = np.array(ask.p_map).reshape(-1, 3)
+    return PointsInCrs(crs=frame.crs, p_crs=[_xyz(p) for p in frame.to_crs(points)])
 
 
 def map_volume(artifacts: Artifacts, ask: VolumeRequest) -> MapVolume:

@@ -193,6 +193,20 @@ class RayHit(BaseModel):
     """None = it was not asked for, or there is no plane."""
 
 
+class PointsInMap(Strict):
+    """Points of measurements."""
+
+    key: str = Field(max_length=64)
+    p_map: list[Xyz] = Field(max_length=MAP_PICKS.max_points)
+
+
+class PointsInCrs(BaseModel):
+    """The same points in the CRS of the map, or in the grid of its site."""
+
+    crs: str
+    p_crs: list[Xyz]
+
+
 class VolumeRequest(Strict):
     """What lies over a plane inside of a polygon, of the heights that are shown."""
 

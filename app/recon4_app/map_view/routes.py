@@ -28,6 +28,8 @@ from recon4_app.map_view.model import (
     MapIndex,
     MapVolume,
     MapWalk,
+    PointsInCrs,
+    PointsInMap,
     RayHit,
     RayRequest,
     SampleQuery,
@@ -175,6 +177,17 @@ async def read_points(
         )
     )
     return Response(data, media_type=BYTES, headers=headers)
+
+
+@router.post("/crs", summary="Points of the map in its CRS", responses=problems(409))
+async def put_into_crs(
+    project_id: str, ask: PointsInMap, *, server: Server, caller: CalledBy
+) -> PointsInCrs:
+    """East, north and height of points of measurements, in the CRS of the map."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    _check_key(artifacts, ask.key)
+    terms = server.slices.terms(project_id, caller.name)
+    return await caller.wait(server.slices.run_interactive(terms, map_work.in_crs, artifacts, ask))
 
 
 @router.post(

@@ -102,6 +102,8 @@ class MapPickLimits(Struct, frozen=True, kw_only=True):
     """Farthest that a pick is attracted [m]."""
     max_corners: int = 500
     """Of a polygon."""
+    max_points: int = 20_000
+    """Points of measurements that are put into the CRS at once."""
     max_snap_rad: float = 0.1
     """Largest angle in which a pick is attracted [rad]."""
 

@@ -3,7 +3,7 @@
 import { at } from "../address.js";
 import { name, readBytes, request } from "../http.js";
 
-/** @import {MapIndex, RayRequest, VolumeRequest} from "../http_types" */
+/** @import {MapIndex, PointsInMap, RayRequest, VolumeRequest} from "../http_types" */
 
 const map = (/** @type {string} */ id) => at(`/api/projects/${name(id)}/map`);
 
@@ -21,6 +21,12 @@ export const readMapWalk = (/** @type {string} */ project_id) =>
  */
 export const pickOnMap = (project_id, ray) =>
   request("POST /api/projects/{project_id}/map/pick", { path: { project_id }, body: ray });
+/**
+ * @param {string} project_id
+ * @param {PointsInMap} points
+ */
+export const putIntoCrs = (project_id, points) =>
+  request("POST /api/projects/{project_id}/map/crs", { path: { project_id }, body: points });
 /**
  * @param {string} project_id
  * @param {VolumeRequest} volume
