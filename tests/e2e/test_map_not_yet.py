@@ -5,7 +5,7 @@ import json
 import pytest
 from playwright.sync_api import Route, expect
 
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import both_looks, looks
 from tests.project_builder import build_project
 from tests.served import served
 
@@ -58,6 +58,22 @@ def test_a_map_appears_once_its_job_is_done_also_one_that_failed_before(server, 
     expect(news).to_contain_text("A job is making this map")
     with page.expect_event("domcontentloaded"):
         state.update(finished="done", map=200)
+
+
+@both_looks
+def test_no_tool_bar_covers_that_the_map_is_made_again(server, page):
+    view = json.dumps({"job": {"id": "j", "project": "old", "created": "1", "finished": ""}})
+    body = f"retry: 200\nevent: job\ndata: {view}\n\n"
+    page.route(
+        "**/api/events", lambda route: route.fulfill(body=body, content_type="text/event-stream")
+    )
+    page.goto(f"{server.url}/projects/old/map/")
+    news = page.locator("#news")
+    expect(news).to_contain_text("is being made again")
+
+    bar, said = page.locator("#bar").bounding_box(), news.bounding_box()
+    assert bar["y"] + bar["height"] <= said["y"]
+    assert said["y"] + said["height"] <= page.locator("#status").bounding_box()["y"]
 
 
 @looks("desktop light")
