@@ -47,9 +47,19 @@ def line_findings(lines: LineFigures) -> Iterator[Finding]:
         yield finding(FindingKind.PROFILER_MOUNT, Level.CHECK, {"change": lines.mount_change})
 
 
+def rests(walk: WalkRecord) -> bool:
+    """Whether a profiler stands by its IMU: it has no drift, and no place to come back to."""
+    lines = walk.odometry_figures.lines if walk.odometry_figures else None
+    return lines is not None and lines.laser == "none" and not _drifts(lines)
+
+
+def _drifts(lines: LineFigures) -> bool:
+    return lines.rest_s < LASER_MISSING.rests_ratio * lines.walk_s
+
+
 def _laser(lines: LineFigures) -> Iterator[Finding]:
     if lines.laser == "none":
-        drifts = lines.rest_s < LASER_MISSING.rests_ratio * lines.walk_s
+        drifts = _drifts(lines)
         values: dict[str, Value] = {"rest_s": lines.rest_s, "rests": lines.rest_s > 0.0}
         level = Level.CHECK if drifts else Level.NOTE
         yield finding(FindingKind.LASER_MISSING, level, values | {"drifts": drifts})

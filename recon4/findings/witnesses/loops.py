@@ -10,6 +10,7 @@ from recon4.findings.drift import closed_drift
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
+from recon4.findings.witnesses.lines import rests
 from recon4.findings.witnesses.tuning import LOOP_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.model.finding import Finding, Level
@@ -28,7 +29,7 @@ class Loops(Witness):
         accepted, unverified = verdicts[Verdict.ACCEPTED], verdicts[Verdict.UNVERIFIED]
         if accepted:
             yield finding(FindingKind.LOOPS_ACCEPTED, Level.GOOD, {"accepted": accepted})
-        else:
+        elif not rests(walk):
             known = known_to(walk)
             yield finding(FindingKind.LOOPS_NONE, Level.NOTE if known else Level.CHECK, known)
         if unverified > accepted:

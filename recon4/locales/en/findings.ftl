@@ -384,7 +384,7 @@ LOOPS-NONE = No loop closure
     .text2 = The shape of the map is known to ± { LENGTH($shape_m) } (2σ).
     .remedy = Walk through places twice, and end where the walk began.
     .meaning = Nothing but the odometry holds the map. What that costs stands in the uncertainty of the positions.
-    .detection = No edge between two visits of one place was accepted. A note if the uncertainty of the positions is stated, else *check*.
+    .detection = No edge between two visits of one place was accepted. A note if the uncertainty of the positions is stated, else *check*. Not of a profiler without a 2-D laser that stands by its IMU.
 
 LOOPS-UNVERIFIED = Loop closures unverified
     .text1 = { $unverified } loop closures are unverified: they have no alternative path; { $accepted } are accepted.

@@ -3,6 +3,7 @@
 import json
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 from msgspec import structs
@@ -12,8 +13,9 @@ from recon4.findings.walk_record import WalkRecord
 from recon4.findings.wording import text_of
 from recon4.model.finding import Level
 from recon4.model.finding_kinds import FindingKind
-from recon4.model.odometry_figures import ImuChoice, OdometryFigures
+from recon4.model.odometry_figures import ImuChoice, LineFigures, OdometryFigures
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict, known_history
+from recon4.recording.report import warning
 from tests.unit.findings.test_known_shape import FLAT, stated
 from tests.unit.pose_graph.test_uncertainty import chain, edge
 
@@ -88,3 +90,25 @@ def test_a_weak_direction_of_unknown_size_is_stored():
     weak = [one for one in found if one.kind is FindingKind.WEAK_DIRECTION]
     assert len(weak) == 1 and "degeneracy 0.0000" in text_of(weak[0])
     json.dumps([one.values for one in found], allow_nan=False)
+
+
+@pytest.mark.parametrize(
+    ("rest_s", "kinds"),
+    [
+        (9.9, {FindingKind.LASER_MISSING: Level.NOTE}),
+        (5.0, {FindingKind.LASER_MISSING: Level.CHECK, FindingKind.LOOPS_NONE: Level.CHECK}),
+    ],
+    ids=["stands", "walks"],
+)
+def test_a_profiler_without_a_laser_that_stands_needs_neither_loop_nor_laser(rest_s, kinds):
+    lines = LineFigures(walk_s=10.0, laser="none", rest_s=rest_s)
+    said = msgspec.to_builtins(warning(FindingKind.LASER_NOT_IN_RIG))
+    walked = WalkRecord(
+        imported={"findings": [said]},
+        odometry_figures=OdometryFigures(multiframes=9, lost=0, imu=True, lines=lines),
+        graph=chain(20),
+    )
+
+    found = {one.kind: one.level for one in check_walk(walked)}
+    asked = kinds.keys() | {FindingKind.LOOPS_NONE, FindingKind.LASER_NOT_IN_RIG}
+    assert {kind: found[kind] for kind in asked & found.keys()} == kinds
