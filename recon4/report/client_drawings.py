@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -77,7 +78,7 @@ class MapDrawings:
     @staticmethod
     def of(words: Words, tiles: TileSet | None, final: Trajectory | None) -> MapDrawings:
         """Read the points of a map; two passes."""
-        rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
+        rasters = rasterize(partial(map_chunks, tiles)) if tiles is not None else []
         above = next((one for one in rasters if one.view is ABOVE), None)
         plan = None
         cut = CLIENT_REPORT.cut_m
@@ -231,8 +232,8 @@ def _around(above: Raster, places: Array) -> Raster | None:
     )
     close = Raster(ABOVE, part)
     rows = slice(frame.height - y1, frame.height - y0)
-    whole = above.count.reshape(frame.height, frame.width)
-    close.count = whole[rows, x0:x1].reshape(-1).copy()
+    whole = above.sums.reshape(frame.height, frame.width, -1)
+    close.sums = whole[rows, x0:x1].reshape(-1, whole.shape[2])
     return close
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +53,7 @@ def render(assessed: Assessment) -> str:
     """The report as HTML text; all names are escaped."""
     facts, results, drift = assessed.facts, assessed.results, assessed.drift
     tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
-    rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
+    rasters = rasterize(partial(map_chunks, tiles)) if tiles is not None else []
     usability = assessed.verdict.usability
     page = (
         environment()

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.kernels.image_sums import add_to_pixels
 from recon4.mapping.tiles import TileSet
 from recon4.report.tuning import MAP_IMAGES
 
@@ -66,35 +67,45 @@ class Raster:
 
     view: MapProjection
     frame: ImageFrame
-    count: Array = field(init=False)
-    z_sum: Array = field(init=False)
-    intensity_sum: Array = field(init=False)
-    normalized_sum: Array = field(init=False)
+    sums: Array = field(init=False)
+    """Points, their heights, intensities and normalized intensities, (P, 4)."""
     ink: bytes | None = field(init=False, default=None)
     """Image of the density, once it was made."""
 
     def __post_init__(self) -> None:
-        size = self.frame.width * self.frame.height
-        self.count, self.z_sum = np.zeros(size), np.zeros(size)
-        self.intensity_sum, self.normalized_sum = np.zeros(size), np.zeros(size)
+        self.sums = np.zeros((self.frame.width * self.frame.height, 4))
 
     def add(self, chunk: MapChunk) -> None:
         """Add points."""
         self.ink = None
-        f, p = self.frame, chunk.xyz_m
-        column = np.floor((p[:, self.view.right] - f.left_m) / f.pixel_m).astype(np.int64)
-        row = (
-            f.height - 1 - np.floor((p[:, self.view.up] - f.bottom_m) / f.pixel_m).astype(np.int64)
-        )
-        inside = (column >= 0) & (column < f.width) & (row >= 0) & (row < f.height)
-        pixel = row[inside] * f.width + column[inside]
-        _add(self.count, pixel, None)
-        _add(self.z_sum, pixel, p[inside, 2])
-        if self.view is not ABOVE:
-            return  # intensity is shown from above only
-        _add(self.intensity_sum, pixel, chunk.intensity[inside])
-        if chunk.normalized is not None:
-            _add(self.normalized_sum, pixel, chunk.normalized[inside])
+        known = [chunk.intensity, chunk.normalized] if self.view is ABOVE else []
+        columns = [one for one in known if one is not None]  # shown from above only
+        values = np.empty((len(chunk.xyz_m), len(columns)), np.float32)
+        for k, column in enumerate(columns):
+            values[:, k] = column
+        f = self.frame
+        axes, corner = (self.view.right, self.view.up), (f.left_m, f.bottom_m)
+        add_to_pixels(chunk.xyz_m, values, axes, corner, f.pixel_m, f.width, self.sums)
+
+    @property
+    def count(self) -> Array:
+        """Points of each pixel, (P,)."""
+        return self.sums[:, 0]
+
+    @property
+    def z_sum(self) -> Array:
+        """Sum of the heights of each pixel [m], (P,)."""
+        return self.sums[:, 1]
+
+    @property
+    def intensity_sum(self) -> Array:
+        """Sum of the intensities of each pixel, (P,)."""
+        return self.sums[:, 2]
+
+    @property
+    def normalized_sum(self) -> Array:
+        """Sum of the normalized intensities of each pixel, (P,)."""
+        return self.sums[:, 3]
 
     @property
     def seen(self) -> NDArray[np.int64]:
@@ -114,19 +125,8 @@ class Raster:
         return np.clip(np.log1p(seen) / top, 0.0, 1.0)
 
 
-def _add(
-    total: Array, pixel: NDArray[np.int64], weights: NDArray[np.floating | np.integer] | None
-) -> None:
-    """Add points to the sums of their pixels: a tile touches few rows of a large image."""
-    if len(pixel) == 0:
-        return
-    first = pixel.min()
-    sums = np.bincount(pixel - first, weights=weights)
-    total[first : first + len(sums)] += sums
-
-
-def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]:
-    """The points of a map, or an even sample of at most this many."""
+def map_chunks(tiles: TileSet, points: int = MAP_IMAGES.points) -> Iterator[MapChunk]:
+    """The points of a map, or an even sample of about this many at most."""
     ratio = min(1.0, points / max(len(tiles), 1))
     normalized = "intensity_normalized" in tiles.fields
     for tile in tiles:
@@ -139,24 +139,24 @@ def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]
 
 
 def rasterize(
-    chunks: Callable[[], Iterable[MapChunk]], views: tuple[MapProjection, ...] = PROJECTIONS
+    chunks: Callable[[int], Iterable[MapChunk]], views: tuple[MapProjection, ...] = PROJECTIONS
 ) -> list[Raster]:
     """Sum the points of a map into images, one per view, all of one scale.
 
     Args:
-        chunks: Makes a pass over the map; called twice.
+        chunks: Makes a pass over an even sample of at most this many points of the map.
         views: Directions of view.
 
     Returns:
         Empty if the map has no points.
     """
-    bounds = _bounds(chunks())
+    bounds = _bounds(chunks(MAP_IMAGES.outline_points))
     if bounds is None:
         return []
     low, high = bounds
     pixel_m = _pixel_m(float((high - low).max()))
     rasters = [Raster(view, _frame(view, low, high, pixel_m=pixel_m)) for view in views]
-    for chunk in chunks():
+    for chunk in chunks(MAP_IMAGES.points):
         for raster in rasters:
             raster.add(chunk)
     return rasters

@@ -72,6 +72,10 @@ INTENSITY_CHARTS = IntensityChartTuning()
 class MapImageTuning(Struct, frozen=True, kw_only=True):
     """Images of the map."""
 
+    points: int = 8_000_000
+    """Points that are drawn at most, an even sample of a larger map."""
+    outline_points: int = 500_000
+    """Of them, those that say how large the image is: 500 of them are what `trim` cuts off."""
     max_pixels: int = 1300
     """Pixels along the longer side."""
     levels: int = 48

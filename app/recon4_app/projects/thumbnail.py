@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
 from pathlib import Path
 
 from recon4.errors import Recon4Error
@@ -49,8 +50,12 @@ class Thumbnails:
 def draw_thumbnail(artifact: Path, out: Path) -> None:
     """Draw a map from above: walls as black lines on a transparent background."""
     from recon4.mapping.tiles import TileSet
-    from recon4.report.maps import ABOVE, ink_png, map_chunks, rasterize
+    from recon4.report.maps import ABOVE, MapChunk, ink_png, map_chunks, rasterize
 
     tiles = TileSet.open(artifact)
-    raster = rasterize(lambda: map_chunks(tiles, points=THUMBNAILS.max_points), (ABOVE,))[0]
+
+    def sample(points: int) -> Iterator[MapChunk]:
+        return map_chunks(tiles, min(points, THUMBNAILS.max_points))
+
+    raster = rasterize(sample, (ABOVE,))[0]
     out.write_bytes(ink_png(raster))

@@ -38,7 +38,7 @@ def chunk(points: list[list[float]], intensity: float = 10.0) -> MapChunk:
 def test_every_point_of_a_small_map_lies_in_its_pixel() -> None:
     points = [[0.0, 0.0, 0.0], [10.0, 0.0, 1.0], [10.0, 5.0, 2.0], [10.0, 5.0, 4.0]]
 
-    above = rasterize(lambda: [chunk(points[:2]), chunk(points[2:])])[0]
+    above = rasterize(lambda _: [chunk(points[:2]), chunk(points[2:])])[0]
 
     f = above.frame
     assert above.count.sum() == 4
@@ -54,7 +54,7 @@ def test_a_reflection_far_away_does_not_shrink_the_map() -> None:
     points = np.random.default_rng(0).uniform(0, 10, (5001, 3)).tolist()
     points[0] = [5000.0, 0.0, 0.0]
 
-    above = rasterize(lambda: [chunk(points)])[0]
+    above = rasterize(lambda _: [chunk(points)])[0]
 
     assert above.frame.width * above.frame.pixel_m < 12.0
 
@@ -62,21 +62,34 @@ def test_a_reflection_far_away_does_not_shrink_the_map() -> None:
 def test_both_side_views_have_the_scale_of_the_plan() -> None:
     points = np.random.default_rng(0).uniform([0, 0, 0], [40, 10, 3], (5000, 3)).tolist()
 
-    rasters = rasterize(lambda: [chunk(points)])
+    rasters = rasterize(lambda _: [chunk(points)])
 
     assert len({raster.frame.pixel_m for raster in rasters}) == 1
     side = next(raster for raster in rasters if raster.view is SIDE)
     assert side.frame.width * side.frame.pixel_m == pytest.approx(10.0, abs=1.5)
 
 
+def test_the_outline_of_an_image_is_that_of_a_sample() -> None:
+    asked: list[int] = []
+
+    def sample(points: int) -> list[MapChunk]:
+        asked.append(points)
+        return [chunk([[0.0, 0.0, 0.0], [10.0, 5.0, 0.0]])]
+
+    rasterize(sample)
+
+    assert len(asked) == 2
+    assert asked[0] * 10 < asked[1]
+
+
 def test_no_points_make_no_images() -> None:
-    assert rasterize(lambda: []) == []
+    assert rasterize(lambda _: []) == []
 
 
 def test_more_points_are_darker_ink_and_none_are_clear() -> None:
     points = [[0.0, 0.0, 0.0]] + [[3.0, 3.0, 0.0]] * 50
 
-    raster = rasterize(lambda: [chunk(points)])[0]
+    raster = rasterize(lambda _: [chunk(points)])[0]
     alpha = imread(BytesIO(ink_png(raster)))[..., 3]
 
     grid = raster.count.reshape(alpha.shape)
@@ -87,7 +100,7 @@ def test_more_points_are_darker_ink_and_none_are_clear() -> None:
 def test_intensity_shows_the_mean_and_its_ends() -> None:
     chunks = [chunk([[0.0, 0, 0]], 10.0), chunk([[0.0, 0, 0]], 30.0), chunk([[4.0, 4, 0]], 60.0)]
 
-    raster = rasterize(lambda: chunks)[0]
+    raster = rasterize(lambda _: chunks)[0]
 
     assert intensity_png(raster, normalized=False)[1] == pytest.approx((20.8, 59.2))
     assert intensity_png(raster, normalized=True)[1] == pytest.approx((41.6, 118.4))
@@ -99,7 +112,7 @@ def test_steps_are_round_numbers(extent: float, step: float) -> None:
 
 
 def test_a_plan_draws_a_point_where_its_coordinates_say() -> None:
-    raster = rasterize(lambda: [chunk([[0.0, 0.0, 0.0], [10.0, 10.0, 0.0]])])[0]
+    raster = rasterize(lambda _: [chunk([[0.0, 0.0, 0.0], [10.0, 10.0, 0.0]])])[0]
     line = np.array([[0.0, 0.0, 0.0], [10.0, 10.0, 0.0]])
 
     svg = ElementTree.fromstring(
@@ -114,7 +127,7 @@ def test_a_plan_draws_a_point_where_its_coordinates_say() -> None:
 
 @pytest.mark.parametrize(("x_m", "y_m"), [(4.0, 40.0), (40.0, 4.0)])
 def test_a_tall_plan_is_no_longer_than_a_wide_one(x_m: float, y_m: float) -> None:
-    raster = rasterize(lambda: [chunk([[0.0, 0.0, 0.0], [x_m, y_m, 0.0]])])[0]
+    raster = rasterize(lambda _: [chunk([[0.0, 0.0, 0.0], [x_m, y_m, 0.0]])])[0]
 
     svg = ElementTree.fromstring(plan_svg(b"", ABOVE, raster.frame))
 
