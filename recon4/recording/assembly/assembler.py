@@ -201,7 +201,10 @@ class Assembler:
 
     def _head_complete(self) -> bool:
         ends = [s.last_ns - s.first_ns for s in self._streams if s.last_ns and s.first_ns]
-        everyone = len(ends) == self._expected and min(ends, default=0) >= PROBE.head_ns
+        points = sum(len(shots) for stream in self._streams for shots in stream.waiting)
+        many = points >= ASSEMBLY.head_points
+        least_ns = ASSEMBLY.short_head_ns if many else PROBE.head_ns
+        everyone = len(ends) == self._expected and min(ends, default=0) >= least_ns
         return everyone or max(ends, default=0) >= PROBE.head_ns + self._wait_ns
 
     def _begin(self) -> None:

@@ -16,6 +16,10 @@ class AssemblyTuning(Struct, frozen=True, kw_only=True):
     """A first or last revolution below this ratio of the usual number of points is left out."""
     fallback_hz: float = 10.0
     """Without a rotation frames are cut this often."""
+    head_points: int = 1_500_000
+    short_head_ns: int = 500_000_000
+    """With as many points the first frame is cut after this time already [ns]: it is enough for a
+    rotation, and a second of two OS1-128 with two returns takes 170 MB."""
     wait_s: float = 10.0
     """Readers may deliver several seconds of one sensor at a time."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +60,14 @@ class Datagrams:
             self.start[rows],
             self.buffer,
         )
+
+    def compact(self) -> Datagrams:
+        """The same in a buffer that holds nothing but their payloads."""
+        places = zip(self.start.tolist(), self.length.tolist(), strict=True)
+        parts = [self.buffer[at : at + size] for at, size in places]
+        buffer = np.concatenate(parts) if parts else self.buffer[:0]
+        start = np.cumsum(self.length) - self.length
+        return replace(self, start=start, buffer=buffer)
 
 
 NO_DATAGRAMS = Datagrams(

@@ -127,14 +127,20 @@ class PacketCapture:
 
     def read(self) -> Iterator[Shots | PacketSamples]:
         """Stream the whole recording once; the shots of one sensor are in order of time."""
-        batches = (self._batches(path) for path in self._paths)
-        for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
+        for path, datagrams in self._merged():
             yield from self._decode_samples(datagrams)  # first: points are mapped with them
             self._find_late(datagrams)
             for channel in self._channels:
                 yield from self._decode(channel, path, datagrams)
         for channel in self._channels:
             yield channel.decoder.flush()
+
+    def _merged(self) -> Iterator[tuple[Path, Datagrams]]:
+        """The slots of all files in order of time."""
+        batches = [self._batches(path) for path in self._paths]
+        if len(batches) == 1:  # the merge of one keeps its first, which is the largest
+            return batches[0]
+        return heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0]))
 
     @property
     def seen(self) -> str:

@@ -15,22 +15,29 @@ from recon4.recording.packets.tuning import SLOTS
 
 
 def in_slots(batches: Iterable[Datagrams]) -> Iterator[Datagrams]:
-    """All datagrams in order, in slots of `SlotTuning.slot_ns` of the recorder's clock."""
+    """All datagrams in order, in slots of `SlotTuning.slot_ns` of the recorder's clock.
+
+    A slot ends early where it has `SlotTuning.bytes`.
+    """
     parts: list[Datagrams] = []
     end_ns: int | None = None
+    room = SLOTS.bytes
     for batch in batches:
         start = 0
         if end_ns is None and len(batch):
             end_ns = int(batch.t_ns[0]) + SLOTS.first_ns
         while end_ns is not None and start < len(batch):
-            t_ns = batch.t_ns[start:]
-            beyond = np.flatnonzero((t_ns >= end_ns) | (t_ns < end_ns - SLOTS.set_back_ns))
+            t_ns, size = batch.t_ns[start:], np.cumsum(batch.length[start:])
+            outside = (t_ns >= end_ns) | (t_ns < end_ns - SLOTS.set_back_ns)
+            beyond = np.flatnonzero(outside | (size > room))
             cut = start + int(beyond[0]) if len(beyond) else len(batch)
             parts.append(batch.take(slice(start, cut)))
+            room -= int(batch.length[start:cut].sum())
             start = cut
             if len(beyond):
-                yield join_datagrams(parts)
-                parts = []
+                slot, parts = join_datagrams(parts), []  # first: the batches go
+                yield slot
+                room = SLOTS.bytes
                 end_ns = (int(batch.t_ns[cut]) // SLOTS.slot_ns + 1) * SLOTS.slot_ns
     if parts:
         yield join_datagrams(parts)

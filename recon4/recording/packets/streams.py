@@ -317,6 +317,6 @@ def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:
 
 
 def first_datagrams(datagrams: Datagrams) -> Datagrams:
-    """As many as `PacketHeadTuning.bytes` hold."""
+    """As many as `PacketHeadTuning.bytes` hold; nothing else stays in memory."""
     kept = np.cumsum(datagrams.length) <= HEAD.bytes
-    return datagrams.take(kept)
+    return datagrams.take(kept).compact()

@@ -118,6 +118,9 @@ class SlotTuning(Struct, frozen=True, kw_only=True):
     """Of the recorder's clock."""
     first_ns: int = 1_000_000_000
     """The first slot is longer, because the clocks of the sensors are compared in it."""
+    bytes: int = 24 << 20
+    """Of a slot, at most; the first second of two VLP-16 has 2 MB, that of an OS1-128 with 2048
+    columns and two returns 42 MB."""
     set_back_ns: int = 2_000_000_000
     """A datagram this far before the end of its slot means that the clock was set back."""
 
