@@ -102,7 +102,7 @@ def _audit(context: StageContext[ReadsNothing], **artifacts: Path) -> AuditFigur
     return save_findings(context.out, check_planar(read_planar(artifacts)))
 
 
-SCANS_2D = Stage("scans_2d", 13, ImportReads, _scans, Scan2dFigures)
+SCANS_2D = Stage("scans_2d", 14, ImportReads, _scans, Scan2dFigures)
 ODOMETRY_2D = Stage("odometry_2d", 1, Odometry2dReads, _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 2, Graph2dReads, _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 2, Map2dReads, _map, Map2dFigures)

@@ -13,7 +13,7 @@ from recon4.locales.coded import CodedText
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.clocks.names import known_offset_s, looks_like
-from recon4.recording.clocks.tuning import STAMPS
+from recon4.recording.clocks.tuning import FRAME_TIMES, STAMPS
 from recon4.recording.report import ImportReport
 from recon4.units import SECOND_NS
 
@@ -216,3 +216,15 @@ def strays(t_ns: Times) -> NDArray[np.bool_]:
     step_ns = np.median(np.abs(np.diff(t)))
     far = np.abs(t - np.median(around, axis=1)) > max(STAMPS.other_ns, 5.0 * step_ns)
     return np.asarray(far & (np.count_nonzero(far) <= STAMPS.strays_ratio * len(t_ns)))
+
+
+def filled(t_ns: Times, sound: NDArray[np.bool_]) -> Times:
+    """Times with those that are not sound taken from their neighbors; at an end, a step further."""
+    if sound.all():
+        return t_ns
+    rows, known = np.flatnonzero(sound), t_ns[sound]
+    filled = known[0] + np.interp(np.arange(len(t_ns)), rows, known - known[0]).astype(np.int64)
+    step = int(np.median(np.diff(known))) if len(known) > 1 else FRAME_TIMES.assumed_ns
+    ahead = np.minimum(np.arange(len(t_ns)) - rows[0], 0)
+    behind = np.maximum(np.arange(len(t_ns)) - rows[-1], 0)
+    return np.where(sound, t_ns, filled + step * (ahead + behind)).astype(np.int64)

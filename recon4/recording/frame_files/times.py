@@ -24,7 +24,7 @@ from recon4.errors import CorruptFile
 from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
-from recon4.recording.clocks.stamps import strays
+from recon4.recording.clocks.stamps import filled, strays
 from recon4.recording.clocks.tuning import FRAME_TIMES
 from recon4.recording.formats.cloud_files import CLOUD_SUFFIXES
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
@@ -112,7 +112,7 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     values |= {"damaged": len(damaged), "times": count}
     if len(damaged) <= MAX_RATIO * count:
         found.append(warning(FindingKind.TIMES_DAMAGED, **values))
-        return FrameTimes(_filled(times, sound), name)
+        return FrameTimes(filled(times, sound), name)
     by_text = times_by_text(times, files)
     if np.all(np.diff(by_text) > 0):
         return FrameTimes(by_text, name, out_of_order=moved_back(times))
@@ -211,18 +211,6 @@ def _in_order(t_ns: Times) -> NDArray[np.bool_]:
     there[there] = ~strays(t_ns[there])
     before = np.concatenate([[-1], np.maximum.accumulate(np.where(there, t_ns, -1))[:-1]])
     return np.asarray(there & (t_ns > before))
-
-
-def _filled(t_ns: Times, sound: NDArray[np.bool_]) -> Times:
-    """Times with those that are not sound taken from their neighbors; at an end, a step further."""
-    if sound.all():
-        return t_ns
-    rows, known = np.flatnonzero(sound), t_ns[sound]
-    filled = known[0] + np.interp(np.arange(len(t_ns)), rows, known - known[0]).astype(np.int64)
-    step = int(np.median(np.diff(known))) if len(known) > 1 else FRAME_TIMES.assumed_ns
-    ahead = np.minimum(np.arange(len(t_ns)) - rows[0], 0)
-    behind = np.maximum(np.arange(len(t_ns)) - rows[-1], 0)
-    return np.where(sound, t_ns, filled + step * (ahead + behind)).astype(np.int64)
 
 
 def name_time_ns(stem: str) -> int | None:

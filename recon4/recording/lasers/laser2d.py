@@ -14,14 +14,18 @@ from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
+from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.rig import Rig
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.bags.messages import SampleBatch, join_poses, pose_row, stamp_clock
 from recon4.recording.bags.topic_choice import LASER_KIND, ODOMETRY_KIND, Named, choose_topic
+from recon4.recording.clocks.names import looks_like
+from recon4.recording.clocks.stamps import filled, strays
 from recon4.recording.formats.bags import LASER_SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
+from recon4.recording.frame_files.clock import clock_by_order
 from recon4.recording.kinds import RecordingKind, bag_paths, capture_files, recognize
 from recon4.recording.lasers.mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.lasers.range_units import in_meters
@@ -34,6 +38,7 @@ from recon4.recording.packets.streams import require_one_capture
 from recon4.recording.report import ImportReport
 from recon4.recording.rigs.profiler import profiler_rig
 from recon4.settings import IngestSettings
+from recon4.units import SECOND_NS
 
 Rows = NDArray[np.intp]
 
@@ -113,7 +118,7 @@ def read_laser_recording(
 
 
 def _of_carmen(log: CarmenScans, name: str, report: ImportReport) -> LaserScans:
-    rows = _usable_rows(log, name, report)
+    rows, t_ns = _in_order(log, name, report)
     range_max_m, ranges = _without_largest(log, report)
     odometry = _odometry(log, report)
     report.count("scans", len(rows))
@@ -121,7 +126,7 @@ def _of_carmen(log: CarmenScans, name: str, report: ImportReport) -> LaserScans:
     start = np.concatenate([[0], np.cumsum(beams)])
     sorted_ranges = np.repeat(log.start[rows] - start[:-1], beams) + np.arange(start[-1])
     return LaserScans(
-        t_ns=log.t_ns[rows],
+        t_ns=t_ns,
         range_m=ranges[sorted_ranges],
         start=start,
         angle_min_rad=log.angle_min_rad[rows],
@@ -132,8 +137,30 @@ def _of_carmen(log: CarmenScans, name: str, report: ImportReport) -> LaserScans:
     )
 
 
-def _usable_rows(log: CarmenScans, name: str, report: ImportReport) -> Rows:
-    """Rows in order of time, each time once."""
+def _in_order(log: CarmenScans, name: str, report: ImportReport) -> tuple[Rows, Times]:
+    """Rows in the order of measurement, each time once, and their times [ns], (N,).
+
+    Lines are in order where their times go back for good: the clock was set. Single times that are
+    far from those of the lines around are replaced by these.
+    """
+    apart = strays(log.t_ns)
+    report.count("scans_wrong_time", int(np.count_nonzero(apart)))
+    log = replace(log, t_ns=filled(log.t_ns, ~apart))
+    clock = clock_by_order(log.t_ns)
+    if clock is None:
+        rows = _sorted_rows(log, name, report)
+        return rows, log.t_ns[rows]
+    report.count("clock_jumps_back", len(clock.steps))
+    for step in clock.steps:
+        values: dict[str, Value] = {"jump_s": -step.back_ns / SECOND_NS}
+        values |= {"looks": looks} if (looks := looks_like(-step.back_ns / SECOND_NS)) else {}
+        report.warn(
+            FindingKind.CLOCK_JUMP, sensor=name, whose="sensor", times="without-it", **values
+        )
+    return clock.order, log.t_ns[clock.order] + clock.shift_ns
+
+
+def _sorted_rows(log: CarmenScans, name: str, report: ImportReport) -> Rows:
     t_ns = log.t_ns
     order = np.argsort(t_ns, kind="stable")
     shuffled = int((np.diff(t_ns) < 0).sum())

@@ -138,6 +138,33 @@ def test_scans_out_of_order_and_duplicates_are_repaired_and_counted(tmp_path):
     assert kinds(report) == [K.SCANS_UNSORTED]
 
 
+@pytest.mark.parametrize("back_s", [0.33, 2.03, 3600.0])
+def test_a_log_goes_on_where_its_clock_was_set_back(tmp_path, back_s):
+    times = 5000.0 + 0.1 * np.arange(40) - np.where(np.arange(40) >= 20, back_s, 0.0)
+    text = "".join(flaser([1.0 + k] * 4, f"{time:.3f}") for k, time in enumerate(times))
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert rows_of(scans)[:, 0].tolist() == (1.0 + np.arange(40)).tolist()
+    np.testing.assert_allclose(np.diff(scans.t_ns) / 1e9, 0.1, atol=1e-9)
+    assert report.counts["clock_jumps_back"] == 1
+    assert kinds(report) == [K.CLOCK_JUMP]
+    assert warned(report, K.CLOCK_JUMP, jump_s=-back_s)
+
+
+def test_single_times_of_another_clock_are_taken_from_the_lines_around(tmp_path):
+    times = 1.7e9 + 0.1 * np.arange(60)
+    times[[7, 31]] = [5.0, 1.7e9 + 1000.0]
+    text = "".join(flaser([1.0 + k] * 4, f"{time:.3f}") for k, time in enumerate(times))
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert rows_of(scans)[:, 0].tolist() == (1.0 + np.arange(60)).tolist()
+    np.testing.assert_allclose(np.diff(scans.t_ns) / 1e9, 0.1, atol=1e-6)
+    assert report.counts["scans_wrong_time"] == 2
+    assert kinds(report) == []
+
+
 def test_damaged_lines_are_left_out_and_the_first_is_named(tmp_path):
     good = flaser([2.0] * 5, 1.0)
     bad = ["FLASER 5 1 2 3\n", "FLASER x 1\n", flaser([2.0, "nan1", 3, 4, 5], 2.0), "FLASER\n"]
