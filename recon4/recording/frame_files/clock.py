@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.clocks.tuning import FRAME_TIMES
+from recon4.recording.clocks.tuning import FRAME_TIMES, SET_BACK
 
 Rows = NDArray[np.intp]
 
@@ -56,17 +56,35 @@ def clock_by_order(t_ns: Times) -> FrameClock | None:
     """
     steps = np.diff(t_ns)
     ahead = steps[steps > 0]
-    if not len(ahead) or t_ns.min() < 0 or len(ahead) == len(steps):
+    if not len(ahead) or t_ns.min() < 0:
         return None
     usual = float(np.median(ahead))
-    parts = np.split(np.arange(len(t_ns)), np.flatnonzero(steps <= 0) + 1)
+    back = (steps <= 0) | _short_alone(steps, usual)
+    if not back.any():
+        return None
+    parts = np.split(np.arange(len(t_ns)), np.flatnonzero(back) + 1)
     fewest = FRAME_TIMES.fewest_set_back
     if min(len(part) for part in parts) < fewest or len(parts) > FRAME_TIMES.most_set_back:
         return None
     for before, after in pairwise(parts):
-        if not _overlap(t_ns[: before[-1] + 1], t_ns[after], usual):
+        if steps[before[-1]] <= 0 and not _overlap(t_ns[: before[-1] + 1], t_ns[after], usual):
             return None
     return _joined(t_ns, parts, usual)
+
+
+def _short_alone(steps: Times, usual: float) -> NDArray[np.bool_]:
+    """Which steps are shorter than the even ones around: the clock was set back by less than one.
+
+    Args:
+        steps: From one time to the next [ns], (N,).
+        usual: The usual one [ns].
+    """
+    around = SET_BACK.around
+    if len(steps) <= 2 * around:
+        return np.zeros(len(steps), np.bool_)
+    off = np.pad(np.abs(steps - usual) > SET_BACK.even * usual, around, constant_values=True)
+    others = np.lib.stride_tricks.sliding_window_view(off, 2 * around + 1).sum(axis=1) - 1
+    return np.asarray((others == 0) & (steps < (1.0 - SET_BACK.least) * usual))
 
 
 def clock_by_time(t_ns: Times, sizes: Callable[[], Sequence[int]]) -> FrameClock | None:
@@ -215,7 +233,7 @@ def _joined(t_ns: Times, parts: Sequence[Rows], usual: float) -> FrameClock:
     for part in parts:
         begin = int(t_ns[part[0]])
         shift = 0
-        if last is not None and begin <= last:
+        if last is not None and begin - last < (1.0 - SET_BACK.least) * usual:
             shift = last + round(usual) - begin
             steps.append(ClockStep(last, shift))
         shifts.append(np.full(len(part), shift, np.int64))

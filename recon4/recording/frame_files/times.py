@@ -135,10 +135,10 @@ def _of_numbers(times: Times, files: Sequence[Path]) -> Times:
 
 def _in_any_order(t_ns: Times, source: str, files: Sequence[Path]) -> FrameTimes | None:
     """The times in their order, and the files with them; None if they are no times of a walk."""
-    if np.all(np.diff(t_ns) > 0):
-        return FrameTimes(t_ns, source)
     if len(first_words(files)) == 1 and (clock := clock_by_order(t_ns)) is not None:
         return _going_on(t_ns, source, clock)
+    if np.all(np.diff(t_ns) > 0):
+        return FrameTimes(t_ns, source)
     order = order_of_times(t_ns)
     if order is None:
         return None

@@ -65,13 +65,23 @@ def test_a_sensor_that_turns_faster_for_a_while_is_no_second_clock():
     assert by_time(t_ns) is not None
 
 
-@pytest.mark.parametrize("back_s", [0.5, 0.53, 1.9, 5.0, 3600.0])
+@pytest.mark.parametrize("back_s", [0.03, 0.08, 0.5, 0.53, 1.9, 5.0, 3600.0])
 def test_frames_that_are_numbered_keep_their_order(back_s):
     clock = clock_by_order(set_back(back_s))
 
     assert clock.order.tolist() == list(range(40))
     assert np.all(np.diff(set_back(back_s) + clock.shift_ns) == STEP_NS)
     assert [step.back_ns for step in clock.steps] == [round(back_s * 1e9)]
+
+
+def test_steps_that_are_shorter_for_another_reason_are_no_clock_set_back():
+    rng = np.random.default_rng(5)
+    late = stamps() + rng.exponential(8e6, 40).astype(np.int64)
+    held_up = stamps() + np.where(np.arange(40) == 19, 60_000_000, 0)
+    faster = np.concatenate([stamps(20), stamps(20)[-1] + STEP_NS // 2 * np.arange(1, 15)])
+
+    for t_ns in (late, held_up, faster, stamps()[[0, 1, 2, 3, 10, 11, 12, 13, 30, 31]]):
+        assert clock_by_order(t_ns) is None
 
 
 def test_parts_that_are_given_in_another_order_are_no_clock_set_back():
@@ -82,10 +92,11 @@ def test_parts_that_are_given_in_another_order_are_no_clock_set_back():
 
 @pytest.mark.parametrize("named", ["stamp", "number", "list"])
 @pytest.mark.parametrize("absolute", [False, True], ids=["relative", "absolute"])
-def test_a_folder_goes_on_where_its_clock_was_set_back(tmp_path, named, absolute):
+@pytest.mark.parametrize("back_s", [0.08, 0.53])
+def test_a_folder_goes_on_where_its_clock_was_set_back(tmp_path, named, absolute, back_s):
     folder = tmp_path / "f"
     folder.mkdir()
-    for k, t in enumerate(set_back(0.53, at=8, count=16).tolist()):
+    for k, t in enumerate(set_back(back_s, at=8, count=16).tolist()):
         cloud = room_cloud(columns_per_turn=36)
         cloud["intensity"] = np.full_like(cloud["intensity"], k)
         if absolute:
@@ -93,7 +104,7 @@ def test_a_folder_goes_on_where_its_clock_was_set_back(tmp_path, named, absolute
         name = {"stamp": f"{t}", "number": f"{k:04d}_{t}", "list": f"{k:04d}"}[named]
         write_pcd(folder / f"{name}.pcd", cloud)
     if named == "list":
-        listed = set_back(0.53, at=8, count=16)
+        listed = set_back(back_s, at=8, count=16)
         (folder / "times.txt").write_text("".join(f"{t}\n" for t in listed))
 
     store, found = run(folder, out=tmp_path / "o"), describe(folder)
@@ -105,8 +116,8 @@ def test_a_folder_goes_on_where_its_clock_was_set_back(tmp_path, named, absolute
     assert kinds(store.report).count(K.CLOCK_BACK) == 1
     assert K.TIME_GAP not in kinds(store.report)
     assert K.FRAMES_OVERLAP not in kinds(store.report)
-    assert warned(found, K.CLOCK_BACK, seconds=0.53)
-    assert [gap.seconds for gap in found.gaps] == [-0.53]
+    assert warned(found, K.CLOCK_BACK, seconds=back_s)
+    assert [gap.seconds for gap in found.gaps] == [-back_s]
 
 
 def test_frames_of_two_sensors_in_one_folder_are_no_clock_set_back(tmp_path):
