@@ -167,6 +167,7 @@ _SAMPLES = {
     "imu_copies": _usual(),
     "imu_repeated": _lost("imu_kept", apart=True, stated=True),
     "imu_unsorted": _repaired("imu_kept"),
+    "imu_in_bursts": _repaired("imu_kept"),
     "imu_jumps_back": _repaired(),
     "imu_jumps_ahead": _repaired(),
     "imu_accel_interpolated": _repaired("imu_kept"),

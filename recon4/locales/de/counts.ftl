@@ -129,6 +129,7 @@ count-imu_duplicate = die Zeit eines anderen, ausgelassen
 count-imu_copies = Kopien des vorherigen, ausgelassen
     .noun = IMU-Messwerte
 count-imu_repeated = vom Treiber wiederholt, ausgelassen
+count-imu_in_bursts = Zeitstempel in Schüben, gleichmäßig verteilt
 count-imu_unsorted = früher als der vorherige, sortiert
 count-imu_jumps_back = Sprünge zurück mit den LiDARs
     .noun = Zeiten

@@ -130,6 +130,7 @@ count-imu_duplicate = the time of another, dropped
 count-imu_copies = copies of the one before, dropped
     .noun = IMU samples
 count-imu_repeated = repeated by the driver, dropped
+count-imu_in_bursts = stamps in bursts, spread evenly
 count-imu_unsorted = earlier than the one before, sorted
 count-imu_jumps_back = jumps back with the LiDARs
     .noun = times

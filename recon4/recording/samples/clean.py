@@ -16,6 +16,7 @@ from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.clocks.stamps import strays
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.bursts import without_bursts
 from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
 from recon4.recording.samples.tuning import CARRIED_ON, REPEATED
 from recon4.recording.samples.units import GyroUnit, in_degrees, in_m_s2, in_rad_s
@@ -60,8 +61,8 @@ def clean_imu(
             ahead. A jump of the IMU like one of these is the same jump, and is carried on by the
             same amount.
         report: Gets the counts ``imu_wrong_time``, ``imu_nan``, ``imu_duplicate``, ``imu_copies``,
-            ``imu_unsorted``, ``imu_repeated``, those of `with_forces`, and what was not measured
-            (`imu_channels`) or in which unit (`in_rad_s`, `in_m_s2`).
+            ``imu_unsorted``, ``imu_in_bursts``, ``imu_repeated``, those of `with_forces`, and what
+            was not measured (`imu_channels`) or in which unit (`in_rad_s`, `in_m_s2`).
         gyro_unit: Of the angular rates.
     """
     imu = _without_strays(imu, "imu", report)
@@ -152,9 +153,11 @@ def _sorted(samples: Samples, offset_s: float, kind: str, *, report: ImportRepor
     new = np.diff(t_ns[order], prepend=np.iinfo(np.int64).min) != 0 if len(order) else order > 0
     copies = ~new & _equal_to_last(samples, order)
     report.count(f"{kind}_copies", int(np.count_nonzero(copies)))
-    report.count(f"{kind}_duplicate", int(np.count_nonzero(~new & ~copies)))
-    samples = _take(samples, order[new])
-    shifted = samples.t_ns + round(offset_s * 1e9)
+    samples = _take(samples, order[~copies])
+    found_ns = without_bursts(samples.t_ns, report) if kind == "imu" else samples.t_ns
+    new = np.diff(found_ns, prepend=np.iinfo(np.int64).min) != 0
+    report.count(f"{kind}_duplicate", int(np.count_nonzero(~new)))
+    samples, shifted = _take(samples, new), found_ns[new] + round(offset_s * 1e9)
     return _build(samples, lambda n: shifted if n == "t_ns" else getattr(samples, n))
 
 

@@ -47,6 +47,22 @@ class RepeatedTuning(Struct, frozen=True, kw_only=True):
 REPEATED = RepeatedTuning()
 
 
+class BurstTuning(Struct, frozen=True, kw_only=True):
+    """Stamps of samples that come in bursts (`bursts.py`)."""
+
+    fewest: int = 50
+    """Fewer samples show no rate."""
+    short: float = 0.2
+    """Stamps nearer than this part of the mean step are of one burst."""
+    least: float = 0.4
+    """Part of the steps that are so short: of stamps that scatter like arrivals, a fifth are."""
+    pause: float = 1.5
+    """After a pause, samples of a burst are at most this many usual steps apart."""
+
+
+BURSTS = BurstTuning()
+
+
 class MeasuredSampleTuning(Struct, frozen=True, kw_only=True):
     """Samples that were not measured (`measured.py`)."""
 
