@@ -111,7 +111,7 @@ TOPIC-LEFT-OUT =
     .word-2-D-laser = 2-D-Laser
 
 TOPIC-OF-DRIVER =
-    .text1 = { $topic } ist von einem LiDAR, aber { $type } wird nicht gelesen: den Bag durch den Treiber abspielen und dessen PointCloud2 aufzeichnen.
+    .text1 = { $topic } ist von einem LiDAR, aber { $type } wird nicht gelesen: den Bag durch den Treiber abspielen (komprimierte Wolken: point_cloud_transport) und dessen PointCloud2 aufzeichnen.
 
 CLOUDS-OF-PACKETS =
     .text1 = Rohe Pakete werden gelesen, nicht { $topics }.

@@ -174,7 +174,7 @@ journal-damaged = { $file } ist beschädigt oder nicht nutzbar: { $why }
 
 ## Bags und Ordner
 
-topic-unread = { $topic } ist von einem LiDAR, aber { $type } wird nicht gelesen: das Bag durch den Treiber abspielen und die PointCloud2 aufzeichnen, die er veröffentlicht
+topic-unread = { $topic } ist von einem LiDAR, aber { $type } wird nicht gelesen: das Bag durch den Treiber abspielen (komprimierte Wolken: point_cloud_transport) und die PointCloud2 aufzeichnen, die er veröffentlicht
 topics-read = gelesen werden { $kinds }
 topics-other-clouds = die Punktwolken sind von einer Tiefenkamera oder eine Karte (mit lidar_topic in ingest wird eine gelesen; Seite: Alle Einstellungen; Befehl: --set ingest.lidar_topic=TOPIC)
 bag-no-lidar = { $file }: keine Daten eines LiDARs; Topics: { $topics }; { $why }

@@ -201,7 +201,7 @@ TOPICS-EQUAL = Gleich gute Topics
 DRIVER-UNREAD = Nachrichten eines Treibers
     .text1 = { $topic } ist von einem LiDAR, aber { $type } wird nicht gelesen.
     .meaning = Aufgezeichnete Punkte sind nicht in der Karte.
-    .remedy = Den Bag durch den Treiber abspielen und dessen PointCloud2 aufzeichnen.
+    .remedy = Den Bag durch den Treiber abspielen (komprimierte Wolken: point_cloud_transport) und dessen PointCloud2 aufzeichnen.
 
 LASER-NOT-IN-RIG = Kein 2-D-Laser im Rig
     .text1 = Das Rig hat keinen 2-D-Laser: die erste Bewegung stammt allein aus der IMU.

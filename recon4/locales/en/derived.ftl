@@ -110,7 +110,7 @@ TOPIC-LEFT-OUT =
     .word-odometry = Odometry
 
 TOPIC-OF-DRIVER =
-    .text1 = { $topic } is of a LiDAR, but { $type } is not read: play the bag back through the driver and record the PointCloud2 that it publishes.
+    .text1 = { $topic } is of a LiDAR, but { $type } is not read: play the bag back through the driver (compressed clouds: point_cloud_transport) and record the PointCloud2 that it publishes.
 
 CLOUDS-OF-PACKETS =
     .text1 = Raw packets are read, not { $topics }.

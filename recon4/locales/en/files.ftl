@@ -174,7 +174,7 @@ journal-damaged = { $file } is damaged or cannot be used: { $why }
 
 ## Bags and folders
 
-topic-unread = { $topic } is of a LiDAR, but { $type } is not read: play the bag back through the driver and record the PointCloud2 that it publishes
+topic-unread = { $topic } is of a LiDAR, but { $type } is not read: play the bag back through the driver (compressed clouds: point_cloud_transport) and record the PointCloud2 that it publishes
 topics-read = read are { $kinds }
 topics-other-clouds = the clouds are of a depth camera or a map (one is read with lidar_topic of ingest; page: All settings; command: --set ingest.lidar_topic=TOPIC)
 bag-no-lidar = { $file }: no LiDAR data; topics: { $topics }; { $why }

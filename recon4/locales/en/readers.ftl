@@ -201,7 +201,7 @@ TOPICS-EQUAL = Topics that are equally good
 
 DRIVER-UNREAD = Messages of a driver
     .text1 = { $topic } is of a LiDAR, but { $type } is not read.
-    .remedy = Play the bag back through the driver and record the PointCloud2 that it publishes.
+    .remedy = Play the bag back through the driver (compressed clouds: point_cloud_transport) and record the PointCloud2 that it publishes.
     .meaning = Points that were recorded are not in the map.
 
 LASER-NOT-IN-RIG = No 2-D laser in the rig

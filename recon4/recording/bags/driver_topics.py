@@ -16,6 +16,7 @@ from recon4.recording.tuning import LISTED
 _DRIVERS = (
     *("ouster", "os_ros", "pandar", "hesai", "rslidar", "robosense"),
     *("sick_scan", "cepton", "innovusion", "seyond", "blickfeld"),
+    "point_cloud_interfaces",  # compressed clouds of any LiDAR
 )
 """Beginnings of names of types."""
 _NOT_LIDARS = ("imu", "info", "status", "diagnos", "string", "metadata", "laserscan")

@@ -154,6 +154,7 @@ def imu(bag, t_ns, k):
     [
         ("cepton_messages/msg/Points", "play the bag back through the driver"),
         ("cepton_messages/msg/CeptonPacket", "play the bag back through the driver"),
+        ("point_cloud_interfaces/msg/CompressedPointCloud2", "point_cloud_transport"),
         ("innovusion/msg/InnovusionScan", "play the bag back through the driver"),
     ],
 )
