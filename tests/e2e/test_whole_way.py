@@ -60,7 +60,7 @@ def test_a_recording_becomes_an_approved_map(server, walk, page, screenshot, bro
     root = server.root / "office-walk"
     watch(page, screenshot)
     toggle_in_the_viewer(page)
-    screenshot(page, "tour-map")
+    look_at_the_map(page, screenshot)
     page.get_by_role("link", name="Review", exact=True).click()
     decide(page, root, screenshot)
     make_a_new_map(page)
@@ -164,6 +164,13 @@ def decide(page, root, screenshot):
     rows = read_rows(root)
     assert [row.kind for row in rows] == ["accept", "undo", "reject"]
     assert broken(rows) == []
+
+
+def look_at_the_map(page, screenshot):
+    page.get_by_role("link", name="Map", exact=True).click()
+    shown = page.locator("#status .shown")
+    expect(shown).to_have_text(re.compile("points$"), timeout=WORK_MS)  # at rest
+    screenshot(page, "tour-map")
 
 
 def decided(page, key, count):
