@@ -67,7 +67,7 @@ void main() {
 #ifdef DISCS
   middle = seen.xyz;
   disc = vec4(n, 0.0);
-  if (gl_PointSize > 2.5) {
+  if (gl_PointSize > 1.5) {
     gl_PointSize = min(1.85 * gl_PointSize, 2.0 * sizes.y); // a circle in the square is smaller
     disc.w = 0.5 * gl_PointSize * away / focal;
   }
