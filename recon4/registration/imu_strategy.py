@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import Array, so3_exp
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -22,7 +22,7 @@ from recon4.registration.frame_view import FrameView
 from recon4.registration.lost import LostLimits
 from recon4.registration.motion import FreeMotion, ImuMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
-from recon4.registration.scan_chain import ScanChain, body_points, times_located
+from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
@@ -183,15 +183,12 @@ def starting_velocity(
     span_ns = second.t_mid_ns - first.t_mid_ns
     if not 0 < span_ns <= MOVING_START.longest_ns:
         return None
-    found = SE3.identity()
-    for _ in range(times_located(rig)):
-        chain = ScanChain(settings)
-        chain.locate(body_points(first, rig, found), first.t_mid_ns)
-        chain.keep(chain.located, first.t_mid_ns)
-        located = chain.locate(body_points(second, rig, found), second.t_mid_ns)
-        if located is None or not chain.is_sure:
-            return None
-        found = located
+    chain = ScanChain(settings)
+    chain.locate(body_points(first, rig), first.t_mid_ns)
+    chain.keep(chain.located, first.t_mid_ns)
+    found = chain.locate(body_points(second, rig), second.t_mid_ns)
+    if found is None or not chain.is_sure:
+        return None
     velocity = found.t / (1e-9 * span_ns)
     return velocity if float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s else None
 
