@@ -101,6 +101,19 @@ def _nothing_waits_for_the_disk() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _libraries_stay_in_memory() -> Iterator[None]:
+    """This process keeps what it has read of libraries: finding it is an eighth of a short run.
+
+    Programs that tests start return it as ever.
+    """
+    from recon4.sandbox import freed_memory
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(freed_memory, "_unwritten", lambda: iter(()))
+        yield
+
+
 @pytest.fixture(scope="session")
 def data() -> Callable[[str], Path]:
     """``data("packets/mrpt")`` is that set of real recordings, or the test is skipped.
