@@ -23,6 +23,9 @@ _OTHERS = {
     b"LASF": "las",
     b"ASTM-E57": "e57",
     b"\x7fELF": "elf",
+    b"\x34\xcd\xb2\xa1": "pcap",
+    b"\xa1\xb2\xcd\x34": "pcap",
+    b"snoop\0\0\0": "snoop",
 }
 """First bytes of files that are no recordings -> what they are, as `looks-like` names it."""
 _PTX = re.compile(rb"\d+\s*\n\d+\s*\n(?:\S+[ \t]+\S+[ \t]+\S+\s*\n){4}")
@@ -33,6 +36,11 @@ _PACKED = frozenset({".gz", ".xz", ".zst", ".bz2", ".zip", ".7z"})
 def known_kinds() -> CodedText:
     """That, and which, kinds of recordings are known."""
     return CodedText("recordings-known", formats=CLOUD_FORMATS)
+
+
+def is_other(head: bytes) -> bool:
+    """Whether the first bytes are those of a file that is no recording."""
+    return head.startswith(tuple(_OTHERS))
 
 
 def unrecognized(name: str, head: bytes) -> CodedText:

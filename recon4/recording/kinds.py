@@ -25,6 +25,7 @@ from recon4.recording.formats.poses import pose_format
 from recon4.recording.frame_files.folders import natural
 from recon4.recording.gnss.files import is_gnss_file
 from recon4.recording.kind_problems import (
+    is_other,
     known_kinds,
     none_inside,
     several_kinds,
@@ -182,7 +183,8 @@ def _file_kind(path: Path) -> RecordingKind:
     for wanted, kind in _KIND_OF_COLUMNS.items():
         if wanted <= columns:
             return kind
-    for reads, kind in _BY_LINES:
+    # Archives and captures of others may have such lines inside.
+    for reads, kind in () if is_other(head) else _BY_LINES:
         if reads(path):
             return kind
     raise UnknownFormat(unrecognized(path.name, head))

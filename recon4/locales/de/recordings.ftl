@@ -178,6 +178,8 @@ word-looks-pdf = ein PDF-Dokument
 word-looks-las = eine Punktwolke im Format LAS/LAZ: eine fertige Karte, keine Aufzeichnung
 word-looks-e57 = eine Punktwolke im Format E57: ein fertiger Scan, keine Aufzeichnung
 word-looks-elf = ein Programm
+word-looks-pcap = ein Mitschnitt einer veränderten libpcap: zuerst umwandeln (editcap -F pcapng)
+word-looks-snoop = ein Mitschnitt von snoop: zuerst umwandeln (editcap -F pcapng)
 
 ## What is known of a count besides
 

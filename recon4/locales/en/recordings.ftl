@@ -178,6 +178,8 @@ word-looks-pdf = a PDF document
 word-looks-las = a LAS/LAZ point cloud: a finished map, not a recording
 word-looks-e57 = an E57 point cloud: a finished scan, not a recording
 word-looks-elf = a program
+word-looks-pcap = a capture of a patched libpcap: convert it first (editcap -F pcapng)
+word-looks-snoop = a capture of snoop: convert it first (editcap -F pcapng)
 
 ## What is known of a count besides
 

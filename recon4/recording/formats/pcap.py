@@ -34,8 +34,11 @@ _CLASSIC = {
 """First four bytes -> byte order and timestamp unit [ns]."""
 _ETHERTYPE_AT = {1: 12, 113: 14, 276: 0}
 """Link type (Ethernet, Linux cooked 1 and 2) -> offset of the ethertype in a packet."""
-_IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 228: 0, 0: 4, 108: 4}
-"""Link type -> offset of the IP header; a link type without ethertype carries IP only."""
+_IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 12: 0, 14: 0, 228: 0, 0: 4, 108: 4}
+"""Link type -> offset of the IP header; a link type without ethertype carries IP only. Raw IP is
+101, and 12 or 14 as some systems write it."""
+_TAGS = (0x8100, 0x88A8, 0x9100)
+"""Ethertypes of VLAN tags: IEEE 802.1Q, 802.1ad, and that of older switches."""
 _LINK_TYPES = np.array(sorted(_IP_AT))
 _IP_STARTS = np.array([_IP_AT[link] for link in sorted(_IP_AT)])
 _ETHERTYPES = np.array([_ETHERTYPE_AT.get(link, -1) for link in sorted(_IP_AT)])
@@ -125,7 +128,8 @@ def _classic(
     header = file.read(20)
     if len(header) < 20:
         raise EmptyRecording(CodedText("pcap-header-cut", name=name))
-    link_type = struct.unpack(f"{order}I", header[16:])[0] & 0x0FFF_FFFF
+    # Above the 16 bits: how long the checksums of frames are.
+    link_type = struct.unpack(f"{order}I", header[16:])[0] & 0xFFFF
     _require_link_type(link_type, name)
     rest, at = b"", 24
     while chunk := file.read(_CHUNK):
@@ -296,8 +300,8 @@ def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.int64]]
     plain = _ETHERTYPES[kind] < 0
     by_version = np.where(_byte(records, at) >> 4 == 6, 0x86DD, 0x0800)
     ethertype = np.where(plain, by_version, _word(records, records.start + _ETHERTYPES[kind]))
-    for _ in range(2):
-        tagged = ~plain & ((ethertype == 0x8100) | (ethertype == 0x88A8))
+    for _ in _TAGS:  # as many behind each other, at most
+        tagged = ~plain & np.isin(ethertype, _TAGS)
         ethertype = np.where(tagged, _word(records, at + 2), ethertype)
         at = at + 4 * tagged
     return at, np.where(known, ethertype, -1)

@@ -123,6 +123,9 @@ def test_the_same_input_gives_the_same_bytes(pcap, tmp_path):
 
 # -- what is wrong
 
+GGA = b"$GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.7,250.1,M,44.0,M,1.0,0001*7D\r\n"
+"""A position as it lies in packets of a Velodyne."""
+
 
 @pytest.mark.parametrize(
     ("name", "content", "error", "message"),
@@ -130,6 +133,8 @@ def test_the_same_input_gives_the_same_bytes(pcap, tmp_path):
         ("a.pcap", b"", EmptyRecording, "the file is empty"),
         ("a.pcap", b"\xff\xd8\xff\xe0 photo", UnknownFormat, "looks like a JPEG image"),
         ("a.ptx", b"2\n3\n" + b"1 0 0\n" * 4, UnknownFormat, "looks like PTX scans"),
+        ("a.zip", b"PK\x03\x04\xb2\xa1" + GGA * 9, UnknownFormat, "a zip archive: unpack it first"),
+        ("a.pcap", b"\x34\xcd\xb2\xa1" + GGA * 9, UnknownFormat, "a patched libpcap: convert it"),
         ("a.bag", b"PK\x03\x04 archive", UnknownFormat, "a zip archive: unpack it first"),
         ("a.txt", b"hello", UnknownFormat, "known: packets of LiDARs .pcap., .*, rosbag1, rosbag2"),
         ("a.las", b"LASF\x00\x00", UnknownFormat, "a LAS/LAZ point cloud"),

@@ -77,12 +77,18 @@ def test_both_byte_orders_and_both_units_of_time_are_read(
         (1, ethernet(udp(), tags=b"\x81\x00\x00\x05")),
         (1, ethernet(udp(), tags=b"\x88\xa8\x00\x05\x81\x00\x00\x06")),
         (1, ethernet(udp(options=bytes(8)))),
+        (1, ethernet(udp(), tags=b"\x91\x00\x00\x05" + b"\x81\x00\x00\x06" * 2)),
+        (1 | 0x2400_0000, ethernet(udp()) + b"csum"),
         (101, udp()),
+        (12, udp()),
         (0, struct.pack("<I", 2) + udp()),
         (113, bytes(14) + b"\x08\x00" + udp()),
         (276, b"\x08\x00" + bytes(18) + udp()),
     ],
-    ids=["ethernet", "vlan", "two vlans", "ip options", "raw ip", "loopback", "cooked", "cooked 2"],
+    ids=[
+        *("ethernet", "vlan", "two vlans", "ip options", "three vlans", "checksum", "raw ip"),
+        *("raw ip of BSD", "loopback", "cooked", "cooked 2"),
+    ],
 )
 def test_a_datagram_is_found_behind_every_kind_of_header(tmp_path, link_type, packet):
     path = written(tmp_path, classic([packet], link_type=link_type))
