@@ -55,11 +55,13 @@ def test_a_dragged_section_is_looked_at_beside_the_panel_and_again_after_the_sli
     expect(page).to_have_url(re.compile("section="))
 
     assert fills(page) > 0.9
+    page.get_by_label("Color by").select_option("height")
     looked_at = page.evaluate("recon4Map.camera()")
     page.get_by_role("link", name="Open as a slice").click()
     page.get_by_role("link", name="Show in 3-D").click()
     expect(page.locator("#overlay line.clip")).to_have_count(1)
 
+    expect(page.get_by_label("Color by")).to_have_value("height")
     assert fills(page) > 0.9
     again = page.evaluate("recon4Map.camera()")
     assert [again["yaw"], again["pitch"]] == pytest.approx(

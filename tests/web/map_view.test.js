@@ -195,6 +195,17 @@ test("a name cannot become a formula in a table", () => {
 
 // -- the slices
 
+test("a map is shown as it was left to look at its section as a slice, else with the plane", () => {
+  const left = "color=height&section=1,2,5,4.5,0.2&camera=1,2,3,4,5,6,0&layers=walk";
+  const slice = { kind: "vertical", z: 0, a: [1, 2], b: [5, 4.5], t: 0.2 };
+  assert.deepEqual(parse(mapQuery(slice, left)), parse(left));
+  const other = parse(mapQuery({ ...slice, t: 0.1 }, left));
+  assert.deepEqual([other.camera, other.color, other.layers], [null, "height", ["walk"]]);
+  assert.equal(other.clip.section.thickness, 0.1);
+  const level = parse(mapQuery({ ...slice, kind: "horizontal", z: 1 }, left));
+  assert.deepEqual([level.clip.section, level.clip.heights], [null, [0.9, 1.1]]);
+});
+
 test("the plane of a slice is shown on the map", () => {
   const { clip } = parse(mapQuery({ kind: "vertical", z: 0, a: [1, 2], b: [5, 4.5], t: 0.2 }));
   assert.deepEqual(clip.section, { a: [1, 2], b: [5, 4.5], thickness: 0.2 });

@@ -1,6 +1,6 @@
 // The page of the map: the delivered points in 3-D. The address of the page is the state.
 
-import { idHere } from "../shared/address.js";
+import { idHere, leaveMap } from "../shared/address.js";
 import {
   isGuest,
   pointReader,
@@ -366,6 +366,7 @@ async function begin() {
   if (takeNews()) page.reading = t("new-map-shown");
   if (!page.guest) followJobs(byId("news"));
   draw();
+  addEventListener("pagehide", () => leaveMap(id, format(page.state)));
   act.toMap();
   await run.canvas.tiles.readSample(storedOf(shown.colorShown()));
   const lists = page.guest

@@ -45,6 +45,15 @@ export const kept = (/** @type {string} */ name) => localStorage.getItem(keyOf(n
  */
 export const keep = (name, text) => localStorage.setItem(keyOf(name), text);
 
+/** The state in which the map of a project was last left in this tab, as the query of its page. */
+export const leftMap = (/** @type {string} */ id) =>
+  sessionStorage.getItem(keyOf(`map ${id}`)) ?? "";
+/**
+ * @param {string} id
+ * @param {string} query
+ */
+export const leaveMap = (id, query) => sessionStorage.setItem(keyOf(`map ${id}`), query);
+
 const YEAR_S = 31_536_000;
 
 /**

@@ -1,6 +1,6 @@
 // What the page of slices shows, and how it is drawn; each part from the state of the page.
 
-import { idHere } from "../shared/address.js";
+import { idHere, leftMap } from "../shared/address.js";
 import { mapUrl } from "../shared/api.js";
 import { approvalFact } from "../shared/approval_lines.js";
 import { byId, html, nothing, render, targetOf } from "../shared/dom.js";
@@ -203,5 +203,5 @@ function facing({ position, points, surface }, { strays, frame, approval }) {
         : nothing
     }
     <span class="frame">${frameText(frame)}</span>${approvalFact(approval)}
-    <a href=${mapUrl(idHere()) + mapQuery(page.state)}>${t("show-in-3d")}</a>`;
+    <a href=${mapUrl(idHere()) + mapQuery(page.state, leftMap(idHere()))}>${t("show-in-3d")}</a>`;
 }
