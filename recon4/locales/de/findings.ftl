@@ -416,7 +416,10 @@ LOOP-RESIDUAL = Restfehler der Schleifenschlüsse
     .detection = Das 95. Perzentil der Restfehler angenommener Schleifenschlüsse liegt über 10 cm.
 
 LOOPS-AGAINST-GNSS = Schleifenschlüsse gegen GNSS
-    .text1 = Automatisch verworfen: { $count } verifizierte Schleifenschlüsse widersprechen den GNSS-Positionen.
+    .text1 = { $count ->
+        [one] Automatisch verworfen: ein verifizierter Schleifenschluss widerspricht den GNSS-Positionen.
+       *[other] Automatisch verworfen: { $count } verifizierte Schleifenschlüsse widersprechen den GNSS-Positionen.
+    }
     .meaning = Orte sehen gleich aus, oder GNSS ist dort falsch.
     .detection = Die robuste Ausgleichung mit GNSS-Positionen verwirft sie.
 
@@ -427,7 +430,10 @@ PLACE-AMBIGUOUS = Ort sieht aus wie ein anderer
     .detection = Paare passen bei einer Pose, die Drift allein nicht erklärt, oder bei zwei Posen.
 
 CHAIN-BROKEN = Odometriekanten verworfen
-    .text1 = { $edges } Odometriekanten wurden verworfen: die Trajektorie kann dort unstetig sein.
+    .text1 = { $edges ->
+        [one] Eine Odometriekante wurde verworfen: die Trajektorie kann dort unstetig sein.
+       *[other] { $edges } Odometriekanten wurden verworfen: die Trajektorie kann dort unstetig sein.
+    }
     .meaning = Die Kette der Multiframes widerspricht dem Rest des Graphen.
     .detection = Kanten zwischen aufeinanderfolgenden Knoten sind nicht im ausgeglichenen Graphen.
 
@@ -437,18 +443,27 @@ CORRECTION = Korrektur durch den Graphen
     .detection = Odometrie und endgültige Trajektorie, an der ersten Pose eingepasst.
 
 REVIEW-CONFLICT = Entscheidung widerspricht dem Graphen
-    .text1 = { $count } angenommene Schleifenschlüsse passen nicht in den Graphen: { $pairs }.
+    .text1 = { $count ->
+        [one] Ein angenommener Schleifenschluss passt nicht in den Graphen
+       *[other] { $count } angenommene Schleifenschlüsse passen nicht in den Graphen
+    }: { $pairs }.
     .remedy = Sie in der Prüfung noch einmal ansehen.
     .meaning = Ein Mensch hat angenommen, was die anderen Kanten widerlegen.
     .detection = Ihr Restfehler nach der Ausgleichung liegt über der Grenze der Verifikation.
 
 REVIEW-WITHOUT-EFFECT = Entscheidung ohne Wirkung
-    .text1 = { $count } Entscheidungen betreffen Paare, die nicht mehr im Graphen sind: { $pairs }.
+    .text1 = { $count ->
+        [one] Eine Entscheidung betrifft ein Paar, das nicht mehr im Graphen ist
+       *[other] { $count } Entscheidungen betreffen Paare, die nicht mehr im Graphen sind
+    }: { $pairs }.
     .meaning = Die Karte wurde neu gerechnet, und diese Paare wurden nicht registriert.
     .detection = Das Paar einer Entscheidung ist nicht unter den Kanten.
 
 REVIEW-OUTDATED = Entscheidung über eine frühere Messung
-    .text1 = { $count } Entscheidungen betreffen Paare, deren Messung sich geändert hat: { $pairs }.
+    .text1 = { $count ->
+        [one] Eine Entscheidung betrifft ein Paar, dessen Messung sich geändert hat
+       *[other] { $count } Entscheidungen betreffen Paare, deren Messung sich geändert hat
+    }: { $pairs }.
     .remedy = Sie in der Prüfung noch einmal ansehen.
     .meaning = Der Prüfer sah eine andere Registrierung dieses Paars.
     .detection = Die Pose der Kante weicht von der in der Entscheidung ab.

@@ -399,7 +399,10 @@ LOOP-RESIDUAL = Residual of loop closures
     .detection = The 95th percentile of the residuals of accepted loop closures is above 10 cm.
 
 LOOPS-AGAINST-GNSS = Loop closures against GNSS
-    .text1 = Rejected automatically: { $count } verified loop closures contradict the GNSS priors.
+    .text1 = { $count ->
+        [one] Rejected automatically: a verified loop closure contradicts the GNSS priors.
+       *[other] Rejected automatically: { $count } verified loop closures contradict the GNSS priors.
+    }
     .meaning = Places look alike, or GNSS is wrong there.
     .detection = The robust solve with GNSS priors rejects them.
 
@@ -410,7 +413,10 @@ PLACE-AMBIGUOUS = Place looks like another
     .detection = Pairs fit at a pose that drift alone does not explain, or at two poses.
 
 CHAIN-BROKEN = Odometry edges rejected
-    .text1 = { $edges } odometry edges were rejected: the trajectory may be discontinuous there.
+    .text1 = { $edges ->
+        [one] One odometry edge was rejected: the trajectory may be discontinuous there.
+       *[other] { $edges } odometry edges were rejected: the trajectory may be discontinuous there.
+    }
     .meaning = The chain of multiframes contradicts the rest of the graph.
     .detection = Edges between successive nodes are not in the solved graph.
 
@@ -420,18 +426,27 @@ CORRECTION = Correction by the graph
     .detection = Odometry and final trajectory, aligned at the first pose.
 
 REVIEW-CONFLICT = Decision conflicts with the graph
-    .text1 = { $count } accepted loop closures do not fit the graph: { $pairs }.
+    .text1 = { $count ->
+        [one] An accepted loop closure does not fit the graph
+       *[other] { $count } accepted loop closures do not fit the graph
+    }: { $pairs }.
     .remedy = Look at them again in the review.
     .meaning = A person accepted what the other edges contradict.
     .detection = Their residual after the solve is beyond the limit of verification.
 
 REVIEW-WITHOUT-EFFECT = Decision without effect
-    .text1 = { $count } decisions are about pairs that are no longer in the graph: { $pairs }.
+    .text1 = { $count ->
+        [one] A decision is about a pair that is no longer in the graph
+       *[other] { $count } decisions are about pairs that are no longer in the graph
+    }: { $pairs }.
     .meaning = The map was made again, and these pairs were not registered.
     .detection = The pair of a decision is not among the edges.
 
 REVIEW-OUTDATED = Decision about an earlier measurement
-    .text1 = { $count } decisions are about pairs whose measurement has changed: { $pairs }.
+    .text1 = { $count ->
+        [one] A decision is about a pair whose measurement has changed
+       *[other] { $count } decisions are about pairs whose measurement has changed
+    }: { $pairs }.
     .remedy = Look at them again in the review.
     .meaning = The reviewer saw another registration of this pair.
     .detection = The pose of the edge differs from the one in the decision.
