@@ -129,6 +129,21 @@ def test_signing_out_shows_the_login_and_clears_the_session(server, page):
 
 
 @looks("desktop dark")
+def test_who_is_signed_out_while_a_page_is_open_reads_why_and_goes_on_there(server, page):
+    sign_in(page, server, "rita", "/projects/office/review/")
+    expect(page.locator(".account")).to_contain_text("rita")
+
+    page.context.clear_cookies()  # as when a role was changed: all sessions of the person ended
+
+    expect(page.get_by_text("Your session has ended")).to_be_visible()
+    expect(page.get_by_label("Name")).to_have_value("rita")
+    expect(page.get_by_label("Password", exact=True)).to_be_focused()
+    page.keyboard.type(PASSWORD)
+    page.keyboard.press("Enter")
+    page.wait_for_url(f"{server.url}/projects/office/review/")
+
+
+@looks("desktop dark")
 def test_a_hostile_link_to_the_login_stays_on_this_server(server, page):
     page.goto(f"{server.url}/login#next=//evil.example/x")
     page.get_by_label("Name").fill("vera")

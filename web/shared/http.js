@@ -123,7 +123,8 @@ async function leaveForLogin() {
   if (me && isGuest(me)) return location.assign(GUEST_ENDED); // a guest has no password
   // A phone may have no password; the pairing page offers both.
   const paired = location.pathname === LIVE_URL;
-  const login = at(`/login#next=${encodeURIComponent(pathHere())}`);
+  const ended = me ? `&ended=${name(me.name)}` : "";
+  const login = at(`/login#next=${name(pathHere())}${ended}`);
   location.assign(paired ? at("/pair#again") : login);
 }
 
