@@ -193,9 +193,9 @@ class SensorClock:
         expected = t_arrival_ns + offset
         t_sensor = nearest_hour(self._continued(t_us, expected), expected)
         deviation = t_sensor - expected
-        valid = np.abs(deviation) <= CLOCKS.jump_ns
-        if self._run:  # until the jump of its clock is confirmed
-            valid &= np.abs(deviation) <= CLOCKS.step_ns
+        off_ns = np.minimum(np.abs(deviation), np.abs(deviation - self._early_ns()))
+        # Less until the jump of its clock is confirmed.
+        valid = off_ns <= (CLOCKS.step_ns if self._run else CLOCKS.jump_ns)
         return t_sensor + self._shift(t_sensor), valid
 
     def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:

@@ -197,3 +197,13 @@ def test_a_sensor_that_is_set_while_its_packets_come_late_goes_on(jump_s):
     assert kept.sum() == len(kept) - 7
     assert np.abs(out - t_ns)[kept].max() < 15_000_000
     assert warned(report, K.CLOCK_JUMP, whose="sensor")
+
+
+def test_packets_of_the_imu_are_as_late_as_those_of_the_points():
+    _, arrival, stamps = packets(8000)
+    late = falling_behind(arrival, 4.0)
+    row = int(np.argmax(late - arrival))
+    clock: SensorClock = a_clock()
+    clock.push(late[:row], stamps[:row])
+
+    assert clock.at(late[row - 40 : row + 40], stamps[row - 40 : row + 40])[1].all()
