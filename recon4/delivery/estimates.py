@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -38,8 +40,22 @@ def estimate_export(
         return ExportEstimate(points=0, bytes=size, is_most=True)
     map_ = map_to_export(artifacts, None, options)
     points = expected_points(map_.tiles, map_.output, map_.selection)
-    each = (options.thin_m and kind.thinned_bytes) or kind.point_bytes
-    return ExportEstimate(points=points, bytes=round(points * each), is_most=False)
+    every = replace(map_.selection, thin_m=0.0)
+    of_points = expected_points(map_.tiles, map_.output, every) if options.thin_m else points
+    return ExportEstimate(
+        points=points,
+        bytes=round(points * _point_bytes(kind, points, of_points)),
+        is_most=False,
+        sorted_bytes=round(points * kind.sorted_bytes),
+    )
+
+
+def _point_bytes(kind: ExportKind, points: int, of_points: int) -> float:
+    """Bytes of a point of a map of which thinning leaves some: the fewer, the less alike."""
+    if not (kind.thinned_bytes and points):
+        return kind.point_bytes
+    part = min(1.0, math.log(max(1.0, of_points / points), 32.0))
+    return kind.point_bytes + part * (kind.thinned_bytes - kind.point_bytes)
 
 
 def _raster_bytes(artifacts: Mapping[str, Path], kind: ExportKind, options: ExportOptions) -> int:

@@ -37,7 +37,9 @@ class ExportKind:
     point_bytes: float = 0.0
     """Usual bytes of a point of a whole map; 0 = it has none. Measured: docs/how-to/deliver.md."""
     thinned_bytes: float = 0.0
-    """The same of a map that is thinned to 50 mm: neighbors are less alike. 0 = as many."""
+    """The same where thinning leaves one point of 32: neighbors are less alike. 0 = as many."""
+    sorted_bytes: float = 0.0
+    """Bytes of a point in the temporary files that sort the points; 0 = there are none."""
 
     @property
     def ending(self) -> str:
@@ -102,6 +104,8 @@ class ExportEstimate:
     """Size of the file; 0 = not known: drawings and tables are small."""
     is_most: bool
     """Whether it will be smaller: images are compressed."""
+    sorted_bytes: int = 0
+    """Size of temporary files beside it."""
 
 
 def _kind(name: str, title: str, programs: str, **more: Any) -> ExportKind:
@@ -114,18 +118,18 @@ KINDS: dict[str, ExportKind] = {
     kind.name: kind
     for kind in (
         _kind("map.copc.laz", "COPC", "QGIS, web viewers", group=_CLOUDS, takes=_CLASSED,
-              point_bytes=10.5, thinned_bytes=15.0),
+              point_bytes=10.5, thinned_bytes=15.6, sorted_bytes=53.0),
         _kind("map.laz", "LAZ", "CloudCompare, PDAL", group=_CLOUDS, takes=_CLASSED,
-              point_bytes=9.9, thinned_bytes=14.4),
+              point_bytes=9.9, thinned_bytes=15.0),
         _kind("map.e57", "E57, scans with poses", "Recap, Cyclone, CloudCompare", group=_CLOUDS,
-              takes=_POINTS, point_bytes=16.2),
+              takes=_POINTS, point_bytes=16.2, sorted_bytes=16.0),
         _kind("map.ply", "PLY, all fields and normals", "MeshLab, Open3D", group=_CLOUDS,
               takes=_CLASSED, point_bytes=66.0),
         _kind("map.pcd", "PCD", "PCL, ROS", group=_CLOUDS, takes=_CLASSED, point_bytes=43.0),
         _kind("map.xyz", "XYZ, lines of text", "any program", group=_CLOUDS, takes=_CLASSED,
               point_bytes=29.5),
         _kind("map.ptx", "PTX, scans with poses as text", "Cyclone, CloudCompare", group=_CLOUDS,
-              takes=_POINTS, point_bytes=36.0),
+              takes=_POINTS, point_bytes=36.0, sorted_bytes=16.0),
         _kind("plan.dxf", "Floor plans, DXF", "CAD", group=_DRAWINGS, takes=_PLAN),
         _kind("plan.geojson", "Floor plans, GeoJSON", "GIS", group=_DRAWINGS, takes=_PLAN),
         _kind("orthophoto.tif", "Orthophoto of a storey, GeoTIFF", "GIS, CAD", group=_DRAWINGS,

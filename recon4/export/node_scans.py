@@ -23,8 +23,8 @@ from recon4.locales.coded import CodedText
 from recon4.model.trajectory import Times
 from recon4.progress import Progress
 
-SCAN_ROW = np.dtype([("cartesianX", "<f8"), ("cartesianY", "<f8"), ("cartesianZ", "<f8"),
-                     ("intensity", "<f8")])  # fmt: skip
+SCAN_ROW = np.dtype([("cartesianX", "<f4"), ("cartesianY", "<f4"), ("cartesianZ", "<f4"),
+                     ("intensity", "<f4")])  # fmt: skip
 """A point of a scan: place relative to its pose [m], and intensity."""
 
 
@@ -89,8 +89,8 @@ def _sort_by_scan(
         scan = np.maximum(np.searchsorted(scans.frame_ids, frames, side="right") - 1, 0)
         p_body = np.einsum("nji,nj->ni", R_map_body[scan], block.xyz - origins[scan])
         rows = np.zeros(len(scan), SCAN_ROW)
-        rows["cartesianX"], rows["cartesianY"], rows["cartesianZ"] = p_body.T.astype(np.float32)
-        rows["intensity"] = block.columns[source.intensity].astype(np.float32)
+        rows["cartesianX"], rows["cartesianY"], rows["cartesianZ"] = p_body.T
+        rows["intensity"] = block.columns[source.intensity]
         for number, part in _by_scan(scan):
             with (folder / str(number)).open("ab") as file:
                 file.write(np.ascontiguousarray(rows[part]).data)

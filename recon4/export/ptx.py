@@ -71,10 +71,12 @@ def _pose(R_file_scan: Array, origin: Array) -> str:
 
 def _numbers(rows: NDArray[Any]) -> Array:
     """The numbers of a file, rounded as it writes them, (N, 4)."""
-    xyz = [rows[name] * PTX.steps for name in ("cartesianX", "cartesianY", "cartesianZ")]
-    ratio = np.clip(rows["intensity"] / PTX.brightest, 0.0, 1.0) * PTX.intensity_steps
+    x, y, z, bright = (rows[name].astype(np.float64) for name in SCAN_ROW.names or ())
+    ratio = np.clip(bright / PTX.brightest, 0.0, 1.0) * PTX.intensity_steps
     steps = [PTX.steps] * 3 + [PTX.intensity_steps]
-    return np.asarray(np.rint(np.column_stack([*xyz, ratio])) / steps + 0.0)  # no negative zeros
+    return np.asarray(
+        np.rint(np.column_stack([x * PTX.steps, y * PTX.steps, z * PTX.steps, ratio])) / steps + 0.0
+    )  # no negative zeros
 
 
 def _check(path: Path, scans: list[tuple[str, Path]]) -> None:

@@ -2,17 +2,20 @@
 
 import hashlib
 import time
+from collections import namedtuple
 
 import laspy
 import numpy as np
 import pytest
 
+from recon4_app.exports import routes
 from recon4_app.exports.tuning import KEPT_EXPORTS
 from recon4_app.jobs.model import JobKind
 from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread
 
 BASE = "/api/projects/office/exports"
+DiskUsage = namedtuple("DiskUsage", "total used free")
 
 
 @pytest.fixture(scope="module")
@@ -91,6 +94,33 @@ def test_what_cannot_be_made_is_refused_before_it_waits(server, ask, says):
     answer = server.post(BASE, json=ask)
 
     assert (answer.status_code, says in answer.text) == (422, True), answer.text
+
+
+@pytest.mark.parametrize(
+    ("file", "draft", "beside"),
+    [
+        ("map.laz", True, 0.0),
+        ("map.laz", False, 1.0),
+        ("map.e57", True, 16.0 / 16.2),
+        ("map.copc.laz", False, 53.0 / 10.5),
+    ],
+)
+def test_an_export_needs_room_for_its_file_and_what_lies_beside_it(
+    server, monkeypatch, file, draft, beside
+):
+    ask = {"file": file, "options": {"draft": draft}}
+    size = server.post(f"{BASE}/estimate", json=ask).json()["bytes"]
+    reserve = server.app.state.parts.settings.free_disk_reserve_bytes
+    room = DiskUsage(total=1 << 60, used=0, free=round(size * (1.0 + beside)) + reserve - 2)
+    monkeypatch.setattr(routes.shutil, "disk_usage", lambda _: room)
+
+    refused = server.post(BASE, json=ask)
+
+    assert (refused.status_code, refused.json()["code"]) == (507, "export-no-room")
+    monkeypatch.setattr(routes.shutil, "disk_usage", lambda _: room._replace(free=room.free + 4))
+    taken = server.post(BASE, json=ask)
+    assert taken.status_code == 201, taken.text
+    server.wait(taken.json()["id"], lambda view: view["job"]["finished"])
 
 
 def test_exports_are_no_jobs_of_the_project_and_hold_none_up(server, made):

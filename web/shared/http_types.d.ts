@@ -532,6 +532,7 @@ export interface ExportEstimate {
   points: number;
   bytes: number;
   is_most: boolean;
+  sorted_bytes: number;
 }
 
 export interface ExportKind {
@@ -542,6 +543,7 @@ export interface ExportKind {
   takes: Array<string>;
   point_bytes: number;
   thinned_bytes: number;
+  sorted_bytes: number;
 }
 
 export interface ExportOptions {

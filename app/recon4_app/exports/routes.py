@@ -105,7 +105,7 @@ async def order(
         row = _view(server, same, map_key, language=language_of(request))
         return JSONResponse(jsonable_encoder(row))
     found = await _estimate(project_id, new, server=server, caller=caller)
-    return await run_in_threadpool(_add, project_id, new, server, request=request, size=found.bytes)
+    return await run_in_threadpool(_add, project_id, new, server, request=request, expected=found)
 
 
 @router.post("/{export_id}/cancel", responses=REFUSALS, summary="Cancel an export")
@@ -159,12 +159,19 @@ async def _estimate(
 
 
 def _add(
-    project_id: str, new: NewExport, server: ServerParts, *, request: Request, size: int
+    project_id: str,
+    new: NewExport,
+    server: ServerParts,
+    *,
+    request: Request,
+    expected: ExportEstimate,
 ) -> ExportView:
     refuse_too_many(server)
-    server.slices.evidence(project_id, draft=new.options.draft)  # an approval that does not count
+    # Refuses an approval that does not count; one that counts is added to a copy of the file.
+    approved = server.slices.evidence(project_id, draft=new.options.draft) is not None
+    beside = max(expected.sorted_bytes, approved * expected.bytes)
     reserve = server.settings.free_disk_reserve_bytes
-    needed = KEPT_EXPORTS.room * size + reserve
+    needed = expected.bytes + beside + reserve
     free = shutil.disk_usage(server.settings.state).free
     if free < needed:
         raise NoRoom(

@@ -12,9 +12,6 @@ class KeptExportLimits(Struct, frozen=True, kw_only=True):
     """A file is kept this long, unless all exceed `max_bytes` [s]; its row is kept for ever."""
     max_bytes: int = 100 << 30
     """Of all files; the oldest are removed first."""
-    room: int = 4
-    """An export needs this many times the bytes of its file while it is made: sorted points, the
-    file, and a copy with the approval."""
     listed: int = 200
     """Newest rows on the page of a project."""
     estimate_limit_s: float = 60.0
