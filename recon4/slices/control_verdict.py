@@ -202,7 +202,7 @@ def _over(line: Requirement, say: Texts) -> str:
 def _outliers(rows: Sequence[Residual], say: Texts) -> str:
     """Points whose residual their σ does not explain."""
     tested = sum(row.sigmas is not None for row in rows)
-    found = [(row.id, row.across_m, row.sigmas or 0.0) for row in rows if row.outlier]
+    found = [(row.id, row.across_m or 0.0, row.sigmas or 0.0) for row in rows if row.outlier]
     if not tested:
         return say.part("control-outliers", "untested", {})
     if not found:

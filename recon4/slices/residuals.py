@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -36,7 +36,7 @@ ROLES: tuple[Role, Role] = ("check", "control")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Residual:
-    """Residual of one point, map minus survey [m]; None = not measured."""
+    """Residual of one point, map minus survey [m]; None = not measured, or says nothing."""
 
     id: str
     role: Role
@@ -49,7 +49,7 @@ class Residual:
     """Length in space, of points measured in all directions."""
     directions: int
     """How many directions were measured, 1 to 3."""
-    across_m: float
+    across_m: float | None
     """Residual in the measured directions: its length, or its value across the one surface."""
     stated: ErrorEllipse | None
     """How well the map says it is known there; None = not stated."""
@@ -162,7 +162,9 @@ def residuals(
         )
         for p in found
     )
-    figures = tuple(_figures(role, rows, found, context=context) for role in ROLES)
+    if other := _other_system(rows, points, context.say):
+        rows, found = tuple(map(_without_figures, rows)), []
+    figures = tuple(_figures(role, rows, found, context=context) for role in ROLES if found)
     figures = tuple(one for one in figures if one.points)
     missing = tuple(p.id for p in points if p.id not in measured and p.id not in context.outdated)
     outdated = tuple(p.id for p in points if p.id not in measured and p.id in context.outdated)
@@ -174,7 +176,9 @@ def residuals(
         figures=figures,
         judged_by=judge.role if judge else None,
         passed=_all_hold(judge.requirements) if judge else None,
-        verdict=control_verdict(
+        verdict=ControlVerdict("bad", f"✕ {other}")
+        if other
+        else control_verdict(
             judge.role if judge else None,
             judge.requirements if judge else (),
             rows=rows,
@@ -182,7 +186,22 @@ def residuals(
             say=context.say,
         ),
         limits=context.limits.text(context.say),
-        hint=_hint(rows, points, context),
+        hint="" if other else _hint(rows, points, context),
+    )
+
+
+def _without_figures(row: Residual) -> Residual:
+    """A point that was measured, but whose residual says nothing."""
+    return replace(
+        row,
+        east_m=None,
+        north_m=None,
+        up_m=None,
+        d2_m=None,
+        d3_m=None,
+        across_m=None,
+        sigmas=None,
+        outlier=False,
     )
 
 
@@ -285,15 +304,21 @@ def _relative(full: Sequence[tuple[Residual, ControlPoint]]) -> float | None:
     return float(np.abs(found_m - true_m).max())
 
 
+def _other_system(rows: Sequence[Residual], points: Sequence[ControlPoint], say: Texts) -> str:
+    """Says that the points are farther from the map than from each other; empty = they are not."""
+    horizontal = _known(row.known_2d_m for row in rows)
+    xy_m = np.array([point.xyz_m[:2] for point in points])
+    off_m = min(horizontal, default=0.0)
+    apart_m = float(np.hypot(*np.ptp(xy_m, axis=0))) if len(points) else 0.0
+    if len(rows) < 2 or off_m <= max(apart_m, HEIGHT_HINTS.nearly_m):
+        return ""
+    return say("other-system-hint", off=off_m, apart=apart_m)
+
+
 def _hint(rows: Sequence[Residual], points: Sequence[ControlPoint], context: ControlContext) -> str:
     if not rows:
         return beside_map(points, context.map_heights_m, context.say)
     horizontal = _known(row.known_2d_m for row in rows)
-    xy_m = np.array([point.xyz_m[:2] for point in points])
-    off_m, apart_m = min(horizontal, default=0.0), float(np.hypot(*np.ptp(xy_m, axis=0)))
-    if len(rows) > 1 and off_m > apart_m:
-        values = {"off": off_m, "apart": apart_m}
-        return context.say("other-system-hint", **values)
     return common_height(_known(row.up_m for row in rows), horizontal, context.say)
 
 

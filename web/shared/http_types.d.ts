@@ -1429,7 +1429,7 @@ export interface Residual {
   d2_m: number | null;
   d3_m: number | null;
   directions: number;
-  across_m: number;
+  across_m: number | null;
   stated: ErrorEllipse | null;
   sigmas: number | null;
   survey: ErrorEllipse | null;
