@@ -9,7 +9,6 @@ from __future__ import annotations
 import atexit
 import faulthandler
 import os
-import select
 import shutil
 import sys
 from collections.abc import Callable, Iterator
@@ -62,18 +61,11 @@ def _confine(project: Path, folder: Path) -> None:
 
 
 def _lines() -> Iterator[bytes]:
-    """Lines of the input; the end of it, or nothing for a while, ends them."""
-    held = b""
-    while True:
-        while b"\n" not in held:
-            if not select.select([0], [], [], ORDERS.idle_s)[0]:
-                return
-            more = os.read(0, ORDERS.reply_bytes)
-            if not more:
-                return
-            held += more
-        line, _, held = held.partition(b"\n")
-        yield line
+    """Lines of the input until its end."""
+    begun = b""
+    while more := os.read(0, ORDERS.reply_bytes):
+        *lines, begun = (begun + more).split(b"\n")
+        yield from lines
 
 
 def _made(line: bytes, folder: Path) -> PartReply:

@@ -110,6 +110,7 @@ class _Maker:
     def __init__(self, project: Path, folder: Path) -> None:
         self.serves = project, folder
         self._noise, self._is_mute = b"", False
+        self.expiry: threading.Timer | None = None
         read, self._lifeline = os.pipe()
         command = [sys.executable, "-P", "-m", "recon4.orders.maker", str(read)]
         try:
@@ -200,6 +201,8 @@ def _taken(project: Path, folder: Path) -> _Maker:
         waiting, _idle[:] = list(_idle), []
     found = None
     for maker in waiting:
+        if maker.expiry is not None:
+            maker.expiry.cancel()
         if found is None and maker.serves == (project, folder) and maker.alive:
             found = maker
         elif maker.serves == (project, folder) and maker.alive:
@@ -215,6 +218,21 @@ def _give_back(maker: _Maker) -> None:
         return
     with _lock:
         _idle.append(maker)
+        maker.expiry = threading.Timer(ORDERS.idle_s, _end_unused, [maker])
+        maker.expiry.daemon = True
+        maker.expiry.start()
+
+
+def _end_unused(maker: _Maker) -> None:
+    """End a maker that waits; one that was taken for a part is not in the list.
+
+    It does not end itself: it could do so when it has just been taken.
+    """
+    with _lock:
+        if maker not in _idle:
+            return
+        _idle.remove(maker)
+    maker.end()
 
 
 @atexit.register

@@ -27,7 +27,7 @@ class OrderLimits(Struct, frozen=True, kw_only=True):
     within_s: float = 1800.0
     """Longest time for one part; a maker that takes longer is ended [s]."""
     idle_s: float = 60.0
-    """A maker without orders ends after this long [s]."""
+    """A maker without orders is ended after this long [s]."""
     looks_every_s: float = 1.0
     """Who waits looks this often whether it is to stop [s]."""
 

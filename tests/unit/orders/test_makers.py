@@ -141,6 +141,20 @@ def test_damaged_files_of_a_folder_are_a_failure_and_no_crash_of_the_worker(tmp_
     assert on_worker._idle[0].alive
 
 
+def test_a_maker_that_waits_too_long_is_ended_and_one_that_was_taken_is_not(tmp_path, monkeypatch):
+    (tmp_path / "artifacts" / "a").mkdir(parents=True)
+    make_part(task(tmp_path), quiet)
+    taken = on_worker._idle.pop()
+    on_worker._end_unused(taken)
+    assert taken.alive
+
+    monkeypatch.setattr(on_worker, "ORDERS", structs.replace(on_worker.ORDERS, idle_s=0.001))
+    on_worker._give_back(taken)
+    taken._process.wait(60.0)
+
+    assert on_worker._idle == []
+
+
 def test_what_a_maker_says_beside_its_reply_is_told_up_to_a_limit(tmp_path, monkeypatch):
     (tmp_path / "artifacts" / "a").mkdir(parents=True)
     allowed = on_worker.allowed_environment
