@@ -110,9 +110,14 @@ def read_control(
     found = read_point_table(data, name, choice=choice)
     rows, crs = _projected(found, crs)
     points: dict[str, ControlPoint] = {}
+    at_place: dict[tuple[float, float, float], str] = {}
+    has_names = "id" in found.preview.columns
     skipped = [*found.skipped]
     for row in rows:
-        if row.name in points:
+        before = row.name if has_names else at_place.setdefault(row.xyz_m, row.name)
+        if before != row.name:
+            skipped.append(f"line {row.line}: point {before!r} is at this place already")
+        elif row.name in points:
             skipped.append(f"line {row.line}: point {row.name[:40]!r} is there already")
         elif (role := plain_word(row.role)) not in ROLES:
             skipped.append(f"line {row.line}: expected control or check, got {row.role[:40]!r}")

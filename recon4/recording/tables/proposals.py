@@ -68,12 +68,14 @@ def columns_by_order(layout: TableLayout, *, purpose: Purpose) -> tuple[tuple[Me
     unused: tuple[Meaning, ...] = ("-",)
     plain: tuple[Meaning, ...] = ("x", "y", "z", *unused * rest)
     named: tuple[Meaning, ...] = ("id", "x", "y", "z", *unused * (rest - 1))
+    if purpose != "cloud" and all(_has_decimals(row[0]) for row in layout.rows):
+        named = _with_later_id(plain, layout)
     if layout.stray_head:
         columns = named if rest and (purpose != "cloud" or _is_id(layout)) else plain
         return columns, f"the line {layout.stray_head[:60]!r} does not name each column."
     if purpose != "cloud":
         # name, x, y, z, and the radius of a target or its role
-        if layout.width != 5:
+        if layout.width != 5 or named[0] != "id":
             return named, ""
         return (*named[:4], "radius" if is_number(layout.rows[0][4]) else "role"), ""
     if rest and _is_id(layout):
@@ -87,6 +89,20 @@ def with_id(columns: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
     """The columns with the first unused one as the names of the points."""
     at = columns.index("-") if "-" in columns else -1
     return tuple("id" if k == at else meaning for k, meaning in enumerate(columns))
+
+
+def _with_later_id(columns: tuple[Meaning, ...], layout: TableLayout) -> tuple[Meaning, ...]:
+    """x, y, z with the last column whose texts each stand for one place as names, if there is one.
+
+    So are lists of points in pictures, as of OpenDroneMap: x, y, z, pixel, picture, name.
+    """
+    places = [row[:3] for row in layout.rows]
+    for at in range(layout.width - 1, 2, -1):
+        names = [row[at] if at < len(row) else "" for row in layout.rows]
+        one_to_one = len({*names}) == len({*places}) == len({*zip(names, places, strict=True)})
+        if one_to_one and all(names) and not any(map(is_number, names)):
+            return (*columns[:at], "id", *columns[at + 1 :])
+    return columns
 
 
 def with_role(columns: tuple[Meaning, ...], layout: TableLayout) -> tuple[Meaning, ...]:
