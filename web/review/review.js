@@ -26,7 +26,7 @@ import { journalNews, showApproval, showEffect, showJournal, showPair } from "./
 import { keyOf } from "./captions.js";
 import { Draft } from "./drafts.js";
 import { PairLoader } from "./loader.js";
-import { askToSign } from "./signing.js";
+import { askToSign, shownMap } from "./signing.js";
 import { ReviewState } from "./state.js";
 import { Team } from "./team.js";
 import { drawTools, goesOn, listenToActions } from "./tools.js";
@@ -318,14 +318,13 @@ async function remake(/** @type {HTMLElement} */ error) {
   });
 }
 
-function approve() {
-  if (!state.server?.map) return;
-  const { seq: after_seq, graph, map } = state.server;
-  askToSign(map, state.effect?.conflicts.length ?? 0, async (why, confirmed) => {
-    update(await withPassword(() => approveMap(id, { why, confirmed, after_seq, graph })));
-    return true;
-  });
-}
+const signing = {
+  shown: () => shownMap(state),
+  read: async () => update(await readReview(id)),
+  sign: async (/** @type {import("../shared/http_types").Approve} */ approval) =>
+    update(await withPassword(() => approveMap(id, approval))),
+};
+const approve = () => askToSign(signing);
 
 // -- buttons and keys
 

@@ -2,13 +2,22 @@
 
 import { badge } from "../shared/badge.js";
 import { closeButton, openDialog } from "../shared/dialog.js";
-import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
+import { html, messagePlace, nothing, render, succeeds, within } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
 import { fixedFindingList } from "../shared/finding_list.js";
 import { isReason, verdictState } from "../shared/verdict.js";
 import { t } from "../shared/texts.js";
 
-/** @import {MapFacts} from "../shared/http_types" */
+/** @import {Approve, MapFacts} from "../shared/http_types" */
+
+/**
+ * What a signature would be about: the map as the page has shown it.
+ * @typedef {object} ShownMap
+ * @property {MapFacts} map
+ * @property {number} after_seq the last decision it was shown with
+ * @property {string} graph the graph it was shown with
+ * @property {number} conflicts
+ */
 
 /** What the signature is about: the verdict with its reasons, and the figures. */
 const about = (/** @type {MapFacts} */ map) =>
@@ -41,22 +50,34 @@ function reasonField({ reason_needed, min_reason_characters }, conflicts) {
   >`;
 }
 
+/** The map that a page shows; null = there is none. */
+export function shownMap(/** @type {import("./state.js").ReviewState} */ { server, effect }) {
+  if (!server?.map) return null;
+  const { seq: after_seq, graph, map } = server;
+  return { after_seq, graph, map, conflicts: effect?.conflicts.length ?? 0 };
+}
+
 /**
- * Asks for a reason and, if there are conflicts, for confirmation.
- * @param {MapFacts} map
- * @param {number} conflicts
- * @param {(why: string, confirmed: boolean) => Promise<boolean>} sign whether it is signed
+ * Asks for a reason and, if there are conflicts, for confirmation. After a refusal the map is read
+ * again: it may have been changed since it was shown.
+ * @param {object} page
+ * @param {() => ShownMap | null} page.shown
+ * @param {() => Promise<void>} page.read reads what the page shows again
+ * @param {(approval: Approve) => Promise<void>} page.sign
  */
-export function askToSign(map, conflicts, sign) {
+export function askToSign(page) {
+  const first = page.shown();
+  if (!first) return;
+  let shown = first;
   const dialog = openDialog(t("approve-map-title"), html`<form></form>`);
   dialog.classList.add("wide");
   const form = within(dialog, "form", HTMLFormElement);
-  const list = about(map);
   const why = () => within(form, "[name=why]", HTMLInputElement).value;
   const isConfirmed = () => form.querySelector("[type=checkbox]:checked") !== null;
-  const draw = ({ signing = false, allowed = false }) =>
+  const draw = ({ signing = false, allowed = false }) => {
+    const { map, conflicts } = shown;
     render(
-      html`${list}
+      html`${about(map)}
         <p>${t("signed-is")}</p>
         ${reasonField(map, conflicts)}
         ${
@@ -76,14 +97,25 @@ export function askToSign(map, conflicts, sign) {
         </div>`,
       form,
     );
-  const allow = () => draw({ allowed: isReason(why(), map) });
+  };
+  const allow = () => draw({ allowed: isReason(why(), shown.map) });
+  const signShown = async () => {
+    const { after_seq, graph } = shown;
+    try {
+      await page.sign({ why: why(), confirmed: isConfirmed(), after_seq, graph });
+    } catch (error) {
+      await page.read();
+      shown = page.shown() ?? shown;
+      throw error;
+    }
+  };
   form.addEventListener("input", allow);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     draw({ signing: true });
-    const done = await attempt(within(form, "p.error"), () => sign(why(), isConfirmed()));
+    const done = await succeeds(within(form, "p.error"), signShown);
     allow();
     if (done) dialog.close();
   });
-  draw({ allowed: isReason("", map) });
+  draw({ allowed: isReason("", shown.map) });
 }

@@ -24,6 +24,7 @@ def test_what_another_person_decides_about_ones_pair_can_be_decided_again(opened
     settled(page)
     page.keyboard.press("r")
     expect(page.locator("#said")).to_contain_text("Decided")
+    expect(page.locator("#signing")).to_contain_text("decisions are not in the map")  # stored
 
     for kind in (DecisionKind.SECOND, DecisionKind.ACCEPT):
         append(root, Decision(kind=kind, who="Eva", pair=selected(page)), seen_seq=1)
@@ -78,3 +79,21 @@ def test_what_was_typed_about_a_pair_stays_with_it(opened):
     rows.nth(0).click()
     expect(reason).to_have_value("glass on both sides")
     expect(comment).to_have_value("look at the door")
+
+
+@looks("desktop light")
+def test_a_map_that_was_changed_while_its_dialog_was_open_is_signed_once_it_is_shown(opened, root):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    page.get_by_role("button", name="Approve map…").click()
+    page.get_by_label("Remark").fill("compared with the plan")
+    comment = Decision(kind=DecisionKind.COMMENT, who="Eva", pair=selected(page), why="a door")
+    append(root, comment, seen_seq=0)
+
+    page.get_by_role("button", name="Sign").click()
+    expect(page.get_by_role("dialog")).to_contain_text("was changed since it was looked at")
+    expect(page.get_by_label("Remark")).to_have_value("compared with the plan")
+    page.get_by_role("button", name="Sign").click()
+
+    expect(page.locator("#signing")).to_contain_text("✓ Approved v1 · local · ")
