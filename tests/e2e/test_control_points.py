@@ -133,3 +133,19 @@ def test_two_tabs_measure_control_points_and_neither_overwrites_the_other(server
     expect(other.locator(".verdict")).not_to_contain_text("more not measured")
     expect(other.get_by_role("row", name=re.compile("^A "))).to_contain_text("-2.0")
     other.close()
+
+
+@looks("desktop light")
+def test_a_survey_that_is_being_read_is_named_until_it_is_shown(server, page):
+    held = []
+    page.route("**/control/preview", lambda route: held.append(route))
+    opened(page, server)
+
+    with page.expect_request("**/control/preview"):
+        choose_survey(page, b"ID;X;Y;Z\nA;0,02;5;1,5\n")
+    read = page.get_by_text("p.csv is being read")
+    expect(read).to_be_visible()
+    held[0].continue_()
+
+    expect(page.get_by_text("is 0.02 the easting")).to_be_visible()
+    expect(read).to_have_count(0)

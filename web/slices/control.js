@@ -112,8 +112,14 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
    * @param {Unit | null} [unit]
    */
   async function look(file, columns = [], unit = null) {
-    const asked = { name: file.name, base64: await base64Of(file), columns, unit };
-    set({ preview: { file, found: await previewControl(id, asked), unit } });
+    const { status } = places();
+    say(status, t("being-read", { name: file.name }));
+    try {
+      const asked = { name: file.name, base64: await base64Of(file), columns, unit };
+      set({ preview: { file, found: await previewControl(id, asked), unit } });
+    } finally {
+      say(status, "");
+    }
   }
 
   /** The first rows of a survey file, its columns and its points. */
