@@ -109,33 +109,46 @@ def read_control(
         raise CorruptFile(CodedText("control-file-large", name=name, limit=limit, got=len(data)))
     found = read_point_table(data, name, choice=choice)
     rows, crs = _projected(found, crs)
-    points: dict[str, ControlPoint] = {}
-    at_place: dict[tuple[float, float, float], str] = {}
-    has_names = "id" in found.preview.columns
-    skipped = [*found.skipped]
-    for row in rows:
-        before = row.name if has_names else at_place.setdefault(row.xyz_m, row.name)
-        if before != row.name:
-            skipped.append(f"line {row.line}: point {before!r} is at this place already")
-        elif row.name in points:
-            skipped.append(f"line {row.line}: point {row.name[:40]!r} is there already")
-        elif (role := plain_word(row.role)) not in ROLES:
-            skipped.append(f"line {row.line}: expected control or check, got {row.role[:40]!r}")
-        elif len(points) >= CONTROL_FILES.max_points:
-            skipped.append(f"line {row.line}: more than {CONTROL_FILES.max_points} points")
-            break
-        else:
-            points[row.name] = ControlPoint(
-                row.name, row.xyz_m, ROLES[role], row.radius_m, row.covariance_m2
-            )
+    points, unused = _each_once(rows, has_names="id" in found.preview.columns)
+    skipped = [*found.skipped, *unused]
     if not points and not found.preview.question:
         first = skipped[0] if skipped else ""
         raise CorruptFile(CodedText("control-no-line", name=name, first=first))
     skipped.sort(key=lambda text: int(text.partition(":")[0].removeprefix("line ")))
     more = len(skipped) - CONTROL_FILES.max_skipped
     return ControlPreview(
-        points=tuple(points.values()),
+        points=points,
         table=found.preview,
         crs=crs,
         skipped=(*skipped[: CONTROL_FILES.max_skipped], *[f"{more} more lines"] * (more > 0)),
     )
+
+
+def _each_once(
+    rows: Sequence[TablePoint], *, has_names: bool
+) -> tuple[tuple[ControlPoint, ...], list[str]]:
+    """Points of a table, and its lines that are none, with the reason.
+
+    Args:
+        rows: Of the table.
+        has_names: Whether they have names; else rows at one place are one point.
+    """
+    points: dict[str, ControlPoint] = {}
+    at_place: dict[tuple[float, float, float], str] = {}
+    unused = []
+    for row in rows:
+        first = row.name if has_names else at_place.setdefault(row.xyz_m, row.name)
+        if first != row.name:
+            unused.append(f"line {row.line}: point {first!r} is at this place already")
+        elif row.name in points:
+            unused.append(f"line {row.line}: point {row.name[:40]!r} is there already")
+        elif (role := plain_word(row.role)) not in ROLES:
+            unused.append(f"line {row.line}: expected control or check, got {row.role[:40]!r}")
+        elif len(points) >= CONTROL_FILES.max_points:
+            unused.append(f"line {row.line}: more than {CONTROL_FILES.max_points} points")
+            break
+        else:
+            points[row.name] = ControlPoint(
+                row.name, row.xyz_m, ROLES[role], row.radius_m, row.covariance_m2
+            )
+    return tuple(points.values()), unused

@@ -94,7 +94,7 @@ def with_id(columns: tuple[Meaning, ...]) -> tuple[Meaning, ...]:
 def _with_later_id(columns: tuple[Meaning, ...], layout: TableLayout) -> tuple[Meaning, ...]:
     """x, y, z with the last column whose texts each stand for one place as names, if there is one.
 
-    So are lists of points in pictures, as of OpenDroneMap: x, y, z, pixel, picture, name.
+    So are lists of points in images, as of OpenDroneMap: x, y, z, pixel, image, name.
     """
     places = [row[:3] for row in layout.rows]
     for at in range(layout.width - 1, 2, -1):

@@ -1,4 +1,4 @@
-"""Lists of surveyed points in pictures, as OpenDroneMap has them: x, y, z, pixel, picture, name."""
+"""Lists of surveyed points in images, as OpenDroneMap has them: x, y, z, pixel, image, name."""
 
 import pytest
 
