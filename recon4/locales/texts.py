@@ -210,10 +210,16 @@ class _Names(Visitor):
 
 
 def readable(pattern: ast.Pattern) -> str:
-    """A text with the names of its values in place of them, as ``‹lost›``."""
-    return "".join(
-        str(one.value)
-        if isinstance(one, ast.TextElement)
-        else "/".join(f"‹{name}›" for name in sorted(quoted_by(ast.Pattern([one]))))
-        for one in pattern.elements
-    )
+    """A text with the names of its values in place of them, as ``‹lost›``; the usual variant."""
+    return "".join(map(_readable, pattern.elements))
+
+
+def _readable(element: ast.TextElement | ast.Placeable) -> str:
+    if isinstance(element, ast.TextElement):
+        return str(element.value)
+    if isinstance(element.expression, ast.SelectExpression):
+        usual = next(one for one in element.expression.variants if one.default)
+        return readable(usual.value)
+    if isinstance(element.expression, ast.StringLiteral):
+        return str(element.expression.parse()["value"])
+    return "/".join(f"‹{name}›" for name in sorted(quoted_by(ast.Pattern([element]))))
