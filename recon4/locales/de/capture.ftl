@@ -22,12 +22,21 @@ imu-none = Keine IMU: langsam gehen und drehen
 gnss-receiver = GNSS-Empfänger: { $problem }
 foreign-traffic = Fremde Daten an Port { $port } von { $sources }
 packets-not-lidar = Pakete an Port { $port }, die keine Datenpakete eines LiDARs sind, von { $source }
-packets-not-recorded = { $count } Pakete sind nicht in der Aufzeichnung: der Speicher war voll oder zu langsam
+packets-not-recorded = { $count ->
+        [one] Ein Paket ist nicht in der Aufzeichnung
+       *[other] { $count } Pakete sind nicht in der Aufzeichnung
+    }: der Speicher war voll oder zu langsam
 tracking-lost = Tracking verloren: stehen bleiben, dann einige Schritte zurückgehen
 turn-slower = Langsamer drehen
 tracking-degraded = Tracking ist schwach: langsamer gehen, auf mehr Wände richten
-packets-lost = { $count } Pakete gingen verloren: dieser Rechner ist überlastet
-packets-lost-late = { $count } Pakete gingen verloren: dieser Rechner ist überlastet; { $late }
+packets-lost = { $count ->
+        [one] Ein Paket ging verloren
+       *[other] { $count } Pakete gingen verloren
+    }: dieser Rechner ist überlastet
+packets-lost-late = { $count ->
+        [one] Ein Paket ging verloren
+       *[other] { $count } Pakete gingen verloren
+    }: dieser Rechner ist überlastet; { $late }
 preview-late = { $late }; die Aufzeichnung ist vollständig
 preview-behind = Die Vorschau ist { DECIMAL($seconds, digits: 0) } s zurück
 frames-left-out = { $thinned } der letzten { $frames } Frames fehlen in der Vorschau (insgesamt { $all })

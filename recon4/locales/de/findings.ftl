@@ -598,7 +598,10 @@ SCANS-LOST = Tracking verloren
     .detection = Länger als 0,5 s konnte kein Scan eingepasst werden. *Nicht verwenden* über 2 % der Scans ohne Odometrie.
 
 SCANS-SILENT = Laser stumm
-    .text1 = Der Laser ist { $count }-mal stumm, bis zu { DECIMAL($longest_s, digits: 1) } s lang.
+    .text1 = { $count ->
+        [one] Der Laser ist einmal stumm, { DECIMAL($longest_s, digits: 1) } s lang.
+       *[other] Der Laser ist { $count }-mal stumm, bis zu { DECIMAL($longest_s, digits: 1) } s lang.
+    }
     .text2 = Das längste Schweigen beginnt { DECIMAL($since_s, digits: 1) } s nach dem Start.
     .text3 = { WORD($by, of: "SCANS-SILENT") }.
     .word-odometry = Die Odometrie sagt, wie er sich inzwischen bewegte

@@ -317,7 +317,10 @@ approve-reason-do-not-use = das Urteil über diese Karte ist „nicht verwenden�
 approve-reason-not-observable = eine Richtung dieser Karte ist auf { $count } ihrer Abschnitte nicht beobachtbar; um sie trotzdem freizugeben, einen Grund mit mindestens { $characters } Zeichen angeben
 approve-other-result = { $file } ist nicht, was der Lauf geschrieben hat: erst die Karte neu rechnen
 approve-decisions-missing = die letzten Entscheidungen sind nicht in der Karte: erst die Karte neu rechnen
-decided-meanwhile = eine andere Person hat inzwischen { $count } Entscheidungen getroffen; noch einmal ansehen
+decided-meanwhile = { $count ->
+        [one] eine andere Person hat inzwischen eine Entscheidung getroffen
+       *[other] eine andere Person hat inzwischen { $count } Entscheidungen getroffen
+    }; noch einmal ansehen
 nothing-to-undo = es gibt nichts { WORDS($step, of: "step") }
 correction-not-in-force = keine Korrektur von Klassen { $id } ist in Kraft
 correction-made-already = { $who } hat dieselbe Korrektur von Klassen schon vorgenommen

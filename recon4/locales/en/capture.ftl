@@ -22,12 +22,21 @@ imu-none = No IMU: walk and turn slowly
 gnss-receiver = GNSS receiver: { $problem }
 foreign-traffic = Foreign traffic on port { $port } from { $sources }
 packets-not-lidar = Packets on port { $port } that are not LiDAR data packets, from { $source }
-packets-not-recorded = { $count } packets are not in the recording: the disk was full or too slow
+packets-not-recorded = { $count ->
+        [one] One packet is not in the recording
+       *[other] { $count } packets are not in the recording
+    }: the disk was full or too slow
 tracking-lost = Tracking lost: stop, then go back a few steps
 turn-slower = Turn slower
 tracking-degraded = Tracking is degraded: walk slower, look at more walls
-packets-lost = { $count } packets were lost: this computer is too busy
-packets-lost-late = { $count } packets were lost: this computer is too busy; { $late }
+packets-lost = { $count ->
+        [one] One packet was lost
+       *[other] { $count } packets were lost
+    }: this computer is too busy
+packets-lost-late = { $count ->
+        [one] One packet was lost
+       *[other] { $count } packets were lost
+    }: this computer is too busy; { $late }
 preview-late = { $late }; the recording is complete
 preview-behind = The preview is { DECIMAL($seconds, digits: 0) } s behind
 frames-left-out = { $thinned } of the last { $frames } frames are left out of the preview ({ $all } in all)

@@ -581,7 +581,10 @@ SCANS-LOST = Tracking lost
     .detection = For more than 0.5 s no scan could be matched. *Do not use* above 2 % of the scans without odometry.
 
 SCANS-SILENT = Laser silent
-    .text1 = The laser is silent { $count } times, for up to { DECIMAL($longest_s, digits: 1) } s.
+    .text1 = { $count ->
+        [one] The laser is silent once, for { DECIMAL($longest_s, digits: 1) } s.
+       *[other] The laser is silent { $count } times, for up to { DECIMAL($longest_s, digits: 1) } s.
+    }
     .text2 = The longest silence begins { DECIMAL($since_s, digits: 1) } s after the start.
     .text3 = { WORD($by, of: "SCANS-SILENT") }.
     .word-odometry = The odometry says how it moved meanwhile

@@ -317,7 +317,10 @@ approve-reason-do-not-use = the verdict on this map is "do not use": { $reasons 
 approve-reason-not-observable = a direction of this map is not observable along { $count } of its stretches; to approve it in spite of that, give a reason of at least { $characters } characters
 approve-other-result = { $file } is not what the run wrote: rebuild the map first
 approve-decisions-missing = the last decisions are not in the map: rebuild the map first
-decided-meanwhile = another reviewer made { $count } decisions meanwhile; look again
+decided-meanwhile = { $count ->
+        [one] another reviewer decided once meanwhile
+       *[other] another reviewer made { $count } decisions meanwhile
+    }; look again
 nothing-to-undo = there is nothing to { $step }
 correction-not-in-force = no correction of classes { $id } is in force
 correction-made-already = { $who } made the same correction of classes already
