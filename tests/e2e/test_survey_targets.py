@@ -48,7 +48,7 @@ def test_a_person_takes_the_targets_that_the_survey_names(server, page, screensh
     screenshot(page, "slices-targets")
     page.get_by_role("button", name="Take the chosen ones (3)").click()
     expect(page.get_by_text("3 points measured at their targets.")).to_be_visible()
-    expect(page.locator(".verdict")).to_contain_text("1 more not measured")
+    expect(page.locator(".verdict")).to_contain_text("the survey is in another system than the map")
 
 
 @looks("desktop light")
