@@ -15,7 +15,7 @@ const CAPTION_PX = 44;
 export function seenOn(/** @type {Screen} */ screen) {
   const beside = page.panel && screen.width > 2 * PANEL_PX ? PANEL_PX : 0;
   const [bar, status] = [byId("bar"), byId("status")];
-  const above = bar.offsetTop + bar.offsetHeight;
+  const above = byId("above").offsetTop + bar.offsetHeight;
   // What a tool says comes and goes above the caption; the image stays where it is.
   const caption = status.querySelector("p.caption");
   const below =
