@@ -23,9 +23,10 @@ def without_bursts(t_ns: Times, report: ImportReport) -> Times:
         report: Receives the count ``imu_in_bursts``.
     """
     steps = np.diff(t_ns)
-    if len(steps) < BURSTS.fewest or t_ns[-1] == t_ns[0]:
+    going_on = steps[steps < BURSTS.longest_ns]
+    if len(going_on) < BURSTS.fewest or not going_on.any():
         return t_ns
-    short = steps <= BURSTS.short * np.mean(steps)
+    short = steps <= BURSTS.short * np.mean(going_on)
     if np.count_nonzero(short) < BURSTS.least * len(steps):
         return t_ns
     first = np.flatnonzero(np.append(True, ~short))

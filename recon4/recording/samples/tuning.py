@@ -52,6 +52,9 @@ class BurstTuning(Struct, frozen=True, kw_only=True):
 
     fewest: int = 50
     """Fewer samples show no rate."""
+    longest_ns: int = 2_000_000_000
+    """A longer step is a pause or a jump of the clock, and says nothing of the rate; stamps in
+    whole seconds are 1 s apart."""
     short: float = 0.2
     """Stamps nearer than this part of the mean step are of one burst."""
     least: float = 0.4

@@ -43,6 +43,13 @@ def test_a_pause_between_bursts_is_kept():
     assert np.median(steps_ns) == pytest.approx(5_000_000, rel=0.01)
 
 
+@pytest.mark.parametrize("pause_s", [1.5, 37.0, 3600.0])
+def test_a_pause_makes_no_bursts_of_even_samples(pause_s):
+    stamps_ns = MEASURED_NS + round(1e9 * pause_s) * (np.arange(2000) >= 400)
+
+    assert without_bursts(stamps_ns, ImportReport()) is stamps_ns
+
+
 @pytest.mark.parametrize("late_ms", [0.0, 1.0, 3.0, 8.0])
 def test_stamps_that_scatter_are_no_bursts(late_ms):
     late_ns = RNG.exponential(1e6 * late_ms, len(MEASURED_NS)).astype(np.int64)
