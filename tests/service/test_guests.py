@@ -29,11 +29,11 @@ SHARED = {
         ("GET", MAP + rest)
         for rest in ("", "/walk", "/{key}/sample", "/{key}/cubes", "/{key}/points")
     ),
-    *(("POST", MAP + rest) for rest in ("/pick", "/volume")),
+    *(("POST", MAP + rest) for rest in ("/pick", "/volume", "/crs")),
     *(("GET", SLICES + rest) for rest in ("", "/overview", "/overview/window", "/walk")),
     *(("POST", SLICES + rest) for rest in ("/image", "/pick")),
 }
-"""All that a guest may request; what is not a GET reads points or signs out."""
+"""All that a guest may request; what is not a GET reads points, or signs out."""
 PLANE = {"kind": "horizontal", "z_m": 1.0}
 
 
