@@ -310,7 +310,7 @@ def _other_system(rows: Sequence[Residual], points: Sequence[ControlPoint], say:
     xy_m = np.array([point.xyz_m[:2] for point in points])
     off_m = min(horizontal, default=0.0)
     apart_m = float(np.hypot(*np.ptp(xy_m, axis=0))) if len(points) else 0.0
-    if len(rows) < 2 or off_m <= max(apart_m, HEIGHT_HINTS.nearly_m):
+    if len(points) < 2 or off_m <= max(apart_m, HEIGHT_HINTS.nearly_m):
         return ""
     return say("other-system-hint", off=off_m, apart=apart_m)
 
