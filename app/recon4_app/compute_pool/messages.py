@@ -12,8 +12,9 @@ import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any, TypeVar, get_type_hints
 
+import msgspec
 from pydantic import BaseModel, TypeAdapter
 
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
@@ -22,6 +23,8 @@ from recon4.untrusted.names import is_unnameable
 from recon4_app.compute_pool.model import FileAccess
 from recon4_app.compute_pool.tuning import POOL_MESSAGES
 from recon4_app.errors import ComputeFailed
+
+R = TypeVar("R")
 
 LENGTH = struct.Struct("<Q")
 """Header of each message to a child: number of bytes that follow."""
@@ -92,6 +95,18 @@ def decode_result(function: Callable[..., Any], data: bytes) -> Any:
     try:
         return _adapter(function).validate_json(data)
     except ValueError as error:
+        raise ComputeFailed(CodedText("helper-bad-result", detail=str(error)[:200])) from error
+
+
+def decode_record(data: bytes, kind: type[R]) -> R:
+    """Decode a record of msgspec, which a function hands back as JSON: pydantic knows none.
+
+    Raises:
+        ComputeFailed: If it is not of this type.
+    """
+    try:
+        return msgspec.json.decode(data, type=kind)
+    except (msgspec.DecodeError, ValueError) as error:
         raise ComputeFailed(CodedText("helper-bad-result", detail=str(error)[:200])) from error
 
 

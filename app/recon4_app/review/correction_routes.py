@@ -19,6 +19,7 @@ from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, app
 from recon4.review.state import read_summary
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Person, Who
+from recon4_app.compute_pool.messages import decode_record
 from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import Conflict
@@ -81,7 +82,7 @@ async def find_alike(
     data = await caller.wait(
         server.slices.run_interactive(terms, correction_work.alike, artifacts, picked, before)
     )
-    return AlikeView.of(correction_work.answered(data, Alike))
+    return AlikeView.of(decode_record(data, Alike))
 
 
 @router.post("", status_code=201, dependencies=REVIEW, summary="Correct classes")
@@ -139,7 +140,7 @@ async def _tried(
     data = await caller.wait(
         server.slices.run_interactive(terms, correction_work.tried, artifacts, what, before)
     )
-    return correction_work.answered(data, CorrectionTrial)
+    return decode_record(data, CorrectionTrial)
 
 
 async def _looked_at(

@@ -13,6 +13,7 @@ from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
+from recon4_app.compute_pool.messages import decode_record
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.network.request_caller import CalledBy
@@ -68,9 +69,10 @@ async def put_on_site(
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
-    control = await caller.wait(
+    data = await caller.wait(
         server.slices.run_background(terms, site_work.site_control_of, artifacts, state, system.crs)
     )
+    control = decode_record(data, SiteControl)
     await run_in_threadpool(_decide, server, project_id, who=caller.name, control=control)
     audit(caller.request, "put map on control points", project_id)
 

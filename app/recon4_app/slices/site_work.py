@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import msgspec
+
 from recon4.errors import GeoreferenceError
 from recon4.locales.coded import CodedText
-from recon4.model.site_control import SiteControl
+from recon4.model.plain import to_plain
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.site_control import (
     ControlTrial,
@@ -46,15 +48,15 @@ def try_site(artifacts: Artifacts, state: ControlState, crs: str, *, language: s
     )
 
 
-def site_control_of(artifacts: Artifacts, state: ControlState, crs: str) -> SiteControl:
-    """The control points as an input of a run.
+def site_control_of(artifacts: Artifacts, state: ControlState, crs: str) -> bytes:
+    """The control points as an input of a run, a `SiteControl`: JSON, for `decode_record`.
 
     Raises:
         GeoreferenceError: If the points place no map, or contradict each other.
     """
     trial = _try(artifacts, state, crs)
     require_agreement(trial)
-    return trial.control
+    return msgspec.json.encode(to_plain(trial.control))
 
 
 def _try(artifacts: Artifacts, state: ControlState, crs: str) -> ControlTrial:

@@ -177,7 +177,6 @@ like-nothing-there = innerhalb von 30 cm ist kein Punkt, der korrigiert wird
 like-too-large = dieses Ding hat { COUNT($points) } Punkte und ist zu groß: seine Punkte mit Pinsel, Quader oder Polygon wählen
 like-too-many-cells = diese Klasse ist überall in der Karte: ihre Punkte mit Pinsel, Quader oder Polygon wählen
 map-remade-classes = die Karte wurde inzwischen neu gerechnet: die Seite neu laden, um ihre Klassen zu korrigieren
-count-malformed = die Anzahl der Punkte ist fehlerhaft: { $detail }
 approve-while-running = ein Auftrag dieses Projekts wartet oder läuft; danach freigeben
 alignment-forgotten = diese Ausrichtung ist nicht mehr bekannt; das Paar erneut ausrichten
 assignee-may-not-review = { $name } darf hier nicht prüfen

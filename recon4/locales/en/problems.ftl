@@ -177,7 +177,6 @@ like-nothing-there = there is no point to correct within 30 cm of it
 like-too-large = this thing has { COUNT($points) } points and is too large: choose its points with the brush, a box or a polygon
 like-too-many-cells = this class is all over the map: choose its points with the brush, a box or a polygon
 map-remade-classes = the map was made again meanwhile: reload the page to correct its classes
-count-malformed = the count of points is malformed: { $detail }
 approve-while-running = a job of this project is queued or running; approve when it is done
 alignment-forgotten = this alignment is not known any more; align the pair again
 assignee-may-not-review = { $name } is nobody who may review here

@@ -1,12 +1,14 @@
 """Results of child processes are transferred to the server as typed JSON."""
 
 import inspect
+from importlib import import_module
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
-import recon4_app.review.review_work
+import recon4_app
 from recon4.evaluation.slices import SliceError
 from recon4.model.pose_graph import Judge, Judgment, Measure, Reason, Verdict
 from recon4.review.pairs import PairFacts
@@ -23,9 +25,11 @@ from recon4_app.review.review_work import pair_facts, preview
 from recon4_app.slices.control_work import control_report
 from recon4_app.slices.slice_work import comparison
 
+APP = Path(recon4_app.__file__).parent
 WORK = [
     function
-    for module in (recon4_app.review.review_work, recon4_app.slices.slice_work)
+    for path in sorted(APP.rglob("*_work.py"))
+    for module in [import_module(".".join(path.relative_to(APP.parent).with_suffix("").parts))]
     for name, function in inspect.getmembers(module, inspect.isfunction)
     if not name.startswith("_")
     if function.__module__ == module.__name__ or name in getattr(module, "__all__", ())
