@@ -7,9 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.model.site_control import SITE_GRID
 from recon4.recording.tables.coordinates import ColumnChoice
@@ -77,9 +75,7 @@ def _residuals(artifacts: Artifacts, state: ControlState, language: str = ENGLIS
     own = map_frame(artifacts)
     measured = state.measured_in(Path(artifacts["map"]).name)
     covariances = _covariances(artifacts, measured)
-    if state.frame == "crs":
-        if own.to_crs is None:
-            raise ConfigError(CodedText("map-is-local"))
+    if state.frame == "crs" and own.to_crs is not None:  # else `residuals` says it
         for name, found in measured.items():
             steps = own.to_crs(found.xyz_m + np.vstack([np.zeros(3), np.eye(3)]))
             R = (steps[1:] - steps[0]).T  # of the axes, within the ppm of the CRS

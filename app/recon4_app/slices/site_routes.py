@@ -27,7 +27,7 @@ REVIEW = [Depends(needs(Permission.REVIEW))]
 router = APIRouter(
     prefix="/api/projects/{project_id}/slices/control/site",
     tags=["slices"],
-    responses=problems(404, 422),
+    responses=problems(404, 409, 422),
 )
 
 
@@ -64,7 +64,8 @@ async def put_on_site(
 ) -> None:
     """Note it in the journal; the map follows when it is made again (``remake``).
 
-    Points that contradict each other are refused.
+    Points that contradict each other are refused. The survey counts as in the map's CRS from now
+    on.
     """
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     state = await run_in_threadpool(server.slices.control, project_id)
@@ -73,6 +74,9 @@ async def put_on_site(
         server.slices.run_background(terms, site_work.site_control_of, artifacts, state, system.crs)
     )
     control = decode_record(data, SiteControl)
+    # The map will have the coordinates of the survey: its points are no longer in a local frame.
+    of_site = state.model_copy(update={"frame": "crs"})
+    await run_in_threadpool(server.slices.keep_control, project_id, of_site)
     await run_in_threadpool(_decide, server, project_id, who=caller.name, control=control)
     audit(caller.request, "put map on control points", project_id)
 

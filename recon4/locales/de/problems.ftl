@@ -148,7 +148,6 @@ map-remade-measure = die Karte wurde inzwischen neu gerechnet: die Seite neu lad
 map-layout = erwartet wird Anordnung { $version } der Punkte, erhalten: { $got }; die Seite neu laden
 align-no-surface = Ausrichtung: Karte oder Referenz hat keine ebene Fläche zum Ausrichten
 align-bad-pose = Ausrichtung: erwartet wird eine Pose mit einem Einheitsquaternion
-map-is-local = die Karte ist lokal: Koordinaten eines Koordinatensystems sind nicht umrechenbar
 slice-export-no-room = ein Export braucht { SIZE($needed_bytes) } auf der Platte, frei sind { SIZE($free_bytes) }
 control-point-unknown = kein Punkt { QUOTED($name) }
 file-not-base64 = die Datei muss als base64 gesendet werden

@@ -148,7 +148,6 @@ map-remade-measure = the map was made again meanwhile: reload the page to measur
 map-layout = expected layout { $version } of points, got { $got }: reload the page
 align-no-surface = alignment: map or reference has no flat surface to align
 align-bad-pose = alignment: expected a pose with a unit quaternion
-map-is-local = the map is local: CRS coordinates cannot be converted
 slice-export-no-room = an export needs { SIZE($needed_bytes) } free on the disk, there are { SIZE($free_bytes) }
 control-point-unknown = no point { QUOTED($name) }
 file-not-base64 = the file must be sent as base64

@@ -56,6 +56,7 @@ def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     trial = httpx.get(url(server, root, "control/site"), timeout=HANG_S).json()
     put = httpx.post(url(server, root, "control/site"), json={}, timeout=HANG_S)
     make(root)
+    surface = httpx.get(url(server, root, "control/surface"), params={"point": "T4"})
     record = json.loads((read_artifacts(root)["level"] / "georeference.json").read_text("utf-8"))
     off = httpx.delete(url(server, root, "control/site"), timeout=HANG_S)
 
@@ -66,6 +67,7 @@ def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     assert [one["id"] for one in rows] == ["T0", "T1", "T2", "T3", "T4"]
     assert np.abs([one["adjusted_m"] for one in rows]).max() < 0.03
     assert read_decided(root).key == before
+    assert surface.json()["surface"] is not None  # the survey is where the map is now
 
 
 @pytest.mark.study
