@@ -24,9 +24,10 @@ const isBusy = () =>
  * @param {Promise<unknown>} opening ends once it is known whether there is a map
  */
 export async function followJobs(opening) {
+  const news = byId("news"); // a 2-D map takes its place meanwhile
   const me = await readCurrentUser().catch(() => null);
   if (!me || isGuest(me)) return;
-  followMap(byId("news"), {
+  followMap(news, {
     hasMap: () => Boolean(page.facts),
     opening,
     isNewest,
