@@ -63,7 +63,7 @@ def test_an_append_after_an_outdated_row_is_rejected(tmp_path):
     append(tmp_path, reject(7))
     append(tmp_path, reject(9, who="Jan"))
 
-    with pytest.raises(JournalChanged, match="1 decisions meanwhile"):
+    with pytest.raises(JournalChanged, match="decided once meanwhile"):
         append(tmp_path, undo(), after_seq=1)
     assert append(tmp_path, undo(), after_seq=2).seq == 3
 
