@@ -126,8 +126,13 @@ class JobFolder:
         for name in ("pid", "heartbeat", "outcome.json", "workers.json"):
             (self.path / name).unlink(missing_ok=True)
         near = [str(file) for path in inputs.recordings for file in files_near(Path(path))]
-        request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
-        write_json(self.path / "request.json", {**request, "near": near})
+        request = {
+            "project": str(project),
+            "inputs": asdict(inputs),
+            "limits": asdict(limits),
+            "near": near,
+        }
+        write_json(self.path / "request.json", request)
 
     def sweep(self) -> None:
         """Remove the temporary files of a worker that has ended."""
