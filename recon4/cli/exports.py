@@ -12,7 +12,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.slices import numbers
 from recon4.cli.terminal import write
-from recon4.export.options import Box, ExportOptions, classes_named, option_text
+from recon4.export.options import Box, ClipBox, ExportOptions, classes_named, option_text
 from recon4.locales.coded import CodedText
 
 exports = typer.Typer()
@@ -40,6 +40,10 @@ def export(  # noqa: PLR0913 - options of a command
         str, typer.Option(help=f"{option_text('classes')} As ground,building or 2,6.")
     ] = "",
     box: Annotated[str, typer.Option(help=option_text("box_m"))] = "",
+    clip: Annotated[
+        list[str] | None,
+        typer.Option(metavar="X,Y,Z,DX,DY,DZ,DEG", help=option_text("clip")),
+    ] = None,
     storey: Annotated[str, typer.Option(help=option_text("storey"))] = "",
     thin: Annotated[float, typer.Option(help=option_text("thin_m"))] = 0.0,
     raw: Annotated[bool, typer.Option("--raw", help=option_text("raw"))] = False,
@@ -60,6 +64,7 @@ def export(  # noqa: PLR0913 - options of a command
         all_points=all_points,
         classes=classes_named(classes),
         box_m=_box(box),
+        clip=tuple(map(_clip_box, clip or [])),
         storey=storey,
         thin_m=thin,
         draft=draft,
@@ -96,6 +101,12 @@ def _box(text: str) -> Box | None:
         return None
     x1, y1, z1, x2, y2, z2 = numbers(text, 6)
     return x1, y1, z1, x2, y2, z2
+
+
+def _clip_box(text: str) -> ClipBox:
+    """Seven numbers with commas between them."""
+    x, y, z, dx, dy, dz, deg = numbers(text, 7)
+    return x, y, z, dx, dy, dz, deg
 
 
 def _write_export(project: Path, file: Path, wanted: ExportOptions) -> None:

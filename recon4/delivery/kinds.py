@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from recon4.review.approval_state import ApprovalState
 
 _ALWAYS = ("draft",)
-_POINTS = ("crs", "raw", "classes", "box_m", "storey", "thin_m", *_ALWAYS)
+_POINTS = ("crs", "raw", "classes", "box_m", "clip", "storey", "thin_m", *_ALWAYS)
 _CLASSED = (*_POINTS, "all_points")
 
 

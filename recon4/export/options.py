@@ -17,6 +17,10 @@ Box = tuple[float, float, float, float, float, float]
 """Smallest x, y, z and largest x, y, z [m]."""
 
 
+ClipBox = tuple[float, float, float, float, float, float, float]
+"""Middle x, y, z and edges along x, y, z [m], turned about z by the last, counterclockwise [°]."""
+
+
 def _said(text: str) -> dict[str, str]:
     """Metadata of an option: what it is for."""
     return {"help": text}
@@ -43,6 +47,13 @@ class ExportOptions:
         default=None,
         metadata=_said("Only points in X1,Y1,Z1,X2,Y2,Z2 in m, in the coordinates of the file."),
     )
+    clip: tuple[ClipBox, ...] = field(
+        default=(),
+        metadata=_said(
+            "Only points inside of all these boxes of the map: middle X,Y,Z and edges DX,DY,DZ in "
+            "m, turned by DEG degrees."
+        ),
+    )
     storey: str = field(default="", metadata=_said("Only this storey: 0, 1, -1; default: all."))
     thin_m: float = field(
         default=0.0, metadata=_said("One point in each cube with this edge in m; default: all.")
@@ -65,7 +76,7 @@ class ExportOptions:
             heights_m: Of the storey, in the map [m]; None = all.
 
         Raises:
-            ConfigError: If there is no such class, or the box has no extent.
+            ConfigError: If there is no such class, or a box has no extent.
         """
         from recon4.export.selection import EVERY_CLASS, PointSelection
 
@@ -73,7 +84,11 @@ class ExportOptions:
         if self.all_points and self.classes:
             raise ConfigError(CodedText("export-classes-both"))
         return PointSelection(
-            classes=classes, box_m=self.box_m, heights_m=heights_m, thin_m=self.thin_m
+            classes=classes,
+            box_m=self.box_m,
+            clip=self.clip,
+            heights_m=heights_m,
+            thin_m=self.thin_m,
         )
 
 

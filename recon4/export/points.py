@@ -174,11 +174,14 @@ class PointSource:
                 yield block
 
     def may_have(self, tile: Tile) -> bool:
-        """Whether a tile may have points in the box."""
+        """Whether a tile may have points in the box and the clip."""
+        margin_m = POINT_EXPORT.tile_margin_m
+        low_m, high_m = np.array(tile.low_m), np.array(tile.high_m)
+        if not self.selection.may_have_inside(low_m, high_m, margin_m=margin_m):
+            return False
         if self.selection.box_m is None:
             return True
-        corners = np.array(list(product(*zip(tile.low_m, tile.high_m, strict=True))))
-        margin_m = POINT_EXPORT.tile_margin_m
+        corners = np.array(list(product(*zip(low_m, high_m, strict=True))))
         return self.selection.may_have(self.transform(corners), margin_m=margin_m)
 
     def count_of(self, tile: Tile, *, limit: int) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
-from recon4.export.options import Box
+from recon4.export.options import Box, ClipBox
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
@@ -28,6 +28,8 @@ class PointSelection:
     """Codes of `recon4.model.classes`; empty = those that the map delivers."""
     box_m: Box | None = None
     """Points in it, borders included, in the coordinates of the file [m]; None = all."""
+    clip: tuple[ClipBox, ...] = ()
+    """Points inside of all these boxes, borders included, in the map; empty = all."""
     heights_m: tuple[float, float] | None = None
     """Points from the first height to below the second, in the map [m]; None = all."""
     thin_m: float = 0.0
@@ -44,6 +46,8 @@ class PointSelection:
             )
         if self.box_m is not None:
             _check_box(self.box_m)
+        if self.clip:
+            _check_clip(self.clip)
         if not (math.isfinite(self.thin_m) and 0.0 <= self.thin_m <= 100.0):
             raise ConfigError(CodedText("thinning-range", thin_m=self.thin_m))
         if 0.0 < self.thin_m < 1e-4:
@@ -53,7 +57,8 @@ class PointSelection:
     def is_whole(self) -> bool:
         """Whether nothing of what is read is left out."""
         whole = self.classes in (frozenset(), EVERY_CLASS)
-        return whole and self.box_m is None and self.heights_m is None and not self.thin_m
+        part = self.box_m is not None or self.clip or self.heights_m is not None
+        return whole and not part and not self.thin_m
 
     @property
     def left_out(self) -> bool:
@@ -76,6 +81,8 @@ class PointSelection:
             z_m = columns["xyz"][:, 2].astype(np.float64) + origin_m[2]
             kept &= (z_m >= self.heights_m[0]) & (z_m < self.heights_m[1])
         rows = np.flatnonzero(kept)
+        for box in self.clip:
+            rows = rows[_inside(columns["xyz"][rows] + origin_m, box)]
         return rows[_first_of_cubes(columns["xyz"][rows], self.thin_m)] if self.thin_m else rows
 
     def in_box(self, xyz: Array) -> NDArray[np.bool_]:
@@ -84,6 +91,14 @@ class PointSelection:
             return np.ones(len(xyz), np.bool_)
         low, high = np.array(self.box_m[:3]), np.array(self.box_m[3:])
         return np.asarray(((xyz >= low) & (xyz <= high)).all(axis=1), np.bool_)
+
+    def may_have_inside(self, low_m: Array, high_m: Array, *, margin_m: float) -> bool:
+        """Whether the clip may have points between two corners in the map, (3,) each."""
+        for box in self.clip:
+            reach_m = _reach(box) + margin_m
+            if (low_m > box[:3] + reach_m).any() or (high_m < box[:3] - reach_m).any():
+                return False
+        return True
 
     def may_have(self, corners: Array, *, margin_m: float) -> bool:
         """Whether the box may have points between some corners in coordinates of the file."""
@@ -110,6 +125,31 @@ def _check_box(box_m: Box) -> None:
         raise ConfigError(CodedText("box-numbers", box_m=str(list(box_m))))
     if any(a > b for a, b in zip(low, high, strict=True)):
         raise ConfigError(CodedText("box-order", box_m=str(list(box_m))))
+
+
+def _check_clip(clip: tuple[ClipBox, ...]) -> None:
+    most = POINT_EXPORT.most_clip_boxes
+    if len(clip) > most:
+        raise ConfigError(CodedText("clip-most", most=most, count=len(clip)))
+    for box in clip:
+        if len(box) != 7 or not all(map(math.isfinite, box)) or min(box[3:6]) <= 0.0:
+            raise ConfigError(CodedText("clip-numbers", box=str(list(box))))
+
+
+def _inside(xyz: Array, box: ClipBox) -> NDArray[np.bool_]:
+    """Which points of the map lie in a turned box, (N,)."""
+    c, s = math.cos(math.radians(box[6])), math.sin(math.radians(box[6]))
+    x, y, z = (xyz - box[:3]).T
+    across = np.abs(c * x + s * y), np.abs(c * y - s * x), np.abs(z)
+    half = np.array(box[3:6]) / 2.0
+    return np.asarray(np.all([one <= most for one, most in zip(across, half, strict=True)], 0))
+
+
+def _reach(box: ClipBox) -> Array:
+    """How far a turned box reaches from its middle along the axes of the map [m], (3,)."""
+    c, s = abs(math.cos(math.radians(box[6]))), abs(math.sin(math.radians(box[6])))
+    dx, dy, dz = box[3:6]
+    return np.array([c * dx + s * dy, s * dx + c * dy, dz]) / 2.0
 
 
 def _first_of_cubes(xyz: NDArray[np.float32], edge_m: float) -> NDArray[np.intp]:

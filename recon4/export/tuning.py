@@ -27,6 +27,8 @@ class PointExportTuning(Struct, frozen=True, kw_only=True):
     """Of the index of a cube along each axis: 0.1 mm in a tile of 200 m."""
     tile_margin_m: float = 1.0
     """A projection bends a tile by less than this [m]."""
+    most_clip_boxes: int = 8
+    """Of one export: each is a pass over the points."""
 
 
 POINT_EXPORT = PointExportTuning()

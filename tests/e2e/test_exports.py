@@ -1,5 +1,8 @@
 """Files of the map from the page of its project."""
 
+import re
+
+import numpy as np
 import pytest
 from playwright.sync_api import expect
 
@@ -52,3 +55,41 @@ def test_a_file_is_ordered_downloaded_and_listed_and_what_cannot_be_made_is_said
     row = panel.locator(".exports li").first
     expect(row).to_contain_text("5\u202f000 Punkte · local")
     expect(row).not_to_contain_text("points · local")
+
+
+@looks("desktop light")
+def test_the_part_that_the_page_map_shows_is_exported_and_the_way_leads_back(
+    server, page, screenshot, tmp_path
+):
+    leave_out_viewer(page)
+    map_page = f"{server.url}/projects/office/map/?z=0.5..&box=8,1,1.5,6,4,4,0.5236"
+    page.goto(map_page)
+    expect(page.locator("#status .shown")).to_have_text(re.compile(r"of 5.000 points$"))
+    page.get_by_role("link", name="Export this part…").click()
+    panel = page.locator("export-panel")
+    part = panel.get_by_role("group", name="Part shown on the page Map")
+    expect(part).to_contain_text("box 6 × 4 × 3 m, middle 8, 1, 2, turned by 30°")
+    panel.get_by_role("combobox", name="File").select_option("plan.dxf")
+    expect(part).to_contain_text("made of the whole map")
+    panel.get_by_role("combobox", name="File").select_option("map.xyz")
+    screenshot(page, "export-part")
+    panel.get_by_role("button", name="Make file").click()
+    row = panel.locator(".exports li").first
+    expect(row).to_contain_text("inside of a box 6 × 4 × 3 m")
+    with page.expect_download() as download:
+        row.get_by_role("link").click()
+    download.value.save_as(tmp_path / "part.xyz")
+
+    found = np.loadtxt(tmp_path / "part.xyz", skiprows=1)[:, :3]
+    x, y, z = (found - (8.0, 1.0, 2.0)).T
+    turn = np.radians(30.0)
+    assert 10 < len(found) < 2_500
+    assert (np.abs(np.cos(turn) * x + np.sin(turn) * y) < 3.001).all()
+    assert (np.abs(np.cos(turn) * y - np.sin(turn) * x) < 2.001).all()
+    assert (np.abs(z) < 1.501).all()
+    part.get_by_role("link", name="Back to the map").click()
+    expect(page).to_have_url(re.compile("map/.*box=8,1,1.5,6,4,4,0.5236"))
+    page.go_back()
+    panel.get_by_role("button", name="All of the map").click()
+    expect(part).to_have_count(0)
+    assert page.url == f"{server.url}/projects/office/"

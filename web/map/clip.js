@@ -15,6 +15,7 @@
  */
 
 const MOST_SLICE_M = 100; // thickness of a slice
+const AROUND_M = 1; // beyond all points: those at the border are inside
 
 /** All planes of a clip. */
 export function planesOf(/** @type {Clip} */ { heights: [low, high], box, section }) {
@@ -78,6 +79,42 @@ export function cornersOfBox(/** @type {ClipBox} */ { center, size, yaw }) {
     return [center[0] + c * x - s * y, center[1] + s * x + c * y, center[2] + z];
   });
 }
+
+/**
+ * Boxes inside of which a point is shown, as an export takes them: middle and edges [m], turn [°].
+ * @param {Clip} clip
+ * @param {{low_m: number[], high_m: number[]}} map corners of all points
+ */
+export function exportedClip({ heights: [low, high], box, section }, { low_m, high_m }) {
+  const least = low ?? low_m[2] - AROUND_M;
+  const most = high ?? high_m[2] + AROUND_M;
+  const [x, y] = [0, 1].map((k) => (low_m[k] + high_m[k]) / 2);
+  const [dx, dy] = [0, 1].map((k) => high_m[k] - low_m[k] + 2 * AROUND_M);
+  const tall = (/** @type {number} */ a, /** @type {number} */ b) => [(a + b) / 2, b - a];
+  const boxes = [];
+  if (box) {
+    const [bx, by, bz] = box.center;
+    const [bottom, top] = [bz - box.size[2] / 2, bz + box.size[2] / 2];
+    const [z, dz] = tall(Math.max(least, bottom), Math.min(most, top));
+    boxes.push([bx, by, z, box.size[0], box.size[1], dz, degrees(box.yaw)]);
+  }
+  const [z, dz] = tall(least, most);
+  if (section) {
+    const [nx, ny] = acrossOf(section);
+    const off = nx * (section.a[0] - x) + ny * (section.a[1] - y);
+    const middle = [x + off * nx, y + off * ny, z];
+    const size = [section.thickness, Math.hypot(dx, dy), dz];
+    boxes.push([...middle, ...size, degrees(Math.atan2(ny, nx))]);
+  }
+  if (!boxes.length && (low !== null || high !== null)) boxes.push([x, y, z, dx, dy, dz, 0]);
+  return boxes;
+}
+
+const degrees = (/** @type {number} */ rad) => (rad * 180) / Math.PI;
+
+/** The query of the page of a project whose form of exports takes only such boxes. */
+export const exportQuery = (/** @type {number[][]} */ boxes) =>
+  boxes.map((box) => `clip=${box.map((x) => Number(x.toFixed(5))).join(",")}`).join("&") || "clip=";
 
 /**
  * The box over a rectangle whose opposite corners were dragged in an image from above.

@@ -1,7 +1,7 @@
 // The panel of the map: colors, layers, clip, measurements, views.
 
 import { html, nothing, render, targetOf } from "../shared/dom.js";
-import { slicesUrl } from "../shared/api.js";
+import { projectUrl, slicesUrl } from "../shared/api.js";
 import { idHere } from "../shared/address.js";
 import { classText } from "../shared/class_words.js";
 import { shareText } from "../shared/format.js";
@@ -13,7 +13,7 @@ import { corrections } from "./corrections.js";
 import { measuredSection } from "./measured_panel.js";
 import { notesSection } from "./notes.js";
 import { colorShown, colorsOf, endsShown, heightsOf, heightsShown, page } from "./page.js";
-import { sliceQuery } from "./clip.js";
+import { exportQuery, exportedClip, sliceQuery } from "./clip.js";
 import { placesSections } from "./places_panel.js";
 import { savedSection } from "./saved.js";
 import { COLORS, LAYERS } from "./state.js";
@@ -155,8 +155,21 @@ function clip(/** @type {MapIndex} */ index, /** @type {Act} */ act) {
         >${t("slice-at-height")}</a
       >
     </div>
-    ${boxFields(act)} ${sectionFields(act)}`;
+    ${boxFields(act)} ${sectionFields(act)}
+    ${
+      page.guest
+        ? nothing
+        : html`<div class="buttons">
+            <a class="button" href=${exportAddress(index)}>${t("export-this-part")}</a>
+          </div>`
+    }`;
 }
+
+/** The form of exports, filled with what the clip leaves. */
+const exportAddress = (/** @type {MapIndex} */ index) => {
+  const boxes = exportedClip(page.state.clip, index);
+  return `${projectUrl(idHere())}?${exportQuery(boxes)}`;
+};
 
 /** Height of a slice of what is shown: a hand below its upper end. */
 const sliceHeight = (/** @type {MapIndex} */ { high_m }) =>

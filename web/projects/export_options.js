@@ -1,5 +1,6 @@
 // What is chosen of an export, as the server takes it. No DOM, no network.
 
+import { clipWords } from "./export_clip.js";
 import { asWritten, t, wordOf } from "../shared/texts.js";
 
 /**
@@ -11,12 +12,15 @@ import { asWritten, t, wordOf } from "../shared/texts.js";
  * @property {number[]} classes
  * @property {string} storey
  * @property {string[]} box six texts
+ * @property {string[]} clip boxes of seven numbers, as in an address
  * @property {string} thin in mm
  * @property {string} pixel in mm
  * @property {string} cell in m
  * @property {boolean} raw
  * @property {boolean} draft
  */
+
+const CLIP_NUMBERS = 7; // middle, edges, turn
 
 /** @returns {Chosen} */
 export const usual = () => ({
@@ -26,6 +30,7 @@ export const usual = () => ({
   classes: [],
   storey: "",
   box: ["", "", "", "", "", ""],
+  clip: [],
   thin: "",
   pixel: "10",
   cell: "0.25",
@@ -50,6 +55,7 @@ export function orderOf(chosen, kind) {
   if (takes("all_points") && chosen.points === "all") options.all_points = true;
   if (takes("classes") && chosen.points === "some") options.classes = someClasses(chosen.classes);
   if (takes("box_m") && chosen.box.some(Boolean)) options.box_m = boxOf(chosen.box);
+  if (takes("clip") && chosen.clip.length) options.clip = chosen.clip.map(clipBoxOf);
   if (takes("thin_m") && chosen.thin)
     options.thin_m = number(chosen.thin, t("thin-out-brief")) / 1000;
   if (takes("pixel_m")) options.pixel_m = number(chosen.pixel, t("pixel")) / 1000;
@@ -67,6 +73,13 @@ function boxOf(/** @type {string[]} */ texts) {
   return /** @type {[number, number, number, number, number, number]} */ (box);
 }
 
+/** A box of an address. */
+export function clipBoxOf(/** @type {string} */ text) {
+  const box = text.split(",").map((part) => number(part, t("clip-part")));
+  if (box.length !== CLIP_NUMBERS) throw new Error(t("clip-wrong", { text }));
+  return /** @type {[number, number, number, number, number, number, number]} */ (box);
+}
+
 function number(/** @type {string} */ text, /** @type {string} */ field) {
   const value = Number(text.trim().replace(",", "."));
   if (!text.trim() || !Number.isFinite(value)) throw new Error(t("not-a-number", { field, text }));
@@ -81,6 +94,7 @@ export function optionWords(
     all_points,
     classes = [],
     box_m,
+    clip = [],
     storey,
     thin_m = 0,
     draft,
@@ -96,6 +110,7 @@ export function optionWords(
     crs,
     storey && t("option-storey", { storey }),
     box_m && t("option-box", { corners: box_m.map(asWritten).join(t("list-gap")) }),
+    ...clipWords(clip),
     all_points && t("option-all"),
     classes.length > 0 && classes.map(title).join(", "),
     thin_m > 0 && t("option-thin", { mm: asWritten(+(thin_m * 1000).toFixed(3)) }),

@@ -23,8 +23,9 @@ import {
 } from "../shared/dom.js";
 import { bytes, shareText } from "../shared/format.js";
 import { t, wordOf } from "../shared/texts.js";
+import { clipLines, clipOfAddress, clipWords, comesFromMap, forgetClip } from "./export_clip.js";
 import { exportList } from "./export_list.js";
-import { orderOf, usual } from "./export_options.js";
+import { clipBoxOf, orderOf, usual } from "./export_options.js";
 
 /**
  * @import {ExportChoices, ExportKind, ExportView, JobView, Me} from "../shared/http_types"
@@ -35,7 +36,7 @@ const ESTIMATE_AFTER_MS = 500;
 const CORNERS = [t("box-from-x"), "y", "z", t("box-to-x"), "y", "z"];
 
 export class ExportPanel extends HTMLElement {
-  #chosen = usual();
+  #chosen = { ...usual(), clip: clipOfAddress() };
   /** @type {ExportChoices | null} */
   #choices = null;
   /** @type {ExportView[]} */
@@ -54,6 +55,7 @@ export class ExportPanel extends HTMLElement {
       this.#draw();
       this.#choices = await readExportChoices(idHere());
       this.#draw();
+      if (comesFromMap()) within(this, "form").scrollIntoView();
       await this.#askEstimate();
     });
   }
@@ -129,6 +131,7 @@ export class ExportPanel extends HTMLElement {
           )}
         </select>
       </label>
+      ${this.#clip(takes("clip"))}
       ${takes("classes") ? this.#points(choices, takes("all_points")) : nothing}
       ${takes("storey") && choices.storeys.length ? this.#storey(choices, kind) : nothing}
       ${takes("thin_m") ? this.#number("thin", t("thin-out"), t("thin-all")) : nothing}
@@ -138,6 +141,21 @@ export class ExportPanel extends HTMLElement {
       <p class="estimate" role="status">${this.#estimate}</p>
       <button class="primary">${t("make-file")}</button>
     </form>`;
+  }
+
+  #clip(/** @type {boolean} */ taken) {
+    const words = this.#chosen.clip.map((text) => {
+      try {
+        return clipWords([clipBoxOf(text)])[0];
+      } catch {
+        return text; // the estimate says what is wrong
+      }
+    });
+    return clipLines(words, taken, () => {
+      this.#chosen.clip = [];
+      forgetClip();
+      this.#renew();
+    });
   }
 
   /**
@@ -279,11 +297,15 @@ export class ExportPanel extends HTMLElement {
       this.#chosen.box[Number(field.dataset.corner)] = value;
     } else Object.assign(this.#chosen, { [name]: field.type === "checkbox" ? checked : value });
     if (name === "file" && !this.#kind?.takes.includes("all_points")) this.#leaveAll();
+    this.#renew();
+  };
+
+  #renew() {
     this.#estimate = "";
     this.#draw();
     clearTimeout(this.#timer);
     this.#timer = window.setTimeout(this.#askEstimate, ESTIMATE_AFTER_MS);
-  };
+  }
 
   /** A format without classes holds no points that the map leaves out. */
   #leaveAll() {

@@ -552,6 +552,7 @@ export interface ExportOptions {
   all_points?: boolean;
   classes?: Array<number>;
   box_m?: [number, number, number, number, number, number] | null;
+  clip?: Array<[number, number, number, number, number, number, number]>;
   storey?: string;
   thin_m?: number;
   pixel_m?: number;

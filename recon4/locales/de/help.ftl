@@ -184,6 +184,7 @@ command-export-file = Zu schreibende Datei; die Endung bestimmt das Format: .laz
 command-export-crs = Etwa EPSG:5514+8357; Vorgabe: das der Karte.
 command-export-classes = Nur diese Klassen; Vorgabe: die der Karte. Etwa ground,building oder 2,6.
 command-export-box = Nur Punkte in X1,Y1,Z1,X2,Y2,Z2 in m, in den Koordinaten der Datei.
+command-export-clip = Nur Punkte in allen diesen Quadern der Karte: Mitte X,Y,Z und Kanten DX,DY,DZ in m, um DEG Grad gedreht.
 command-export-storey = Nur dieses Geschoss: 0, 1, -1; Vorgabe: alle.
 command-export-thin = Ein Punkt in jedem Würfel mit dieser Kante in m; Vorgabe: alle.
 command-export-raw = Punkte, wo sie gemessen wurden, nicht auf ausgeglichenen Flächen.

@@ -129,6 +129,7 @@ along-walk = Den Weg entlang
 flight-speed = Tempo des Flugs
 times-walk = { $speed } × das der Begehung
 slice-at-height = Schnitt in dieser Höhe
+export-this-part = Diesen Teil exportieren…
 floor-at = Boden bei { DECIMAL($m, digits: 2) } m
 storey = Geschoss { $name }
 middle-axis = Mitte { $axis } [m]

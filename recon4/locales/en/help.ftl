@@ -184,6 +184,7 @@ command-export-file = File to write; the suffix selects the format: .laz, .copc.
 command-export-crs = As EPSG:5514+8357; default: the map's.
 command-export-classes = Only these classes; default: those of the map. As ground,building or 2,6.
 command-export-box = Only points in X1,Y1,Z1,X2,Y2,Z2 in m, in the coordinates of the file.
+command-export-clip = Only points inside of all these boxes of the map: middle X,Y,Z and edges DX,DY,DZ in m, turned by DEG degrees.
 command-export-storey = Only this storey: 0, 1, -1; default: all.
 command-export-thin = One point in each cube with this edge in m; default: all.
 command-export-raw = Points where they were measured, not on fitted surfaces.

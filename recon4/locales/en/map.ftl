@@ -129,6 +129,7 @@ along-walk = Along the walk
 flight-speed = Speed of the flight
 times-walk = { $speed } × that of the walk
 slice-at-height = Slice at this height
+export-this-part = Export this part…
 floor-at = Floor at { DECIMAL($m, digits: 2) } m
 storey = Storey { $name }
 middle-axis = Middle { $axis } [m]

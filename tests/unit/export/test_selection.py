@@ -172,3 +172,42 @@ def test_coordinates_are_kept_to_a_tenth_of_a_millimeter_far_from_zero(tiles, tm
             found = file.read()
         off_m = np.abs(np.sort(every, axis=0) - np.sort(found.xyz, axis=0))
         assert off_m.max() <= 0.000_051
+
+
+def test_a_turned_clip_is_in_the_map_whatever_the_coordinates_of_the_file(tiles):
+    every = points(tiles, PointSelection())[0] - SHIFT_M
+    middle, turn = np.median(every, axis=0), np.radians(30.0)
+    box = (*middle.tolist(), 2.0, 1.0, 1.5, 30.0)
+    strip = (*middle.tolist(), 0.6, 50.0, 50.0, -20.0)
+
+    found = points(tiles, PointSelection(clip=(box,)))[0] - SHIFT_M
+    both = points(tiles, PointSelection(clip=(box, strip)))[0]
+
+    x, y, z = (every - middle).T
+    along = np.cos(turn) * x + np.sin(turn) * y, np.cos(turn) * y - np.sin(turn) * x, z
+    pairs = zip(along, (1.0, 0.5, 0.75), strict=True)
+    inside = np.all([np.abs(one) <= half for one, half in pairs], axis=0)
+    np.testing.assert_array_equal(found, every[inside])
+    assert 0 < len(both) < len(found) < len(every)
+    assert PointSource.of(tiles, IN_A_GRID, PointSelection(clip=(box,))).count == len(found)
+
+
+def test_tiles_beside_a_clip_are_not_read(tiles):
+    _, high = tiles.bounds_m
+    far = (float(high[0]) + 30.0, 0.0, 0.0, 40.0, 1.0, 1.0, 45.0)
+    source = PointSource.uncounted(tiles, OutputCrs(), PointSelection(clip=(far,)))
+
+    assert not any(source.may_have(tile) for tile in tiles)
+
+
+@pytest.mark.parametrize(
+    ("clip", "says"),
+    [
+        (((0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0),), "edges above 0"),
+        (((0.0, 0.0, np.nan, 1.0, 1.0, 1.0, 0.0),), "edges above 0"),
+        (((0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0),) * 9, "at most 8 boxes, got 9"),
+    ],
+)
+def test_a_clip_that_cannot_be_is_refused(clip, says):
+    with pytest.raises(ConfigError, match=says):
+        ExportOptions(clip=clip).selection()
