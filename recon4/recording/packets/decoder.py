@@ -163,6 +163,7 @@ class PacketDecoder:
 
     def flush(self) -> Shots:
         """Give out what was held back."""
+        self.clock.finish()
         shots = self._shots(*self._order.flush())
         self._count_missing(self._holes.rest())
         return shots

@@ -8,16 +8,10 @@ from numpy.typing import NDArray
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
+from recon4.recording.packets.hours import nearest_hour
 from recon4.recording.packets.tuning import CLOCKS
 from recon4.recording.report import ImportReport
 from recon4.units import HOUR_NS, HOUR_US, SECOND_NS
-
-
-def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
-    """Absolute times [ns] that are ``t_us`` past an hour and nearest to given times."""
-    past_ns = np.asarray(t_us, dtype=np.int64) * 1000
-    near = np.asarray(near_ns, dtype=np.int64)
-    return past_ns + (near - past_ns + HOUR_NS // 2) // HOUR_NS * HOUR_NS
 
 
 class SensorClock:
@@ -38,9 +32,9 @@ class SensorClock:
 
     A jump of either clock (GPS lock won, recorder's clock set) leaves the output continuous, is
     counted (``clock_jumps``) and warned of. Single packets off by more than a second are dropped.
-    Below a second the sensor's clock jumped where its stamps step while packets arrive evenly, and
-    the recorder's where they arrive earlier or later by one amount for seconds; packets that were
-    held up arrive in a burst.
+    The sensor's clock jumped where its stamps step while packets arrive evenly, and the recorder's
+    where stamps go on and packets arrive earlier or later by one amount for seconds; packets that
+    were held up, however long, arrive in a burst.
     """
 
     def __init__(
@@ -171,12 +165,12 @@ class SensorClock:
         expected = t_arrival_ns + self._offset_ns
         raw, t_us = t_us, self._continued(t_us, expected)
         self._turned_us = int(t_us[-1]) - int(raw[-1])
-        t_sensor = nearest_hour(t_us, expected)
+        t_sensor = self._time(t_us, expected)
         deviation = t_sensor - expected
         steps = np.flatnonzero(self._stepped(t_arrival_ns, t_sensor, deviation))
         # Packets that come late are few: after them the others go on.
-        stepped = len(steps) and 2 * _far(deviation[steps[0] :]) > len(deviation) - steps[0]
-        if stepped or np.any(self._odd(t_us, t_sensor, deviation)):
+        stepped = len(steps) and np.median(np.abs(deviation[steps[0] :])) > CLOCKS.step_ns
+        if stepped or np.any(self._odd(t_sensor, deviation)):
             return self._push_one_by_one(t_arrival_ns, t_us)
         t_ns = t_sensor + self._shift(t_sensor)
         self._follow(t_arrival_ns, t_sensor, deviation)
@@ -191,7 +185,7 @@ class SensorClock:
             return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
         offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
         expected = t_arrival_ns + offset
-        t_sensor = nearest_hour(self._continued(t_us, expected), expected)
+        t_sensor = self._time(self._continued(t_us, expected), expected)
         deviation = t_sensor - expected
         off_ns = np.minimum(np.abs(deviation), np.abs(deviation - self._early_ns()))
         # Less until the jump of its clock is confirmed.
@@ -225,26 +219,25 @@ class SensorClock:
 
     def _say_free_running(self, offset_ns: int) -> None:
         self._report.count(f"clock_runs_freely_{self._name}")
-        ahead_s = offset_ns / SECOND_NS
+        name, ahead_s, hours = self._name, offset_ns / SECOND_NS, not self.past_hour
         if self._alone:
+            kind = DerivedKind.CLOCK_SHIFTED
             self._report.derive(
-                DerivedKind.CLOCK_SHIFTED,
-                sensor=self._name,
-                ahead_s=ahead_s,
-                hours=not self.past_hour,
-                past_hour=self.past_hour,
+                kind, sensor=name, ahead_s=ahead_s, hours=hours, past_hour=self.past_hour
             )
-            return
-        hours = not self.past_hour
-        self._report.warn(FindingKind.CLOCK_FREE, sensor=self._name, ahead_s=ahead_s, hours=hours)
+        else:
+            self._report.warn(FindingKind.CLOCK_FREE, sensor=name, ahead_s=ahead_s, hours=hours)
 
-    def _odd(
-        self, t_us: NDArray[np.integer], t_sensor: Times, deviation: Times
-    ) -> NDArray[np.bool_]:
-        """Packets at which one of the clocks seems to have jumped, also by whole hours."""
+    def _time(self, t_us: NDArray[np.integer], expected: Times | int) -> Times:
+        """Times on the sensor's clock [ns]: of the hour of the last packet, if soon after it."""
         going_on = nearest_hour(t_us, self._last[1])
-        by_hours = (going_on != t_sensor) & (np.abs(going_on - self._last[1]) < CLOCKS.pause_ns)
-        return (np.abs(deviation) > CLOCKS.jump_ns) | by_hours
+        soon = np.abs(going_on - self._last[1]) < CLOCKS.pause_ns
+        return np.where(soon, going_on, nearest_hour(t_us, expected))
+
+    def _odd(self, t_sensor: Times, deviation: Times) -> NDArray[np.bool_]:
+        """Packets at which one of the clocks seems to have jumped; late ones go on."""
+        goes_on = np.abs(np.diff(t_sensor, prepend=self._last[1])) <= CLOCKS.step_ns
+        return (np.abs(deviation) > CLOCKS.jump_ns) & ~goes_on
 
     def _stepped(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> NDArray[np.bool_]:
         """Packets that arrive evenly, with stamps that step by less than `CLOCKS.jump_ns`."""
@@ -267,7 +260,8 @@ class SensorClock:
         self._block, self._filled = [], 0
         assert self._offset_ns is not None
         usual = int(np.median(block[0]))
-        if abs(usual) <= CLOCKS.step_ns:
+        as_usual = abs(usual) <= CLOCKS.step_ns
+        if as_usual:
             self._offset_ns += int(0.1 * usual)
             self._apart = []
             # The step may be in the second half of this block.
@@ -275,11 +269,10 @@ class SensorClock:
         else:
             self._confirm_apart(int(t_sensor[-1]), block[0])
         self._report_ahead()
-        if not self._free_running:
-            return
-        self._window.append(int(np.min(block[1])))
+        if as_usual:  # late packets show no drift
+            self._window.append(int(np.min(block[1])))
         now = int(t_sensor[-1])
-        if now - self._since_ns >= CLOCKS.track_ns:
+        if self._free_running and self._window and now - self._since_ns >= CLOCKS.track_ns:
             self._shift_ns = int(self._shift(now))
             usual = min(self._window) - self._host_jump_ns - self._packet_ns + self._base_ns
             error = usual - self._shift_ns
@@ -297,8 +290,18 @@ class SensorClock:
         if np.ptp(deviation) > CLOCKS.even_ns or spread.max() > CLOCKS.even_ns:
             self._apart = []
         self._apart.append((now_ns, usual))
-        if now_ns - self._apart[0][0] < (CLOCKS.back_ns if self._went_back else CLOCKS.late_ns):
+        if now_ns - self._apart[0][0] >= (CLOCKS.back_ns if self._went_back else CLOCKS.late_ns):
+            self._take_recorder_jump(usual)
+
+    def finish(self) -> None:
+        """Judge packets that were late up to the last one: by one amount is a jump."""
+        if not self._apart:
             return
+        (first_ns, _), (last_ns, usual) = self._apart[0], self._apart[-1]
+        if abs(usual) > CLOCKS.jump_ns and last_ns - first_ns >= CLOCKS.back_ns:
+            self._take_recorder_jump(usual)
+
+    def _take_recorder_jump(self, usual: int) -> None:
         assert self._offset_ns is not None
         self._offset_ns += usual
         self._host_jump_ns -= usual
@@ -318,7 +321,7 @@ class SensorClock:
             stamp = t_us[row : row + 1]
             kept[row] = self._accept(arrival, stamp)
             assert self._offset_ns is not None
-            t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
+            t_sensor = self._time(stamp, arrival + self._offset_ns)
             t_ns[row] = (t_sensor + self._shift(t_sensor))[0]
             if kept[row]:
                 self._last = (arrival, int(t_sensor[0]))
@@ -327,12 +330,12 @@ class SensorClock:
 
     def _accept(self, arrival: int, stamp: NDArray[np.integer]) -> bool:
         assert self._offset_ns is not None
-        t_sensor = nearest_hour(stamp, arrival + self._offset_ns)
+        t_sensor = self._time(stamp, arrival + self._offset_ns)
         deviation = t_sensor - (arrival + self._offset_ns)
         stepped = self._stepped(np.array([arrival]), t_sensor, deviation)
         arrived, stamped = self._since_last(arrival, stamp)
         goes_on = abs(arrived - stamped) <= CLOCKS.step_ns  # as late as the one before it
-        if goes_on or not (stepped | self._odd(stamp, t_sensor, deviation))[0]:
+        if goes_on or not (stepped | self._odd(t_sensor, deviation))[0]:
             self._run = 0
             return True
         off = int(deviation[0])
@@ -391,8 +394,3 @@ class SensorClock:
             jump_s=jump_ns / SECOND_NS,
             times="without-it",
         )
-
-
-def _far(deviation: Times) -> int:
-    """How many packets are farther from where they are expected than a step."""
-    return int(np.count_nonzero(np.abs(deviation) > CLOCKS.step_ns))

@@ -14,7 +14,8 @@ from recon4.model.rig import Sensor
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import PacketSamples
-from recon4.recording.packets.sensor_clock import SensorClock, nearest_hour
+from recon4.recording.packets.hours import nearest_hour
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.velodyne.models import ACCEL_UNIT_M_S2, GYRO_UNIT_RAD_S, POSITION_SIZE
 from recon4.recording.packets.velodyne.tuning import POSITIONS
 from recon4.recording.report import ImportReport
