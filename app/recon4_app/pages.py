@@ -134,26 +134,27 @@ def html_of(file: str, prefix: str = "") -> str:
     """
     head = (WEB / "shared" / "head.html").read_text("utf-8")
     page = _PAGE.sub("", _html(file)).replace(HEAD_HERE, head)
-    page = _SCRIPT.sub(lambda found: _preloads(found[1]) + found[0], page)
+    scripts = tuple(_SCRIPT.findall(page))
+    page = _SCRIPT.sub(lambda found: _preloads(scripts) + found[0], page, count=1)
     return _ADDRESS.sub(rf"\g<1>{prefix}", page)
 
 
 @cache
-def _preloads(script: str) -> str:
-    """Links to all that a script imports, so that a browser requests it at once.
+def _preloads(scripts: tuple[str, ...]) -> str:
+    """Links to all that scripts import, so that a browser requests it at once.
 
     Else each level of imports is requested after the one before has come.
     """
     found: dict[Path, None] = {}
-    left = [WEB / script]
+    left = [WEB / script for script in reversed(scripts)]
     while left:
         module = left.pop()
         if module not in found and module.is_file():
             found[module] = None
             names = _IMPORT.findall(module.read_text("utf-8"))
             left += [Path(normpath(module.parent / name)) for name in names]
-    paths = [module.relative_to(WEB).as_posix() for module in found][1:]
-    return "".join(_PRELOAD.format(f"/web/{path}") for path in paths)
+    paths = [module.relative_to(WEB).as_posix() for module in found]
+    return "".join(_PRELOAD.format(f"/web/{path}") for path in paths if path not in scripts)
 
 
 def web_key() -> str:

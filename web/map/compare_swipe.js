@@ -1,6 +1,6 @@
 // Another map on the other side of a divider: its points in a scene of their own.
 
-import { drawDiscs, giveLook, pointMaterial } from "./materials.js";
+import { define, giveLook, pointMaterial } from "./materials.js";
 import { nodesOf } from "./nodes.js";
 import { MapTiles } from "./tiles.js";
 import { Matrix4, Scene, Vector2 } from "../shared/vendor/three/three.module.min.js";
@@ -68,7 +68,7 @@ export class MapBeside {
    * @param {{color: string, ends: [number, number]}} drawing
    */
   follow({ uniforms: of, defines }, { color, ends }) {
-    drawDiscs(this.#material, "DISCS" in defines);
+    define(this.#material, "DISCS", "DISCS" in defines);
     const { uniforms } = this.#material;
     const { thinned, known, turn } = uniforms;
     Object.assign(uniforms, of, { thinned, known, turn });

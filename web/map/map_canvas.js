@@ -1,22 +1,19 @@
 // The canvas of the map: draws points while the camera moves, and all of them when it rests.
 
 import { focalPx } from "./camera.js";
-import { rampOf } from "./colors.js";
 import { choose } from "./lod.js";
 import { Pace } from "./pace.js";
 import {
   BACKGROUNDS,
   MOST_PLANES,
-  PLAIN,
   boundsOf,
-  drawDiscs,
+  define,
   drawingTarget,
+  giveColors,
   giveLook,
-  pointMaterial,
-  rendererOf,
-  screenMaterial,
   sheetOf,
 } from "./materials.js";
+import { drawerOf } from "./drawer.js";
 import { placeCamera } from "./projection.js";
 import { layersOf } from "./walk_layers.js";
 import { MapTiles } from "./tiles.js";
@@ -54,8 +51,8 @@ export class MapCanvas {
   #lines = new Scene();
   #screenScene = new Scene();
   #camera = new PerspectiveCamera();
-  #material = pointMaterial();
-  #screen = screenMaterial();
+  #material;
+  #screen;
   #coarse = drawingTarget();
   #fine = drawingTarget();
   /** @type {Drawing | null} */
@@ -89,8 +86,10 @@ export class MapCanvas {
   constructor(canvas, index, reader) {
     this.#canvas = canvas;
     this.#index = index;
-    this.#renderer = rendererOf(canvas);
-    this.#renderer.autoClear = false;
+    const drawer = drawerOf(canvas);
+    this.#renderer = drawer.renderer;
+    this.#material = drawer.material;
+    this.#screen = drawer.screen;
     Object.assign(this.#camera, { matrixWorldAutoUpdate: false, matrixAutoUpdate: false });
     for (const scene of [this.#scene, this.#lines, this.#screenScene])
       scene.matrixWorldAutoUpdate = false;
@@ -138,7 +137,7 @@ export class MapCanvas {
     if (!points && !this.#differences) return;
     if (this.#differences) this.#scene.remove(this.#differences.object);
     if (points) this.#scene.add(points.object);
-    points?.follow(this.#material.uniforms);
+    points?.follow(this.#material);
     this.#differences = points;
     this.#news();
   }
@@ -311,14 +310,14 @@ export class MapCanvas {
     const view = { screen: this.screen, bounds: boundsOf(nodes.filter(({ cube }) => cube < 0)) };
     const { near, far, turn } = placeCamera(this.#camera, drawing.camera, view);
     this.#material.uniforms.turn.value = turn;
-    drawDiscs(this.#material, into === this.#fine);
+    define(this.#material, "DISCS", into === this.#fine);
+    define(this.#screen, "FINE", into === this.#fine);
     this.#look(drawing, ratio);
     const { uniforms } = this.#screen;
     if (drawing.camera.parallel) uniforms.nearness.value.set(-near, near - far);
     else uniforms.nearness.value.set(1 / near, 1 / far - 1 / near);
     uniforms.scale.value = drawing.camera.parallel ? 1 / drawing.camera.distance : 0;
     uniforms.strength.value = drawing.depth ? 25 : 0;
-    uniforms.fine.value = into === this.#fine;
     uniforms.ground.value.set(...BACKGROUNDS[drawing.dark ? "dark" : "light"]);
     this.#clear(into, 0);
   }
@@ -345,17 +344,14 @@ export class MapCanvas {
     uniforms.sizes.value.set(ratio, 24 * ratio);
     uniforms.mode.value = { height: 0, class: 2, plain: 3 }[/** @type {string} */ (color)] ?? 1;
     uniforms.ends.value.set(...this.#endsOf(color, ends));
-    rampOf(color).forEach((rgb, k) => {
-      const [r, g, b] = rgb.map((x) => x / 255);
-      uniforms.ramp.value[k].set(r, g, b);
-    });
-    uniforms.plain.value.set(...PLAIN[dark ? "dark" : "light"]);
+    giveColors(this.#material, color, dark);
     planes.slice(0, MOST_PLANES).forEach(([x, y, z, d], k) => {
       uniforms.planes.value[k].set(x, y, z, d);
     });
     uniforms.planeCount.value = Math.min(planes.length, MOST_PLANES);
     this.#material.uniformsNeedUpdate = true;
     this.#beside?.follow(this.#material, { color, ends });
+    this.#differences?.follow(this.#material);
     if (this.#layers.walk) this.#layers.walk.visible = layers.walk;
     if (this.#layers.nodes) this.#layers.nodes.visible = layers.nodes;
   }

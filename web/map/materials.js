@@ -1,6 +1,6 @@
 // What the canvas of the map draws with: materials, targets, colors.
 
-import { classColor } from "./colors.js";
+import { classColor, rampOf } from "./colors.js";
 import { DEPTH_FRAGMENT, POINT_FRAGMENT, POINT_VERTEX, SCREEN_VERTEX } from "./shaders.js";
 import {
   BufferAttribute,
@@ -27,8 +27,10 @@ import { t } from "../shared/texts.js";
 
 export const MOST_PLANES = 12;
 export const BACKGROUNDS = { dark: [0.063, 0.078, 0.094], light: [0.914, 0.93, 0.941] };
-export const PLAIN = { dark: [0.82, 0.84, 0.86], light: [0.74, 0.76, 0.79] };
+const PLAIN = { dark: [209, 214, 219], light: [189, 194, 201] };
 const CLASS_CODES = 68;
+const RAMP = 17;
+const [PLAIN_AT, COLORS] = [RAMP + CLASS_CODES, RAMP + CLASS_CODES + 2]; // then unknown values
 const CUBE_TILES = 64; // most tiles of a cube
 
 /** The box of all points: what is drawn lies in it. */
@@ -71,11 +73,13 @@ export function sheetOf(/** @type {Material} */ material) {
 
 const vectors = (/** @type {number} */ count) => Array.from({ length: count }, () => new Vector3());
 
+const put = (/** @type {Vector3} */ color, /** @type {number[]} */ [red, green, blue]) =>
+  color.set(red / 255, green / 255, blue / 255);
+
 export function pointMaterial() {
-  const classes = Array.from({ length: CLASS_CODES }, (_, code) => {
-    const [r, g, b] = classColor(code).map((x) => x / 255);
-    return new Vector3(r, g, b);
-  });
+  const colors = vectors(COLORS);
+  for (let code = 0; code < CLASS_CODES; code++) put(colors[RAMP + code], classColor(code));
+  colors[COLORS - 1].set(0.5, 0.5, 0.52);
   return new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: POINT_VERTEX,
@@ -91,10 +95,7 @@ export function pointMaterial() {
       mode: { value: 0 },
       known: { value: true },
       ends: { value: new Vector2(0, 1) },
-      ramp: { value: vectors(17) },
-      classes: { value: classes },
-      unknown: { value: new Vector3(0.5, 0.5, 0.52) },
-      plain: { value: new Vector3(0.8, 0.8, 0.8) },
+      colors: { value: colors },
       planes: { value: Array.from({ length: MOST_PLANES }, () => new Vector4()) },
       planeCount: { value: 0 },
     },
@@ -102,13 +103,27 @@ export function pointMaterial() {
 }
 
 /**
- * Has large points drawn as discs, or as squares, which are quicker: while the camera moves.
+ * Sets the ramp of the colors, and the color of the shape alone.
  * @param {RawShaderMaterial} material
- * @param {boolean} discs
+ * @param {import("./state.js").ColorBy} color
+ * @param {boolean} dark
  */
-export function drawDiscs(material, discs) {
-  if ("DISCS" in material.defines === discs) return;
-  material.defines = discs ? { DISCS: "" } : {};
+export function giveColors({ uniforms }, color, dark) {
+  const { value } = uniforms.colors;
+  rampOf(color).forEach((rgb, k) => put(value[k], rgb));
+  put(value[PLAIN_AT], PLAIN[dark ? "dark" : "light"]);
+}
+
+/**
+ * Compiles a shader for an image at rest, with large points as discs, or for one of a moving
+ * camera, which is drawn faster.
+ * @param {RawShaderMaterial} material
+ * @param {"DISCS" | "FINE"} name
+ * @param {boolean} on
+ */
+export function define(material, name, on) {
+  if (name in material.defines === on) return;
+  material.defines = on ? { [name]: "" } : {};
   material.needsUpdate = true;
 }
 
@@ -117,6 +132,7 @@ export const screenMaterial = () =>
     glslVersion: GLSL3,
     vertexShader: SCREEN_VERTEX,
     fragmentShader: DEPTH_FRAGMENT,
+    defines: {},
     blending: NoBlending,
     depthTest: false,
     depthWrite: false,
@@ -125,7 +141,6 @@ export const screenMaterial = () =>
       depths: { value: null },
       nearness: { value: new Vector2(1, -1) },
       scale: { value: 1 },
-      fine: { value: true },
       strength: { value: 1 },
       ground: { value: new Vector3() },
     },
