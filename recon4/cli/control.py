@@ -58,6 +58,7 @@ def control_points(
     confine_command(write=[project])
     from recon4.model.site_control import SiteControl
     from recon4.slices.site_control import require_agreement, trial_text
+    from recon4.slices.stored_picks import as_stored, keep_seen_picks
 
     if not survey:
         if not apply or picks or crs:
@@ -73,6 +74,8 @@ def control_points(
         write(f"not measured in the map: {', '.join(trial.unseen)}")
     require_agreement(trial)
     if apply:
+        if picks is None:
+            keep_seen_picks(project, trial.control, as_stored(project).picks)
         _make_again(project, trial.control)
 
 
@@ -118,7 +121,7 @@ def _try(
     from recon4.store.project import read_artifacts
 
     artifacts = read_artifacts(project)
-    measured = _picked(picks) if picks else _picked_on_page(project, artifacts["map"].name)
+    measured = _picked(picks) if picks else _picked_on_page(project, artifacts)
     return try_control(points, measured, artifacts, crs=crs)
 
 
@@ -137,10 +140,10 @@ def _picked(picks: Path) -> dict[str, MeasuredPosition]:
     return found
 
 
-def _picked_on_page(project: Path, key: str) -> dict[str, MeasuredPosition]:
+def _picked_on_page(project: Path, artifacts: dict[str, Path]) -> dict[str, MeasuredPosition]:
     from recon4.slices.stored_picks import stored_picks
 
-    found = stored_picks(project, key)
+    found = stored_picks(project, artifacts)
     if not found:
         raise ConfigError(CodedText("control-no-picks"))
     return found

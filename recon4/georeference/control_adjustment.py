@@ -69,18 +69,6 @@ class ToAdjust:
     """Of the poses of the map, for the test of points."""
 
 
-def place_of(target: SeenTarget, trajectory: Trajectory) -> Array:
-    """Where a map has a target [m], (3,): the mean over the multiframes that saw it."""
-    T_map_body = trajectory.at(np.array(target.t_ns))
-    return np.asarray((T_map_body @ np.array(target.p_body_m)).mean(axis=0))
-
-
-def directions_of(target: SeenTarget, trajectory: Trajectory) -> Array:
-    """Directions in which it was measured, in the map, (1..3, 3)."""
-    R = trajectory.at(np.array(target.t_ns[:1])).R[0]
-    return np.asarray(np.array(target.directions_body[0]) @ R.T)
-
-
 def survey_covariance(target: SeenTarget) -> Array:
     """Covariance of survey and pick [m²], (3, 3), along the axes of the survey.
 
@@ -113,7 +101,7 @@ def measured_targets(
         cov = survey_covariance(target)
         if uncertainty is not None:
             cov = cov + _of_map(uncertainty, target)
-        place, along = place_of(target, trajectory), directions_of(target, trajectory)
+        place, along = target.place_in(trajectory), target.directions_in(trajectory)
         found.append(MeasuredTarget(target.id, p, place, along, cov))
     return found
 

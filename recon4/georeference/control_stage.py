@@ -12,8 +12,6 @@ from recon4.georeference.control_adjustment import (
     Adjusted,
     ToAdjust,
     adjust,
-    directions_of,
-    place_of,
 )
 from recon4.georeference.control_blunders import (
     Blunder,
@@ -163,8 +161,8 @@ def offsets(targets: Sequence[SeenTarget], p_site: Array, trajectory: Trajectory
     """
     rows = []
     for target, p in zip(targets, p_site, strict=True):
-        along = directions_of(target, trajectory)
-        off = (place_of(target, trajectory) - p) @ along.T @ along
+        along = target.directions_in(trajectory)
+        off = (target.place_in(trajectory) - p) @ along.T @ along
         rows.append(np.where(np.linalg.norm(along, axis=0) > CONTROL_FIT.in_span, off, np.nan))
     return np.array(rows).reshape(-1, 3)
 

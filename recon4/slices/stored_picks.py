@@ -1,19 +1,32 @@
-"""Places of surveyed points that were picked on the page of slices."""
+"""Places of surveyed points that were picked on the page of slices, in any map of the walk.
+
+A pick is a place in one map. When the map is put on its control points, it is kept who saw the
+picked places: every map that is made of the walk afterwards has them, too.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
 import numpy as np
 
-from recon4.errors import StoreError
+from recon4.errors import OutOfRange, StoreError
 from recon4.locales.coded import unreadable
+from recon4.model.plain import to_plain
+from recon4.model.site_control import SeenPlace, SiteControl, Xyz
 from recon4.slices.measured_points import MeasuredPosition, orthonormal
+from recon4.store.arrays import load_trajectory
+from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
+from recon4.store.seal import changing, check_sealed
 from recon4.untrusted.limits import LIMITS
 
-Xyz = tuple[float, float, float]
+SEEN_PICKS = "slices/seen_picks.json"
+"""Below the project: id -> `SeenPick`."""
+TRAJECTORY = "trajectory.npz"
+"""Of the stage ``level``."""
 
 
 class StoredPicks(msgspec.Struct, frozen=True):
@@ -24,25 +37,100 @@ class StoredPicks(msgspec.Struct, frozen=True):
     found_in: dict[str, str] = {}
 
 
-def stored_picks(project: Path, key: str) -> dict[str, MeasuredPosition]:
-    """Id -> place in a map; those that were picked in another map are left out.
+class SeenPick(msgspec.Struct, frozen=True, kw_only=True):
+    """A pick, and who saw the place."""
+
+    picked_m: Xyz
+    """As it is stored: another pick of this point was not seen by these."""
+    seen: SeenPlace
+
+
+def keep_seen_picks(project: Path, control: SiteControl, picks: Mapping[str, Xyz]) -> None:
+    """Keep who saw the picks that the map is put on.
 
     Args:
         project: Its folder.
-        key: Of the map.
+        control: Made of the picks.
+        picks: Id -> pick, as it is stored.
+    """
+    kept = {
+        one.id: SeenPick(
+            picked_m=picks[one.id],
+            seen=SeenPlace(
+                t_ns=one.t_ns, p_body_m=one.p_body_m, directions_body=one.directions_body
+            ),
+        )
+        for one in control.targets
+        if one.id in picks
+    }
+    path = project / SEEN_PICKS
+    path.parent.mkdir(exist_ok=True)
+    with changing(project, SEEN_PICKS, compared=False):
+        write_json(path, to_plain(kept))
+
+
+def carried_picks(
+    project: Path, picks: Mapping[str, Xyz], level: Path
+) -> dict[str, MeasuredPosition]:
+    """Id -> place in the map of ``level``, of the picks for which it is known who saw them.
+
+    Raises:
+        Altered: If the file of who saw them was changed.
+        StoreError: If a file cannot be read.
+    """
+    path = project / SEEN_PICKS
+    if not picks or not path.is_file():
+        return {}
+    check_sealed(project, SEEN_PICKS)
+    try:
+        record = read_object(path, max_bytes=LIMITS.findings_bytes)
+        kept = msgspec.convert(record, dict[str, SeenPick])
+    except msgspec.ValidationError as error:
+        raise StoreError(unreadable(path.name, error)) from error
+    trajectory = load_trajectory(level / TRAJECTORY)
+    found = {}
+    for name, one in kept.items():
+        if picks.get(name) == one.picked_m:
+            try:
+                p_map = one.seen.place_in(trajectory)
+            except OutOfRange:  # the recording of another walk
+                continue
+            along = orthonormal(one.seen.directions_in(trajectory))
+            found[name] = MeasuredPosition(p_map, along)
+    return found
+
+
+def stored_picks(project: Path, artifacts: Mapping[str, Path]) -> dict[str, MeasuredPosition]:
+    """Id -> place in the latest map; left out are picks of an earlier one that nobody saw.
+
+    Args:
+        project: Its folder.
+        artifacts: Of the run that made the map.
+
+    Raises:
+        StoreError: If the file is damaged.
+    """
+    stored = as_stored(project)
+    key = artifacts["map"].name
+    here = {
+        name: MeasuredPosition(np.array(at), orthonormal(stored.along[name]))
+        for name, at in stored.picks.items()
+        if stored.found_in.get(name) == key and name in stored.along
+    }
+    earlier = {name: at for name, at in stored.picks.items() if name not in here}
+    return here | carried_picks(project, earlier, artifacts["level"])
+
+
+def as_stored(project: Path) -> StoredPicks:
+    """The picks of any map, each in its own.
 
     Raises:
         StoreError: If the file is damaged.
     """
     path = project / "slices" / "control.json"
     if not path.is_file():
-        return {}
+        return StoredPicks()
     try:
-        stored = msgspec.convert(read_object(path, max_bytes=LIMITS.findings_bytes), StoredPicks)
+        return msgspec.convert(read_object(path, max_bytes=LIMITS.findings_bytes), StoredPicks)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error
-    return {
-        name: MeasuredPosition(np.array(at), orthonormal(stored.along[name]))
-        for name, at in stored.picks.items()
-        if stored.found_in.get(name) == key and name in stored.along
-    }

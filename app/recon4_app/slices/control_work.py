@@ -11,6 +11,7 @@ from recon4.geometry.se3 import Array
 from recon4.locales.languages import ENGLISH
 from recon4.model.site_control import SITE_GRID
 from recon4.recording.tables.coordinates import ColumnChoice
+from recon4.review.evidence import Evidence
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
@@ -20,6 +21,7 @@ from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text
+from recon4.slices.stored_picks import TRAJECTORY
 from recon4.workflows.result_files import covariances_of
 from recon4_app.slices.model import ControlState, ExportContext
 from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, stamp_text, tiles_of
@@ -58,6 +60,7 @@ def control_file(
     if evidence:
         map_of(artifacts, evidence)
         evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
+        _check_trajectory(artifacts, evidence)  # or they were carried to it
     found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
     text = AcceptanceText(
         project=context.project,
@@ -69,6 +72,13 @@ def control_file(
         return render_acceptance(found, text)
     line = f"of {text.project}, {text.sources}, {text.frame}. {text.approval}"
     return residual_csv(found, comment=line)
+
+
+def _check_trajectory(artifacts: Artifacts, evidence: Evidence) -> None:
+    if "level" in artifacts:
+        level = evidence.artifact("level", Path(artifacts["level"]))
+        if TRAJECTORY in level.files:
+            level.check(TRAJECTORY)
 
 
 def _residuals(artifacts: Artifacts, state: ControlState, language: str = ENGLISH) -> ControlReport:

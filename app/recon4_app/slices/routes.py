@@ -276,13 +276,13 @@ async def preview_control(
 @router.get("/control", dependencies=LOOK, summary="Control and check points")
 def read_control(project_id: str, server: Server) -> ControlState:
     """The stored points, with their positions in the map."""
-    return server.slices.control(project_id)
+    return server.slices.survey.read(project_id)
 
 
 @router.put("/control", dependencies=PROCESS, summary="Store control and check points")
 def keep_control(project_id: str, state: ControlState, server: Server) -> ControlState:
     """The points are on disk before the response is sent."""
-    return server.slices.keep_control(project_id, state)
+    return server.slices.survey.keep(project_id, state)
 
 
 @router.get("/control/report", dependencies=LOOK, summary="Residuals")
@@ -291,7 +291,7 @@ async def control_report(
 ) -> ControlReport:
     """Map minus survey, separate for control and check points, with every limit."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    state = await run_in_threadpool(server.slices.control, project_id)
+    state = await run_in_threadpool(server.slices.survey.read, project_id)
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
         server.slices.run_interactive(
@@ -312,7 +312,7 @@ async def control_file(
     """CSV, or a sheet to print and sign; both name the map and, except a draft, its approval."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
-    state = await run_in_threadpool(slices.control, project_id)
+    state = await run_in_threadpool(slices.survey.read, project_id)
     project = await run_in_threadpool(server.projects.get, project_id)
     evidence = await run_in_threadpool(slices.evidence, project_id, draft=draft)
     context = ExportContext(project.name, Path(artifacts["map"]).name, evidence)
@@ -332,7 +332,7 @@ async def control_file(
 async def surface(project_id: str, point: str, server: Server, *, caller: CalledBy) -> SurfacePoint:
     """Position of a surveyed point in the map, and its foot on the nearest surface."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    state = await run_in_threadpool(server.slices.control, project_id)
+    state = await run_in_threadpool(server.slices.survey.read, project_id)
     found: list[Xyz] = [one.xyz_m for one in state.points if one.id == point]
     if not found:
         raise ConfigError(CodedText("control-point-unknown", name=point[:64]))

@@ -49,7 +49,7 @@ async def try_site(
 ) -> site_work.SiteTrial:
     """Residuals and tests of the measured points after a rigid fit; nothing is changed."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    state = await run_in_threadpool(server.slices.control, project_id)
+    state = await run_in_threadpool(server.slices.survey.read, project_id)
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
         server.slices.run_background(
@@ -65,18 +65,19 @@ async def put_on_site(
     """Note it in the journal; the map follows when it is made again (``remake``).
 
     Points that contradict each other are refused. The survey counts as in the map's CRS from now
-    on.
+    on, and the picks are kept in every map that is made afterwards.
     """
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    state = await run_in_threadpool(server.slices.control, project_id)
+    state = await run_in_threadpool(server.slices.survey.read, project_id)
     terms = server.slices.terms(project_id, caller.name)
     data = await caller.wait(
         server.slices.run_background(terms, site_work.site_control_of, artifacts, state, system.crs)
     )
     control = decode_record(data, SiteControl)
+    await run_in_threadpool(server.slices.survey.keep_seen, project_id, control)
     # The map will have the coordinates of the survey: its points are no longer in a local frame.
     of_site = state.model_copy(update={"frame": "crs"})
-    await run_in_threadpool(server.slices.keep_control, project_id, of_site)
+    await run_in_threadpool(server.slices.survey.keep, project_id, of_site)
     await run_in_threadpool(_decide, server, project_id, who=caller.name, control=control)
     audit(caller.request, "put map on control points", project_id)
 

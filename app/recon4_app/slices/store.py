@@ -6,7 +6,6 @@ import asyncio
 import re
 import secrets
 import shutil
-import threading
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,16 +16,14 @@ from starlette.concurrency import run_in_threadpool
 
 from recon4.comparison.common_frame import earlier_map_rows
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText, unreadable
+from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.review.approval_state import ApprovalState, approval_state
 from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
 from recon4.review.evidence import Evidence
 from recon4.review.trusted_keys import UnknownSigner
-from recon4.store.atomic import write_json
 from recon4.store.project import read_artifacts
 from recon4.store.seal import begin_change, changing, check_sealed, end_change
-from recon4.untrusted.bounded import read_text_limited
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import Conflict, NotFound
@@ -34,15 +31,15 @@ from recon4_app.projects.store import PROJECT_ID, ProjectStore
 from recon4_app.review.hash_checks import ApprovalChecks
 from recon4_app.settings import ServerSettings
 from recon4_app.slices import slice_work
+from recon4_app.slices.control_store import ControlStore
 from recon4_app.slices.exports import Exports
 from recon4_app.slices.listed_reference import ListedReference
-from recon4_app.slices.model import ControlState, OtherMap, Xyz
+from recon4_app.slices.model import OtherMap
 from recon4_app.slices.tuning import SLICE_STORE
 
 T = TypeVar("T")
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 _REFERENCE = re.compile(r"[0-9a-f]{12}")
-CONTROL = "slices/control.json"
 
 
 class Superseded(Conflict):
@@ -88,12 +85,12 @@ class Slices:
     ) -> None:
         self._pool, self._checks = pool, checks
         self._projects = projects
+        self.survey = ControlStore(projects)
         self._kept = settings.state / "slices"
         self.exports = Exports(
             pool, self._kept / "exports", reserve_bytes=settings.free_disk_reserve_bytes
         )
         self._newest: OrderedDict[tuple[str, str], _Latest] = OrderedDict()
-        self._keeping = threading.Lock()
         self._making: dict[Path, asyncio.Lock] = {}
 
     # -- which map
@@ -251,54 +248,6 @@ class Slices:
             folder.rename(gone)
         shutil.rmtree(gone)
 
-    def control(self, project_id: str) -> ControlState:
-        """Control and check points of a project; none at first.
-
-        Raises:
-            StoreError: If the file is damaged.
-        """
-        root = self._projects.folder(project_id)
-        check_sealed(root, CONTROL)  # an acceptance sheet is made of it
-        path = root / CONTROL
-        if not path.exists():
-            return ControlState(version=0)
-        try:
-            text = read_text_limited(path, SLICE_STORE.max_control_bytes, failure=StoreError)
-            state = ControlState.model_validate_json(text)
-        except (StoreError, ValueError) as error:
-            raise StoreError(unreadable(path.name, error)) from error
-        return state.model_copy(update={"version": state.version or 0})
-
-    def keep_control(self, project_id: str, state: ControlState) -> ControlState:
-        """Store control points on disk; new positions are those of the latest map.
-
-        Raises:
-            Conflict: If another user stored control points since this state was read.
-        """
-        with self._keeping:
-            return self._keep_control(project_id, state)
-
-    def _keep_control(self, project_id: str, state: ControlState) -> ControlState:
-        before, key = self.control(project_id), Path(self._latest(project_id)["map"]).name
-        assert before.version is not None
-        if state.version not in (None, before.version):
-            raise Conflict(CodedText("control-points-changed"))
-        kept = state.model_copy(
-            update={
-                "found_in": {
-                    name: before.found_in.get(name, "") if before.picks.get(name) == at else key
-                    for name, at in state.picks.items()
-                },
-                "along": _measured_along(before, state),
-                "version": before.version + 1,
-            }
-        )
-        folder = self._folder(project_id)
-        folder.mkdir(exist_ok=True)
-        with changing(self._projects.folder(project_id), CONTROL):
-            write_json(folder / "control.json", kept.model_dump(mode="json"))
-        return kept
-
     # -- work
 
     def terms(self, project_id: str, person: str, source: str = "") -> Terms:
@@ -369,17 +318,6 @@ class Slices:
         self._projects.map_artifact(project_id)  # raises if there is no map
         found = read_artifacts(self._projects.folder(project_id))
         return {stage: str(folder) for stage, folder in found.items()}
-
-
-def _measured_along(before: ControlState, state: ControlState) -> dict[str, list[Xyz]]:
-    """The directions in which each position was measured.
-
-    A position that was there before without directions is of an earlier version: it stays without.
-    """
-    every: list[Xyz] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
-    usual = {name: every for name, at in state.picks.items() if before.picks.get(name) != at}
-    known = before.along | usual | state.along
-    return {name: known[name] for name in state.picks if name in known}
 
 
 def _keys(root: Path) -> dict[str, str]:

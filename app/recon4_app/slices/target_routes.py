@@ -53,7 +53,7 @@ def order(project_id: str, *, server: Server, request: Request) -> TargetSearch:
     If the same search of this map waits, runs or is kept, that one is returned.
     """
     server.slices.artifacts(project_id)  # raises if there is no map
-    points = server.slices.control(project_id).points
+    points = server.slices.survey.read(project_id).points
     radii = sorted({round(one.radius_m, 4) for one in points if one.radius_m > 0.0})
     wanted = TargetOrder(radii_m=tuple(radii[: SLICE_REQUESTS.radii]))
     map_key = latest_map_key(server, project_id)
@@ -101,7 +101,7 @@ async def read_found(
         raise NotFound(CodedText("targets-gone"))
     found = await run_in_threadpool(readers.read_targets, path)
     slices = server.slices
-    state = await run_in_threadpool(slices.control, project_id)
+    state = await run_in_threadpool(slices.survey.read, project_id)
     terms = slices.terms(project_id, caller.name)
     return await caller.wait(
         slices.run_interactive(terms, target_work.name_targets, found, state, crs)

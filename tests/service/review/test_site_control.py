@@ -56,9 +56,14 @@ def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     trial = httpx.get(url(server, root, "control/site"), timeout=HANG_S).json()
     put = httpx.post(url(server, root, "control/site"), json={}, timeout=HANG_S)
     make(root)
+    residuals = httpx.get(url(server, root, "control/report"), timeout=HANG_S).json()
     surface = httpx.get(url(server, root, "control/surface"), params={"point": "T4"})
     record = json.loads((read_artifacts(root)["level"] / "georeference.json").read_text("utf-8"))
+    stored = httpx.get(url(server, root, "control"), timeout=HANG_S).json()
+    kept = httpx.put(url(server, root, "control"), json=stored, timeout=HANG_S).json()
     off = httpx.delete(url(server, root, "control/site"), timeout=HANG_S)
+    make(root)
+    again = httpx.get(url(server, root, "control"), timeout=HANG_S).json()
 
     assert trial["forbidden"] == [] and trial["unseen"] == []
     assert "T4 (check)" in trial["text"] and "not applied" in trial["text"]
@@ -66,6 +71,11 @@ def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     rows = record["control"]["points"]
     assert [one["id"] for one in rows] == ["T0", "T1", "T2", "T3", "T4"]
     assert np.abs([one["adjusted_m"] for one in rows]).max() < 0.03
+    assert [one["id"] for one in residuals["rows"]] == ["T0", "T1", "T2", "T3", "T4"]
+    assert max(one["d3_m"] for one in residuals["rows"]) < 0.03
+    assert residuals["outdated"] == [] and residuals["judged_by"] == "check"
+    assert kept["picks"] == stored["picks"] and kept["along"] == stored["along"]
+    assert np.abs(np.array([*again["picks"].values()]) - p_map).max() < 0.001
     assert read_decided(root).key == before
     assert surface.json()["surface"] is not None  # the survey is where the map is now
 

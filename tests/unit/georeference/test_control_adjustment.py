@@ -9,7 +9,7 @@ import pytest
 
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import SE3, Array
-from recon4.georeference.control_adjustment import ToAdjust, place_of
+from recon4.georeference.control_adjustment import ToAdjust
 from recon4.georeference.control_stage import OnControl, put_on_control
 from recon4.georeference.crs import CrsTransform
 from recon4.model.plain import to_plain
@@ -78,7 +78,7 @@ def test_the_map_has_small_numbers_and_its_grid_the_coordinates_of_the_site() ->
     points = control(true)
     found = put_on_control(given, points, origin=None)
     assert np.abs(found.trajectory.T_a_b.t).max() < 500.0
-    at = found.system.to_crs(place_of(points.targets[0], found.trajectory)[None])[0]
+    at = found.system.to_crs(points.targets[0].place_in(found.trajectory)[None])[0]
     assert at == pytest.approx(points.targets[0].xyz_m, abs=0.015)
 
 
