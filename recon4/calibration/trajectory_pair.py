@@ -77,8 +77,8 @@ class TrajectoryPair:
             f"{np.median(turn):.2f}° and {np.median(shift):.0f} mm",
             f"mount known to ± {np.rad2deg(self.sd_rad.max()):.2f}° and ± {x:.0f}, {y:.0f}, "
             f"{z:.0f} mm (x, y, z of the first sensor)",
-            f"clock: {1e3 * self.offset_s:+.1f} ± {1e3 * self.sd_offset_s:.1f} ms at the middle "
-            f"of the walk, drift {1e6 * self.rate:+.0f} ± {1e6 * self.sd_rate:.0f} µs a second",
+            f"clock: {1e3 * self.offset_s:+z.1f} ± {1e3 * self.sd_offset_s:.1f} ms at the middle "
+            f"of the walk, drift {1e6 * self.rate:+z.0f} ± {1e6 * self.sd_rate:.0f} µs a second",
         )
 
 

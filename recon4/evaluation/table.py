@@ -28,9 +28,9 @@ def text_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def number(value: float, digits: int = 2, scale: float = 1.0) -> str:
-    """A number for a cell; a dash where it is not finite."""
+    """A number for a cell, never -0.0; a dash where it is not finite."""
     scaled = value * scale
-    return f"{scaled:.{digits}f}" if scaled - scaled == 0 else _MISSING
+    return f"{scaled:z.{digits}f}" if scaled - scaled == 0 else _MISSING
 
 
 def percentage(value: float, digits: int = 1) -> str:

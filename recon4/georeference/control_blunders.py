@@ -81,7 +81,7 @@ def _offset(offset_m: tuple[float, float, float] | None, say: Texts) -> str:
     if offset_m is None:
         return say.part("blunder", "far", {})
     length = localized(f"{float(np.linalg.norm(offset_m)):.3f}", say.language)
-    east, north, up = (localized(f"{value:+.3f}", say.language) for value in offset_m)
+    east, north, up = (localized(f"{value:+z.3f}", say.language) for value in offset_m)
     values = {"length": length, "east": east, "north": north, "up": up}
     return say.part("blunder", "offset-of", values)
 

@@ -223,8 +223,9 @@ def _cells(off_m: Array) -> Offset:
 
 
 def _datum_text(shift_m: Array) -> str:
+    east, north, up = shift_m
     return (
         f"GNSS positions and control points differ by {np.linalg.norm(shift_m):.3f} m "
-        f"({shift_m[0]:+.3f} E, {shift_m[1]:+.3f} N, {shift_m[2]:+.3f} up): another datum, geoid "
+        f"({east:+z.3f} E, {north:+z.3f} N, {up:+z.3f} up): another datum, geoid "
         "or height of the antenna. The control points decide."
     )

@@ -51,13 +51,13 @@ def number_functions(language: str) -> Mapping[str, Callable[..., str]]:
         return text.replace(".", decimal)
 
     def fixed(value: float, *, digits: int, sign: int = 0) -> str:
-        return format(as_float(value), f"{'+' if sign else ''}.{int(digits)}f")
+        return format(as_float(value), f"{'+' if sign else ''}z.{int(digits)}f")
 
     def length(value: float) -> str:
         value_m = as_float(value)
         if not math.isfinite(value_m):
             return "–"
-        return written(f"{100.0 * value_m:.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m")
+        return written(f"{100.0 * value_m:z.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m")
 
     def mount(value: str) -> str:
         return written(mount_text(value))

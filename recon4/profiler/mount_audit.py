@@ -44,11 +44,11 @@ class MountChange:
     def describe(self) -> str:
         """The change in words."""
         turn = ", ".join(
-            f"{np.rad2deg(value):+.1f}° about {axis}"
+            f"{np.rad2deg(value):+z.1f}° about {axis}"
             for axis, value in zip("xyz", self.turn_rad, strict=True)
         )
         x_cm, y_cm = 100.0 * self.shift_m
-        return f"{turn}, {x_cm:+.0f} cm in x, {y_cm:+.0f} cm in y"
+        return f"{turn}, {x_cm:+z.0f} cm in x, {y_cm:+z.0f} cm in y"
 
 
 def mount_change(

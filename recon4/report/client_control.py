@@ -35,7 +35,7 @@ def control_section(georeference: Mapping[str, object], words: Words) -> Section
     if outcome is None:
         return Section(title=title)
     sd = "" if outcome.scale_sd is None else f" ± {words.number(1e6 * outcome.scale_sd, 0)}"
-    scale = words("control.scale_value", ppm=f"{1e6 * (outcome.scale - 1.0):+.0f}", sd=sd)
+    scale = words("control.scale_value", ppm=f"{1e6 * (outcome.scale - 1.0):+z.0f}", sd=sd)
     grid = outcome.crs == SITE_GRID
     rows = [
         Row(words("control.crs"), words("control.crs_site") if grid else shown(outcome.crs)),

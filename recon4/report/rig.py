@@ -88,7 +88,7 @@ def rig_charts(found: CalibrationFigures | None) -> list[tuple[str, str]]:
 def _row(one: ParameterFigures) -> RigRow:
     factor, unit = DISPLAY_UNITS[one.unit]
     sd = "" if one.sd is None else f" ± {number(one.sd, 3, factor)}"
-    return RigRow(_name(one), f"{factor * one.change:+.3f}{sd} {unit}", one.status)
+    return RigRow(_name(one), f"{factor * one.change:+z.3f}{sd} {unit}", one.status)
 
 
 def _name(one: ParameterFigures) -> str:

@@ -83,7 +83,7 @@ def _control_rows(georeference: Mapping[str, object]) -> Rows:
         return []
     out: Rows = []
     for one in outcome.points:
-        east, north, up = ("–" if d is None else f"{100 * d:+.1f}" for d in one.adjusted_m)
+        east, north, up = ("–" if d is None else f"{100 * d:+z.1f}" for d in one.adjusted_m)
         alone = "; no other point controls it" if one.test and one.test.single_handed else ""
         text = f"{east} east, {north} north, {up} up [cm], map minus survey{alone}"
         out.append((f"{one.role} point {one.id}", text))

@@ -135,5 +135,5 @@ def measured_text(kind: str, p_map: Array) -> str:
         area = 0.5 * np.cross(p_map - p_map[0], around - p_map[0]).sum(axis=0)
         return f"{np.linalg.norm(area):.3f} m², from above {abs(area[2]):.3f} m²"
     d = p_map[1] - p_map[0]
-    flat = f"horizontal {math.hypot(d[0], d[1]):.3f} m, vertical {d[2]:+.3f} m"
+    flat = f"horizontal {math.hypot(d[0], d[1]):.3f} m, vertical {d[2]:+z.3f} m"
     return f"{np.linalg.norm(d):.3f} m, {flat}"

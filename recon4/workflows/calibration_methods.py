@@ -303,7 +303,7 @@ def _known_to(found: PairAlignment) -> tuple[str, ...]:
     known = (
         f"known to ± {np.rad2deg(found.sd_rad):.3f}° and ± {x:.1f}, {y:.1f}, {z:.1f} mm (x, y, z)"
     )
-    along = (", ".join(f"{part:+.2f}" for part in direction) for direction in found.unknown)
+    along = (", ".join(f"{part:+z.2f}" for part in direction) for direction in found.unknown)
     return known, *(
         f"not observable: the position along ({direction}) stays as in the rig file"
         for direction in along

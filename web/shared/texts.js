@@ -24,13 +24,19 @@ const localized = (/** @type {string} */ text, /** @type {string} */ language) =
       ?.value ?? ".",
   );
 
+/** A number with its digits; what is rounded to zero has no sign: -0.04 -> "0.0". */
+const rounded = (/** @type {number} */ value, /** @type {number} */ digits) => {
+  const text = value.toFixed(digits);
+  return Number(text) === 0 ? text.replace("-", "") : text;
+};
+
 /**
  * A number with a sign if one is asked for.
  * @param {number | string} value
  * @param {{digits?: number, sign?: number}} how
  */
 const fixed = (value, { digits = 0, sign = 0 }) => {
-  const text = Number(value).toFixed(digits);
+  const text = rounded(Number(value), digits);
   return sign && !text.startsWith("-") ? `+${text}` : text;
 };
 
@@ -106,7 +112,7 @@ export function wordOf(prefix, word, values = {}) {
 
 /** A number as the language writes it: decimal(12.34, 1) -> "12,3". */
 export const decimal = (/** @type {number} */ value, digits = 0) =>
-  localized(value.toFixed(digits), state.language);
+  localized(rounded(value, digits), state.language);
 
 /** A number with all of its digits: 0.05 -> "0,05". */
 export const asWritten = (/** @type {number} */ value) => localized(String(value), state.language);

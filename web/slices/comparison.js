@@ -2,7 +2,7 @@
 
 import { count } from "../shared/format.js";
 import { html, nothing, svg } from "../shared/dom.js";
-import { t, written } from "../shared/texts.js";
+import { decimal, t } from "../shared/texts.js";
 import { HEIGHT, bars } from "./bars.js";
 import { planeText } from "./captions.js";
 
@@ -13,7 +13,7 @@ const UNKNOWN = "–";
 
 const cell = (/** @type {string} */ text) => html`<td class="number">${text}</td>`;
 const figure = (/** @type {number | null} */ x, digits = 2) =>
-  cell(x === null ? UNKNOWN : written((x * 100).toFixed(digits).replace(/^-(0\.?0*)$/, "$1")));
+  cell(x === null ? UNKNOWN : decimal(x * 100, digits));
 
 const HEAD = [
   ...[t("head-slice"), t("head-mean"), "< 2 cm [%]", "< 5 cm [%]", t("head-signed"), "σ [cm]"],

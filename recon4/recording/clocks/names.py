@@ -49,7 +49,7 @@ def offset_values(ahead_s: float) -> dict[str, Value]:
 def described(offset_s: float) -> str:
     """An offset in words, such as ``+18.012 s (GPS time against UTC)``."""
     name = _NAMES.get(looks_like(offset_s), "")
-    return f"{offset_s:+.3f} s{f' ({name})' if name else ''}"
+    return f"{offset_s:+z.3f} s{f' ({name})' if name else ''}"
 
 
 def clocks_text(starts: Sequence[tuple[str, int]]) -> str:
