@@ -168,7 +168,7 @@ def outcome_text(
         language: Of its texts.
         blunders: Suspected ones in this language; None = as the outcome has them.
     """
-    say = partial(texts(language, "report").part, "control-table")
+    say = _table_words(language)
     rows = [
         (
             f"{one.id} ({say(one.role, {})})",
@@ -192,7 +192,7 @@ def outcome_text(
     known: dict[str, str | int | float] = {
         "crs": outcome.crs,
         "freedom": outcome.freedom,
-        "scale": f"{1e6 * (outcome.scale - 1.0):+.0f}{sd}",
+        "scale": f"{1e6 * (outcome.scale - 1.0):+z.0f}{sd}",
     }
     found = outcome.blunders if blunders is None else blunders
     return "\n".join(
@@ -200,14 +200,34 @@ def outcome_text(
             text_table((*(say(name, {}) for name in _HEAD.split()), ""), rows),
             text_table(tuple(say(name, {}) for name in names), figures),
             say("known", known),
-            *_beyond_chance(outcome, say),
-            *statements(outcome, language),
+            *remarks(outcome, language),
             *(say("suspected", {"text": text}) for text in found),
         ]
     )
 
 
 _Say = Callable[[str, Mapping[str, str | int | float]], str]
+
+
+def remarks(outcome: ControlOutcome, language: str = ENGLISH) -> list[str]:
+    """What is said of all points: residuals beyond chance, and `statements`."""
+    return [*_beyond_chance(outcome, _table_words(language)), *statements(outcome, language)]
+
+
+def said_of_test(test: PointTest | None, language: str = ENGLISH) -> str:
+    """What the other points say of one, in a word; empty = nothing is wrong."""
+    said = _verdict_of(test)
+    return _table_words(language)(said, {}) if said else ""
+
+
+def _table_words(language: str) -> _Say:
+    return partial(texts(language, "report").part, "control-table")
+
+
+def _verdict_of(test: PointTest | None) -> str:
+    if test is None:
+        return ""
+    return "blunder" if test.w > test.limit else "single-handed" if test.single_handed else ""
 
 
 def _beyond_chance(outcome: ControlOutcome, say: _Say) -> Sequence[str]:
@@ -228,7 +248,7 @@ def _test_cells(test: PointTest | None, say: _Say) -> tuple[str, ...]:
         return ("", "", "", "", "")
     r = "/".join(say("redundancy-of", {"value": value}) for value in test.redundancy)
     found = _cells(test.least_found_h_m, test.least_found_v_m, say=say)
-    said = "blunder" if test.w > test.limit else "single-handed" if test.single_handed else ""
+    said = _verdict_of(test)
     ratio = say("w-of", {"w": test.w, "limit": test.limit})
     return (r, *found, ratio, say(said, {}) if said else "")
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from recon4.recording.tables.column_names import ROLES, Role, plain_word
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
 from recon4.recording.tables.points import PointTable, TablePoint, read_point_table
 from recon4.slices.tuning_files import CONTROL_FILES
+
+Lies = Literal["map", "crs", ""]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +46,9 @@ class ControlPreview:
     """Skipped lines, with the reason."""
     crs: str = ""
     """System into which latitude and longitude were put; empty = the file has other columns."""
+    lies: Lies = ""
+    """In which coordinates of the map the points lie within it; empty = in none, or not compared:
+    they are in a system of their own, as a grid of the site."""
 
 
 def _projected(found: PointTable, crs: str) -> tuple[tuple[TablePoint, ...], str]:

@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.georeference.tuning_control import CONTROL_FIT
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts
 from recon4.model.survey_covariance import covariance_matrix
@@ -128,8 +129,9 @@ class ControlContext:
     """Id -> covariance of the map there, east, north, up [m²], (3, 3)."""
     outdated: Collection[str] = ()
     """Ids of points found in an earlier map."""
-    map_heights_m: tuple[float, float] | None = None
-    """Lowest and highest height of the map in the survey's coordinates [m]."""
+    map_bounds_m: Array | None = None
+    """Lowest and highest corner of the map in the survey's coordinates [m], (2, 3); None = it has
+    no points, or the survey is in coordinates that it does not have."""
     limits: ControlLimits = field(default_factory=ControlLimits)
     language: str = ENGLISH
     """Of the texts."""
@@ -162,7 +164,8 @@ def residuals(
         )
         for p in found
     )
-    if other := _other_system(rows, points, context.say):
+    other = other_system(rows, points, context)
+    if other is not None:
         rows, found = tuple(map(_without_figures, rows)), []
     figures = tuple(_figures(role, rows, found, context=context) for role in ROLES if found)
     figures = tuple(one for one in figures if one.points)
@@ -176,9 +179,8 @@ def residuals(
         figures=figures,
         judged_by=judge.role if judge else None,
         passed=_all_hold(judge.requirements) if judge else None,
-        verdict=ControlVerdict("bad", f"✕ {other}")
-        if other
-        else control_verdict(
+        verdict=other
+        or control_verdict(
             judge.role if judge else None,
             judge.requirements if judge else (),
             rows=rows,
@@ -186,7 +188,7 @@ def residuals(
             say=context.say,
         ),
         limits=context.limits.text(context.say),
-        hint="" if other else _hint(rows, points, context),
+        hint="" if other is not None else _hint(rows, points, context),
     )
 
 
@@ -304,20 +306,48 @@ def _relative(full: Sequence[tuple[Residual, ControlPoint]]) -> float | None:
     return float(np.abs(found_m - true_m).max())
 
 
-def _other_system(rows: Sequence[Residual], points: Sequence[ControlPoint], say: Texts) -> str:
-    """Says that the points are farther from the map than from each other; empty = they are not."""
-    horizontal = _known(row.known_2d_m for row in rows)
+def other_system(
+    rows: Sequence[Residual], points: Sequence[ControlPoint], context: ControlContext
+) -> ControlVerdict | None:
+    """Says of a survey with coordinates of its own how the map gets them; None = it has none.
+
+    The usual case of a grid of the site: nothing is wrong with it. Measured points say it by being
+    farther from the map than from each other; before one is measured, the extent of the map does.
+    """
+    if len(points) < 2:
+        return None
+    placing = {one.id for one in points if one.role == "control"}
+    values = {
+        "measured": sum(row.id in placing for row in rows),
+        "control": len(placing),
+        "needed": CONTROL_FIT.least_points,
+    }
+    part = "none"
+    if rows:
+        off_m = min(_known(row.known_2d_m for row in rows), default=0.0)
+        apart_m = float(np.hypot(*np.ptp([point.xyz_m[:2] for point in points], axis=0)))
+        if off_m <= max(apart_m, HEIGHT_HINTS.nearly_m):
+            return None
+        part = "some" if values["measured"] < values["needed"] else "enough"
+    elif lies_in(points, context.map_bounds_m):
+        return None
+    if len(placing) < CONTROL_FIT.least_points:
+        part = "roles"
+    return ControlVerdict("note", context.say.part("other-system", part, values))
+
+
+def lies_in(points: Sequence[ControlPoint], bounds_m: Array | None) -> bool:
+    """Whether the extents of survey and map overlap horizontally; also if the map has none."""
+    if bounds_m is None or not points:
+        return True
     xy_m = np.array([point.xyz_m[:2] for point in points])
-    off_m = min(horizontal, default=0.0)
-    apart_m = float(np.hypot(*np.ptp(xy_m, axis=0))) if len(points) else 0.0
-    if len(points) < 2 or off_m <= max(apart_m, HEIGHT_HINTS.nearly_m):
-        return ""
-    return say("other-system-hint", off=off_m, apart=apart_m)
+    low, high = bounds_m[:, :2]
+    return bool((xy_m.max(axis=0) >= low).all() and (xy_m.min(axis=0) <= high).all())
 
 
 def _hint(rows: Sequence[Residual], points: Sequence[ControlPoint], context: ControlContext) -> str:
     if not rows:
-        return beside_map(points, context.map_heights_m, context.say)
+        return beside_map(points, context.map_bounds_m, context.say)
     horizontal = _known(row.known_2d_m for row in rows)
     return common_height(_known(row.up_m for row in rows), horizontal, context.say)
 
@@ -336,12 +366,11 @@ def common_height(up_m: Sequence[float], horizontal_m: Sequence[float], say: Tex
     return say.part("height-hint", part, {"points": len(up_m), "off": abs(usual_m)})
 
 
-def beside_map(
-    points: Sequence[ControlPoint], heights_m: tuple[float, float] | None, say: Texts
-) -> str:
+def beside_map(points: Sequence[ControlPoint], bounds_m: Array | None, say: Texts) -> str:
     """Whether all points lie as far below or above the map as sea level and ellipsoid are apart."""
-    if not points or heights_m is None:
+    if not points or bounds_m is None:
         return ""
+    heights_m = bounds_m[:, 2].tolist()
     z_m = [point.xyz_m[2] for point in points]
     below_m, above_m = heights_m[0] - max(z_m), min(z_m) - heights_m[1]
     low_m, high_m = GEOID.least_m, GEOID.most_m

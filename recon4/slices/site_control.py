@@ -189,17 +189,26 @@ def require_agreement(trial: ControlTrial) -> None:
 
 def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
     """Residuals, tests and statements of a trial in lines."""
-    outcome = msgspec.convert(to_plain(trial.record), ControlOutcome)
-    text = outcome_text(outcome, language, [one.said(language) for one in trial.blunders])
+    said = [one.said(language) for one in trial.blunders]
+    text = outcome_text(trial_outcome(trial), language, said)
+    return "\n".join([text, *unseen_text(trial, language)])
+
+
+def trial_outcome(trial: ControlTrial) -> ControlOutcome:
+    """The same record as a finished map has."""
+    return msgspec.convert(to_plain(trial.record), ControlOutcome)
+
+
+def unseen_text(trial: ControlTrial, language: str = ENGLISH) -> tuple[str, ...]:
+    """Which names could be exchanged without a test that fails, as a line."""
     if not trial.unseen_exchanges:
-        return text
+        return ()
     say = texts(language, "report")
     pairs = [
         say.part("control-table", "pair", {"one": one, "other": other})
         for one, other in trial.unseen_exchanges
     ]
-    line = say.part("control-table", "unseen-exchange", {"pairs": ", ".join(pairs)})
-    return f"{text}\n{line}"
+    return (say.part("control-table", "unseen-exchange", {"pairs": ", ".join(pairs)}),)
 
 
 def _seen(point: ControlPoint, found: Sighting, accuracy: ControlAccuracy) -> SeenTarget:

@@ -334,6 +334,7 @@ export interface ControlPreview {
   table: TablePreview;
   skipped: Array<string>;
   crs: string;
+  lies: "map" | "crs" | "";
 }
 
 export interface ControlReport {
@@ -1665,6 +1666,8 @@ export interface SiteSystem {
 }
 
 export interface SiteTrial {
+  points: Array<TriedPoint>;
+  remarks: Array<string>;
   text: string;
   forbidden: Array<string>;
   unseen: Array<string>;
@@ -1883,6 +1886,15 @@ export interface TrajectoryNodes {
   frames: Array<number>;
   t_s: Array<number>;
   xyz_m: Array<Array<number>>;
+}
+
+export interface TriedPoint {
+  id: string;
+  role: string;
+  off_m: [number | null, number | null, number | null];
+  w: number | null;
+  limit: number | null;
+  said: string;
 }
 
 export interface Unobserved {

@@ -22,33 +22,32 @@ import {
 } from "../shared/dom.js";
 import { askFirst } from "../shared/download.js";
 import { t } from "../shared/texts.js";
-import { columnTable, missing } from "./columns.js";
 import { ENLARGED, knownPlaces } from "./ellipses.js";
 import { limitsForm } from "./limits.js";
 import { AXES, combined } from "./measured.js";
-import { figures, HEADS, residualCells, roleText } from "./residual_table.js";
+import { pointRow } from "./point_row.js";
+import { figures, HEADS } from "./residual_table.js";
 import { siteSection } from "./site.js";
-import { base64Of, firstPoint } from "./survey_file.js";
+import { base64Of } from "./survey_file.js";
+import { surveyPreview } from "./survey_preview.js";
 import { targetsSection } from "./targets.js";
 
 /**
  * @import {
- *   ControlPoint, ControlPreview, ControlReport, ControlSpec, ControlState, LimitsSpec,
+ *   ControlPoint, ControlReport, ControlSpec, ControlState, LimitsSpec,
  *   Residual, SliceFacts
  * } from "../shared/http_types"
  * @import {Columns, Unit} from "./columns.js"
+ * @import {Preview} from "./survey_preview.js"
  * @import {Panel, SlicesPage} from "./findings.js"
  * @import {Measurement} from "./measured.js"
  * @typedef {Required<Omit<ControlState, "limits" | "version">> &
  *   Pick<ControlState, "version"> & {limits: LimitsSpec}} KeptControl as the server sends it
- * @typedef {{file: File, found: ControlPreview, unit: Unit | null}} Preview of a survey file
  */
 
 const MAX_ROWS = 300;
 const FILES = ".csv,.txt,.dxf";
 const MAX_NAMED = 10;
-/** @type {Record<string, Columns[number]>} */
-const SWAPPED = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
 
 /**
  * A record without one of its fields.
@@ -80,7 +79,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
     preview: /** @type {Preview | null} */ (null),
     mapKey: "",
     refused: false, // the approval of the map does not count
-    georeferenced: false,
+    crs: "", // of the map
     searching: "", // id of the point whose surface is searched
   };
   /** Changes, one after the other. */
@@ -122,29 +121,12 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
     }
   }
 
-  /** The first rows of a survey file, its columns and its points. */
-  function previewed(/** @type {Preview} */ { file, found, unit }) {
-    const use = (/** @type {ControlState["frame"]} */ frame) => () =>
-      keep((now) => ({ points: found.points, frame, picks: {}, along: {}, limits: now.limits }));
-    const again = (/** @type {Columns} */ columns, /** @type {Unit | null} */ other) => {
-      const open = missing(columns);
-      const asked = { ...found.table, columns, question: `${open}.` };
-      if (open)
-        return set({
-          preview: { file, found: { ...found, points: [], table: asked }, unit: other ?? unit },
-        });
-      return attempt(message(), () => look(file, columns, other ?? unit));
-    };
-    const columns = found.table.columns.map((one) => SWAPPED[one] ?? one);
-    const some = found.points.length > 0;
-    return html`${columnTable(found.table, again)}
-      <p>${firstPoint(found)}</p>
-      ${found.skipped.slice(0, 5).map((text) => html`<p class="error">${text}</p>`)}
-      <div class="buttons">
-        ${button(t("swap"), () => look(file, columns, unit))}
-        ${some ? button(t("use-map"), use("map")) : nothing}
-        ${some && state.georeferenced ? button(t("use-crs"), use("crs")) : nothing}
-      </div>`;
+  /** Stores the points; their system is that of the map if they lie in it. */
+  async function use(/** @type {Preview} */ { found }) {
+    const frame = found.lies || (state.crs ? "crs" : "map");
+    const { points, crs = "" } = found;
+    site.suggest(crs || (frame === "crs" ? state.crs : ""));
+    await keep((now) => ({ points, frame, picks: {}, along: {}, limits: now.limits }));
   }
 
   /**
@@ -194,7 +176,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
       return { ...now, picks, along };
     });
 
-  const drop = (/** @type {string} */ name) =>
+  const drop = (/** @type {ControlSpec} */ { id: name }) =>
     keep((now) => ({
       ...now,
       picks: without(now.picks, name),
@@ -229,52 +211,14 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
     if (none.length) say(message(), t("no-surface-of", { names: named(none) }));
   }
 
-  /**
-   * @param {ControlSpec} one
-   * @param {Residual | undefined} residual
-   * @param {boolean} earlier measured in an earlier map only
-   */
-  function row(one, residual, earlier) {
-    const setRole = (/** @type {Event} */ event) => {
-      const role = /** @type {ControlSpec["role"]} */ (targetOf(event).value);
-      const points = (/** @type {KeptControl} */ now) =>
-        now.points.map((p) => (p.id === one.id ? { ...p, role } : p));
-      attempt(message(), () => keep((now) => ({ ...now, points: points(now) })));
-    };
-    const act = (
-      /** @type {string} */ text,
-      /** @type {string} */ label,
-      /** @type {() => unknown} */ action,
-    ) => button(text, action, { label, className: "go" });
-    return html`<tr>
-      <th scope="row">${one.id}</th>
-      <td>
-        <select aria-label=${t("role-of", { name: one.id })} @change=${setRole}>
-          ${["check", "control"].map(
-            (role) =>
-              html`<option value=${role} .selected=${role === one.role}>${roleText(role)}</option>`,
-          )}
-        </select>
-      </td>
-      ${residualCells(residual, earlier)}
-      <td>
-        <span class="buttons"
-          >${act(t("go"), t("go-to-point", { name: one.id }), () => go(one))}${act(
-            t("here"),
-            t("is-picked", { name: one.id }),
-            () => pick(one),
-          )}
-          ${act(t("target"), t("is-target", { name: one.id }), () => target(one))}
-          ${act(t("surface"), t("on-surface", { name: one.id }), () => surface(one))}
-          ${
-            residual || earlier
-              ? act(t("clear"), t("clear-point", { name: one.id }), () => drop(one.id))
-              : nothing
-          }</span
-        >
-      </td>
-    </tr>`;
-  }
+  const setRole = (
+    /** @type {ControlSpec} */ { id: name },
+    /** @type {ControlSpec["role"]} */ role,
+  ) =>
+    keep((now) => ({
+      ...now,
+      points: now.points.map((p) => (p.id === name ? { ...p, role } : p)),
+    }));
 
   const go = async (/** @type {ControlSpec} */ one) => show((await readSurface(id, one.id)).p_map);
 
@@ -307,42 +251,50 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
       const [file] = targetOf(event).files ?? [];
       if (file) attempt(message(), () => look(file));
     };
+    const shown = preview
+      ? surveyPreview(preview, state.crs, {
+          read: (columns, unit) => attempt(message(), () => look(preview.file, columns, unit)),
+          show: (other) => set({ preview: other }),
+          use: () => use(preview),
+          button,
+        })
+      : nothing;
     const none = html`<p class="quiet">${t("no-points-yet")}</p>`;
     render(
       html`<input type="file" accept=${FILES} aria-label=${t("survey-file")} @change=${pickFile} />
-        <div>${preview ? previewed(preview) : nothing}</div>
+        <div>${shown}</div>
         <p class="quiet status" role="status"></p>
         <p class="error problem" role="alert"></p>
-        <div>${now && found ? reported(now, found) : now ? none : nothing}</div>
+        <div>${now && found ? judged(found) : now && !preview ? none : nothing}</div>
         <section class="targets"></section>
-        <section class="site" ?hidden=${!found}></section>`,
+        <div>${now && found ? pointsOf(now, found) : nothing}</div>
+        <section class="site" ?hidden=${!found}></section>
+        <div>${now && found ? figuresOf(now, found) : nothing}</div>`,
       host,
     );
   }
 
   const places = () => ({ message: message(), status: within(host, ".status") });
 
-  /**
-   * The residuals, with the verdict on them.
-   * @param {KeptControl} now
-   * @param {ControlReport} found
-   */
-  function reported({ points, limits }, found) {
-    const { searching, refused } = state;
-    const residuals = new Map(found.rows.map((one) => [one.id, one]));
-    const earlier = new Set(found.outdated);
-    const file = (/** @type {string} */ ending) => controlFileUrl(id, ending, refused);
-    const draft = refused ? t("as-draft") : "";
-    return html`<p class="verdict ${found.verdict.level}">${found.verdict.text}</p>
+  const judged = (/** @type {ControlReport} */ found) =>
+    html`<p class="verdict ${found.verdict.level}">${found.verdict.text}</p>
       ${
-        earlier.size
+        found.outdated.length
           ? html`<p>${t("measured-earlier", { names: named(found.outdated) })}</p>`
           : nothing
       }
-      ${limitsForm(limits, found.limits, setLimits)}
-      ${found.hint ? html`<p class="bad">✕ ${found.hint}</p>` : nothing}
-      ${found.figures.map(figures)}
-      <div class="scroll">
+      ${found.hint ? html`<p class="bad">✕ ${found.hint}</p>` : nothing}`;
+
+  /**
+   * The points with their residuals, to be measured.
+   * @param {KeptControl} now
+   * @param {ControlReport} found
+   */
+  function pointsOf({ points }, found) {
+    const { searching } = state;
+    const residuals = new Map(found.rows.map((one) => [one.id, one]));
+    const earlier = new Set(found.outdated);
+    return html`<div class="scroll points" tabindex="0" role="region" aria-label=${t("points")}>
         <table>
           <thead>
             <tr>
@@ -355,12 +307,15 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
             ${repeat(
               points.slice(0, MAX_ROWS),
               (one) => one.id,
-              (one) => row(one, residuals.get(one.id), earlier.has(one.id)),
+              (one) =>
+                pointRow(one, residuals.get(one.id), earlier.has(one.id), {
+                  attempt: (action) => attempt(message(), action),
+                  ...{ setRole, go, pick, target, surface, drop },
+                }),
             )}
           </tbody>
         </table>
       </div>
-      <p class="quiet">${t("residuals-are")} ${t("ellipses-are", { times: ENLARGED })}</p>
       ${
         points.length > MAX_ROWS
           ? html`<p class="quiet">
@@ -368,10 +323,24 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
             </p>`
           : nothing
       }
+      <p class="quiet">${t("residuals-are")} ${t("ellipses-are", { times: ENLARGED })}</p>
       <div class="buttons">
         ${button(searching ? `${searching}…` : t("all-surfaces"), everySurface, {
           disabled: searching !== "",
         })}
+      </div>`;
+  }
+
+  /**
+   * What was measured against the limits, and the files.
+   * @param {KeptControl} now
+   * @param {ControlReport} found
+   */
+  function figuresOf({ limits }, found) {
+    const file = (/** @type {string} */ ending) => controlFileUrl(id, ending, state.refused);
+    const draft = state.refused ? t("as-draft") : "";
+    return html`${found.figures.map(figures)} ${limitsForm(limits, found.limits, setLimits)}
+      <div class="buttons">
         <a class="button" download href=${file("csv")} @click=${askFirst(places)}
           >${t("residuals-csv")}${draft}</a
         >
@@ -384,13 +353,15 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
   draw();
   const crs = () => /** @type {HTMLInputElement} */ (within(host, ".site input")).value.trim();
   targetsSection(within(host, ".targets"), { id, crs, stored: () => turns.last, put, go: show });
-  siteSection(within(host, ".site"), id);
+  const site = siteSection(within(host, ".site"), id);
   attempt(message(), async () => {
     await readKept();
     await report();
   });
   return {
-    facts: (/** @type {SliceFacts} */ { crs, key, approval }) =>
-      set({ georeferenced: Boolean(crs), mapKey: key, refused: isRefused(approval) }),
+    facts: (/** @type {SliceFacts} */ { crs, key, approval }) => {
+      set({ crs, mapKey: key, refused: isRefused(approval) });
+      if (state.kept?.frame === "crs") site.suggest(crs);
+    },
   };
 }

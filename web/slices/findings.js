@@ -43,6 +43,16 @@ const PANELS = [
   [t("export"), exportPanel],
 ];
 
+/** Which panels are open, while the page is loaded again for a new map. */
+const OPEN = "recon4 open panels";
+
+/** Opens the same panels when the page is loaded again. */
+export function keepOpenPanels() {
+  const panels = [...document.querySelectorAll("#findings > details")];
+  const open = panels.flatMap((one, k) => (one.hasAttribute("open") ? [k] : []));
+  sessionStorage.setItem(OPEN, open.join(" "));
+}
+
 /**
  * Fills the section; returns callbacks for changes of the slice and of the map.
  * @param {HTMLElement} root
@@ -60,6 +70,9 @@ export function findings(root, page) {
     ),
     root,
   );
+  const kept = sessionStorage.getItem(OPEN);
+  sessionStorage.removeItem(OPEN);
+  root.querySelectorAll("details").forEach((one, k) => (one.open = (kept ?? "").includes(`${k}`)));
   const hosts = [...root.querySelectorAll("div")];
   const panels = PANELS.map(([, fill], k) => fill(/** @type {HTMLElement} */ (hosts[k]), page));
   return {

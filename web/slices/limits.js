@@ -48,7 +48,7 @@ export function limitsForm(limits, text, keep) {
         ?required=${key === "survey_sd_m"}
         .value=${centimeters(limits[key])}
     /></label>`;
-  return html`<details>
+  return html`<details class="folded">
     <summary>${t("limits", { limits: text })}</summary>
     <p class="quiet">${t("limits-hold")}</p>
     <form class="limits" @submit=${submit}>

@@ -5,6 +5,7 @@ import { isGuest, readCurrentUser, readSliceFacts } from "../shared/api.js";
 import { byId } from "../shared/dom.js";
 import { followMap } from "../shared/followed_map.js";
 import { page } from "./drawing.js";
+import { keepOpenPanels } from "./findings.js";
 
 /** Whether the map of the project is the one that is shown. */
 async function isNewest() {
@@ -32,6 +33,9 @@ export async function followJobs(opening) {
     opening,
     isNewest,
     isBusy,
-    reload: () => location.reload(),
+    reload: () => {
+      keepOpenPanels();
+      location.reload();
+    },
   });
 }

@@ -1,17 +1,18 @@
 // Rows of the residuals and of the limits at control and check points. No network.
 
 import { decimal, t } from "../shared/texts.js";
-import { html } from "../shared/dom.js";
+import { html, nothing } from "../shared/dom.js";
 
-/** @import {ErrorEllipse, Requirement, Residual, ResidualStatistics} from "../shared/http_types" */
+/**
+ * @import {
+ *   ErrorEllipse, Requirement, Residual, ResidualStatistics, TriedPoint
+ * } from "../shared/http_types"
+ */
 
 const UNKNOWN = "–"; // not measured
-const COLUMNS = 8;
-/** Heads of the table of points. */
-export const HEADS = [
-  ...[t("point"), t("role"), "dE", "dN", "dU", "2D", "3D", t("across")],
-  ...[t("stated"), t("residual-sigma"), ""],
-];
+/** Heads of the table of points; what is stated of a point stands below its row. */
+export const HEADS = [t("point"), t("role"), "dE", "dN", "dU", "2D", "3D", t("across")];
+const COLUMNS = HEADS.length - 2;
 
 const cm = (/** @type {number | null} */ m) => (m === null ? UNKNOWN : decimal(m * 100, 1));
 const cell = (/** @type {string} */ text, className = "") =>
@@ -32,9 +33,18 @@ const stated = (/** @type {ErrorEllipse | null} */ one) =>
       })
     : UNKNOWN;
 
-function sigmas(/** @type {Pick<Residual, "sigmas" | "outlier">} */ { sigmas: found, outlier }) {
-  if (found === null) return cell(UNKNOWN);
-  return outlier ? cell(`⚠ ${decimal(found, 1)}`, "bad") : cell(decimal(found, 1));
+/** What map and survey state of a point, and the residual in these deviations. */
+export function statedText(/** @type {Residual | undefined} */ residual) {
+  if (!residual?.stated && !residual?.survey) return nothing;
+  const { stated: map, survey, sigmas, outlier } = residual;
+  const parts = [t("stated", { ellipse: stated(map) })];
+  if (survey) parts.push(t("of-survey", { ellipse: stated(survey) }));
+  const ratio = sigmas === null ? "" : t("residual-sigma", { value: decimal(sigmas, 1) });
+  return html`<span class="quiet">${parts.join(" · ")}</span> ${
+      ratio
+        ? html`<span class=${outlier ? "bad" : "quiet"}>${outlier ? "⚠ " : ""}${ratio}</span>`
+        : nothing
+    }`;
 }
 
 /**
@@ -49,12 +59,6 @@ export function residualCells(residual, earlier) {
   return [
     ...[east_m, north_m, up_m, d2_m, d3_m].map((d) => cell(cm(d))),
     cell(residual.directions === 1 ? cm(residual.across_m) : ""),
-    cell(
-      residual.survey
-        ? `${stated(residual.stated)} · ${t("of-survey", { ellipse: stated(residual.survey) })}`
-        : stated(residual.stated),
-    ),
-    sigmas(residual),
   ];
 }
 
@@ -100,3 +104,35 @@ export function figures(/** @type {ResidualStatistics} */ one) {
     <p class="quiet">${t("mean-axes", { axes: axes(one, "mean_m") })}</p>
   </div>`;
 }
+
+/** Points after the rigid fit of a trial [cm]. */
+export const triedTable = (/** @type {TriedPoint[]} */ points) =>
+  html`<div class="scroll points">
+    <table>
+      <thead>
+        <tr>
+          ${[t("point"), t("role"), "dE", "dN", "dU", t("w-limit"), ""].map(
+            (text, k) => html`<th scope="col" class=${k > 1 ? "number" : ""}>${text}</th>`,
+          )}
+        </tr>
+      </thead>
+      <tbody>
+        ${points.map(
+          (one) =>
+            html`<tr>
+              <th scope="row">${one.id}</th>
+              <td>${roleText(one.role)}</td>
+              ${one.off_m.map((d) => cell(cm(d)))}
+              ${cell(
+                one.w === null || one.limit === null
+                  ? ""
+                  : `${decimal(one.w, 1)} (${decimal(one.limit, 1)})`,
+              )}
+              <td class=${one.w !== null && one.w > (one.limit ?? 0) ? "bad" : "quiet"}>
+                ${one.said}
+              </td>
+            </tr>`,
+        )}
+      </tbody>
+    </table>
+  </div>`;

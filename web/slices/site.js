@@ -3,8 +3,12 @@
 import { putOnSite, remakeMap, takeOffSite, trySite } from "../shared/api.js";
 import { attempt, html, nothing, render, within } from "../shared/dom.js";
 import { t } from "../shared/texts.js";
+import { triedTable } from "./residual_table.js";
 
 /** @import {SiteTrial} from "../shared/http_types" */
+
+/** As the server names the system that control points alone define. */
+const SITE_GRID = "site grid";
 
 /**
  * Fills the section below the residuals.
@@ -14,6 +18,7 @@ import { t } from "../shared/texts.js";
 export function siteSection(host, id) {
   const state = {
     trial: /** @type {SiteTrial | null} */ (null),
+    tried: "", // the system of the trial
     busy: "",
     done: false,
   };
@@ -21,7 +26,8 @@ export function siteSection(host, id) {
     Object.assign(state, changes);
     draw();
   };
-  const crs = () => /** @type {HTMLInputElement} */ (within(host, "input")).value.trim();
+  const input = () => /** @type {HTMLInputElement} */ (within(host, "input"));
+  const crs = () => input().value.trim();
 
   /**
    * @param {string} what shown meanwhile
@@ -32,7 +38,11 @@ export function siteSection(host, id) {
     await attempt(within(host, ".error"), work);
     set({ busy: "" });
   }
-  const tried = () => run(t("trying"), async () => set({ trial: await trySite(id, crs()) }));
+  const tried = () =>
+    run(t("trying"), async () => {
+      set({ trial: null, done: false, tried: crs() });
+      set({ trial: await trySite(id, state.tried) });
+    });
   /**
    * @param {string} what shown meanwhile
    * @param {() => Promise<unknown>} decide
@@ -43,37 +53,50 @@ export function siteSection(host, id) {
       await remakeMap(id);
       set({ done: true });
     });
-  const put = () => remade(t("putting"), () => putOnSite(id, crs()));
+  const put = () => remade(t("putting"), () => putOnSite(id, state.tried));
   const takeOff = () => remade(t("taking-off"), () => takeOffSite(id));
 
-  function outcome(/** @type {SiteTrial} */ { text, forbidden, unseen }) {
-    return html`${forbidden.map((one) => html`<p class="bad">✕ ${one}</p>`)}
+  function decision() {
+    const system = state.tried || t("site-grid");
+    return html`<p>${t("what-put-does", { system })}</p>
+      <button type="button" class="primary" ?disabled=${state.busy !== ""} @click=${put}>
+        ${t("put-on-points")}
+      </button>`;
+  }
+
+  function outcome(/** @type {SiteTrial} */ { points, remarks, text, forbidden, unseen }) {
+    return html`${
+        forbidden.length
+          ? forbidden.map((one) => html`<p class="bad">✕ ${one}</p>`)
+          : html`<p class="good">✓ ${t("points-agree")}</p>`
+      }
       ${
         unseen.length
           ? html`<p>${t("not-measured-here", { names: unseen.join(", ") })}</p>`
           : nothing
       }
-      <pre class="scroll" tabindex="0" aria-label=${t("residuals-after-fit")}>${text}</pre>
-      ${
-        forbidden.length
-          ? nothing
-          : html`<button type="button" ?disabled=${state.busy !== ""} @click=${put}>
-              ${t("put-on-points")}
-            </button>`
-      }`;
+      ${triedTable(points)} ${forbidden.length ? nothing : decision()}
+      <ul class="quiet statements">
+        ${remarks.map((one) => html`<li>${one}</li>`)}
+      </ul>
+      <details class="folded">
+        <summary>${t("all-figures")}</summary>
+        <pre class="scroll" tabindex="0" aria-label=${t("residuals-after-fit")}>${text}</pre>
+      </details>`;
   }
 
   function draw() {
     const { trial, busy, done } = state;
+    const waits = busy !== "";
     render(
       html`<h2>${t("site-coordinates")}</h2>
         <p class="quiet">${t("site-is")}</p>
         <label
-          >EPSG <input size="12" placeholder=${t("site-grid")} aria-label=${t("epsg-code")}
+          ><span>${t("epsg-code")}</span><input size="12" placeholder=${t("site-grid")}
         /></label>
         <div class="buttons">
-          <button type="button" ?disabled=${busy !== ""} @click=${tried}>${t("try")}</button>
-          <button type="button" ?disabled=${busy !== ""} @click=${takeOff}>${t("take-off")}</button>
+          <button type="button" ?disabled=${waits} @click=${tried}>${t("try")}</button>
+          <button type="button" ?disabled=${waits} @click=${takeOff}>${t("take-off")}</button>
         </div>
         <p class="quiet" role="status">${busy}</p>
         <p class="error" role="alert"></p>
@@ -89,4 +112,10 @@ export function siteSection(host, id) {
   }
 
   draw();
+  return {
+    /** Fills in the system of a survey that is known to be in it. */
+    suggest: (/** @type {string} */ system) => {
+      if (system && system !== SITE_GRID && !crs()) input().value = system;
+    },
+  };
 }

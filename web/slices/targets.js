@@ -85,7 +85,7 @@ export function targetsSection(host, { id, crs, stored, put, go }) {
   async function take() {
     const rows = state.found?.rows.filter((one) => state.chosen.has(one.id ?? "")) ?? [];
     await put(Object.fromEntries(rows.map((one) => [one.id, { p: one.p_map, along: AXES }])));
-    set({ taken: rows.length });
+    set({ taken: rows.length, found: null }); // its rows are those of the points now
   }
 
   function choose(/** @type {string} */ name, /** @type {boolean} */ wanted) {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,11 @@ from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.review.evidence import Evidence
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_limits import ControlLimits
-from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
+from recon4.slices.control_points import ControlPoint, ControlPreview, Lies, read_control
 from recon4.slices.error_ellipses import place_covariance
-from recon4.slices.map_crs import MapFrame
 from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.residual_table import residual_csv
-from recon4.slices.residuals import ControlContext, ControlReport, residuals
+from recon4.slices.residuals import ControlContext, ControlReport, lies_in, residuals
 from recon4.slices.sheet import source_text
 from recon4.slices.stored_picks import TRAJECTORY
 from recon4.workflows.result_files import covariances_of
@@ -37,10 +37,20 @@ class SurveyFile:
     """Of the map, into which latitude and longitude are put."""
 
 
-def preview_control(file: SurveyFile, choice: ColumnChoice) -> ControlPreview:
-    """Points and open questions of a survey file."""
+def preview_control(file: SurveyFile, choice: ColumnChoice, artifacts: Artifacts) -> ControlPreview:
+    """Points and open questions of a survey file, and whether they lie in the map."""
     crs = "" if file.crs == SITE_GRID else file.crs
-    return read_control(file.data, name=file.name, choice=choice, crs=crs)
+    found = read_control(file.data, name=file.name, choice=choice, crs=crs)
+    return replace(found, lies=_lies(found.points, artifacts) if found.points else "")
+
+
+def _lies(points: Sequence[ControlPoint], artifacts: Artifacts) -> Lies:
+    """In which coordinates of the map the points of a survey lie within it."""
+    for frame, in_crs in (("crs", True), ("map", False)):
+        bounds_m = _bounds(artifacts, in_crs=in_crs) if "map" in artifacts else None
+        if bounds_m is not None and lies_in(points, bounds_m):
+            return frame
+    return ""
 
 
 def control_report(artifacts: Artifacts, state: ControlState, language: str) -> ControlReport:
@@ -98,20 +108,26 @@ def _residuals(artifacts: Artifacts, state: ControlState, language: str = ENGLIS
         ControlContext(
             covariances=covariances,
             outdated=state.picks.keys() - measured.keys(),
-            map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
+            map_bounds_m=_bounds(artifacts, in_crs=state.frame == "crs"),
             limits=ControlLimits(**state.limits.model_dump()),
             language=language,
         ),
     )
 
 
-def _heights(artifacts: Artifacts, frame: MapFrame | None) -> tuple[float, float] | None:
-    """Lowest and highest height of the map, in a CRS if a frame is given; None = it is empty."""
-    corners = np.array(tiles_of(artifacts["map"]).bounds_m)
-    if not np.isfinite(corners).all():
+def _bounds(artifacts: Artifacts, *, in_crs: bool) -> Array | None:
+    """Lowest and highest corner of the map, in its CRS if asked for, (2, 3).
+
+    None: it is empty, or has no CRS.
+    """
+    low, high = np.array(tiles_of(artifacts["map"]).bounds_m)
+    to_crs = map_frame(artifacts).to_crs
+    if not np.isfinite([low, high]).all() or (in_crs and to_crs is None):
         return None
-    low, high = (frame.to_crs(corners) if frame and frame.to_crs else corners)[:, 2]
-    return float(low), float(high)
+    corners = np.array(np.meshgrid(*zip(low, high, strict=True))).reshape(3, -1).T
+    if in_crs and to_crs is not None:
+        corners = to_crs(corners)
+    return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
 def _covariances(artifacts: Artifacts, measured: dict[str, MeasuredPosition]) -> dict[str, Array]:

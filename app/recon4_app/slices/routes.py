@@ -20,7 +20,6 @@ from recon4.slices.control_points import ControlPreview
 from recon4.slices.double_places import DoubleReport
 from recon4.slices.residuals import ControlReport
 from recon4_app.access.people import Permission, Who, needs
-from recon4_app.compute_pool.model import Terms
 from recon4_app.deps import Server
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Refused
@@ -262,13 +261,14 @@ async def preview_control(
     except (binascii.Error, ValueError) as error:
         raise BadRequest(CodedText("file-not-base64")) from error
     crs = str(((await run_in_threadpool(read_summary, folder)) or {}).get("crs") or "")
-    terms = Terms(person=caller.name)
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
     return await caller.wait(
         server.slices.run_background(
-            terms,
+            server.slices.terms(project_id, caller.name),
             control_work.preview_control,
             control_work.SurveyFile(data, file.name, crs),
             file.choice,
+            artifacts,
         )
     )
 

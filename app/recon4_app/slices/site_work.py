@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import GeoreferenceError
+from recon4.evaluation.site_control import Offset, remarks, said_of_test
 from recon4.locales.coded import CodedText
 from recon4.model.plain import to_plain
 from recon4.slices.control_points import ControlPoint
@@ -15,17 +16,38 @@ from recon4.slices.site_control import (
     ControlTrial,
     forbidding,
     require_agreement,
+    trial_outcome,
     trial_text,
     try_control,
+    unseen_text,
 )
 from recon4_app.slices.model import ControlState
 from recon4_app.slices.slice_work import Artifacts
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class TriedPoint:
+    """A point after the rigid fit."""
+
+    id: str
+    role: str
+    off_m: Offset
+    """Map minus survey: east, north, up [m]; null = not measured."""
+    w: float | None
+    """Normalized residual; null = a check point."""
+    limit: float | None
+    """From there on ``w`` is a blunder."""
+    said: str
+    """What the other points say of it; empty = nothing is wrong."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class SiteTrial:
     """What the map would be like on its control points."""
 
+    points: tuple[TriedPoint, ...]
+    remarks: tuple[str, ...]
+    """What is said of all points: accuracy at check points, residuals beyond chance."""
     text: str
     """Residuals, tests and statements, as ``recon4 control`` prints them."""
     forbidden: tuple[str, ...]
@@ -41,7 +63,21 @@ def try_site(artifacts: Artifacts, state: ControlState, crs: str, *, language: s
         GeoreferenceError: If the points place no map.
     """
     trial = _try(artifacts, state, crs)
+    outcome = trial_outcome(trial)
+    points = tuple(
+        TriedPoint(
+            id=one.id,
+            role=one.role,
+            off_m=one.adjusted_m,
+            w=one.test.w if one.test else None,
+            limit=one.test.limit if one.test else None,
+            said=said_of_test(one.test, language),
+        )
+        for one in outcome.points
+    )
     return SiteTrial(
+        points=points,
+        remarks=(*remarks(outcome, language), *unseen_text(trial, language)),
         text=trial_text(trial, language),
         forbidden=tuple(one.said(language) for one in forbidding(trial)),
         unseen=trial.unseen,

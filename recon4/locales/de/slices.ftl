@@ -251,15 +251,13 @@ alignment-is = Ausrichtung: { $alignment }
 point = Punkt
 role = Rolle
 across = Quer
-stated = 1 σ angegeben [cm]
-residual-sigma = Restfehler / σ
+stated = Karte 1 σ { $ellipse } cm
+residual-sigma = Restfehler { $value } σ
 named-more = { $names } und { $count } weitere
-degrees-put = (Grad, umgerechnet in { $crs }: dessen Code für „Versuchen“)
+degrees-put = (Grad, in { $crs } gerechnet)
 first-point = { $count } Punkte; der erste, { $name }: Ost { $x }, Nord { $y }, Höhe { $z } m{ $put }
 list-too-large = Die Datei hat mehr als 600 kB; eine Punktliste ist kleiner
 swap = Ost und Nord tauschen
-use-map = Verwenden, im System der Karte
-use-crs = Verwenden, im KRS der Karte
 others-change = Andere ändern diese Punkte auch: sie werden neu gelesen, bitte noch einmal
 no-surface-of = Keine ebene Fläche näher als 30 cm an { $names }
 role-of = Rolle von { $name }
@@ -312,7 +310,7 @@ first-of-points = Die ersten { $shown } von { $count } Punkten; die Dateien habe
 all-surfaces = Alle auf die nächste Fläche
 residuals-csv = Restfehler als CSV
 sheet-to-sign = Blatt zum Drucken und Unterschreiben
-of-survey = Vermessung { $ellipse }
+of-survey = Vermessung { $ellipse } cm
 ellipse = { $major } × { $minor } bei { $azimuth }°, { $up }
 found-earlier = in einer früheren Karte gefunden
 points-of-role = { $points ->
@@ -341,13 +339,24 @@ taking-off = Die Karte wird von den Punkten gelöst…
 residuals-after-fit = Restfehler nach der starren Einpassung
 put-on-points = Die Karte auf diese Punkte legen
 site-coordinates = Baustellenkoordinaten
-site-is = Drei oder mehr Passpunkte platzieren die Karte. Sie werden zuerst geprüft; Kontrollpunkte urteilen nur. Die Karte wird in den Koordinaten der Vermessung neu gerechnet; danach die Punkte in ihr neu messen.
+site-is = Drei oder mehr Passpunkte platzieren die Karte; Kontrollpunkte urteilen nur. Versuchen ändert nichts.
 site-grid = Baustellennetz
-epsg-code = EPSG-Code
+epsg-code = System der Vermessung: EPSG-Code, oder leer
 try = Versuchen
 take-off = Die Karte von den Passpunkten lösen
 not-measured-here = In dieser Karte nicht gemessen: { $names }.
-map-remade = Die Karte wird neu gerechnet:
+use-points = { $count ->
+    [one] Diesen Punkt
+   *[other] Diese { $count } Punkte
+} verwenden
+lies-map = Sie liegen in der Karte.
+lies-crs = Sie liegen in der Karte, in { $crs }.
+lies-own = Sie haben eigene Koordinaten, wie die eines Baustellennetzes: drei oder mehr messen, dann die Karte auf sie legen.
+what-put-does = Die Karte wird im System der Vermessung neu gerechnet ({ $system }). Was gemessen ist, bleibt und wird sofort beurteilt; „Rückgängig“ auf der Seite Prüfen nimmt es zurück.
+points-agree = Die Punkte stimmen miteinander überein.
+all-figures = Alle Zahlen
+w-limit = w (Grenze)
+map-remade = Die Karte wird neu gerechnet; diese Seite zeigt sie dann. Was gemessen ist, bleibt:
 its-progress = ihr Fortschritt
 
 ## Dateien

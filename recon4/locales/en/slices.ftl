@@ -251,15 +251,13 @@ alignment-is = Alignment: { $alignment }
 point = Point
 role = Role
 across = Across
-stated = 1 σ stated [cm]
-residual-sigma = Residual / σ
+stated = map 1 σ { $ellipse } cm
+residual-sigma = residual { $value } σ
 named-more = { $names } and { $count } more
-degrees-put = (degrees, put into { $crs }: its code for Try)
+degrees-put = (degrees, put into { $crs })
 first-point = { $count } points; the first, { $name }: east { $x }, north { $y }, up { $z } m{ $put }
 list-too-large = The file has more than 600 kB; a list of points is smaller
 swap = Swap east and north
-use-map = Use, in the map's frame
-use-crs = Use, in the map's CRS
 others-change = Others change these points too: they are read again, do it once more
 no-surface-of = No flat surface within 30 cm of { $names }
 role-of = Role of { $name }
@@ -312,7 +310,7 @@ first-of-points = The first { $shown } of { $count } points; the files have all.
 all-surfaces = All on the nearest surface
 residuals-csv = Residuals as CSV
 sheet-to-sign = Sheet to print and sign
-of-survey = survey { $ellipse }
+of-survey = survey { $ellipse } cm
 ellipse = { $major } × { $minor } at { $azimuth }°, { $up }
 found-earlier = found in an earlier map
 points-of-role = { $points } { $role } { $points ->
@@ -341,13 +339,24 @@ taking-off = Taking the map off the points…
 residuals-after-fit = Residuals after the rigid fit
 put-on-points = Put the map on these points
 site-coordinates = Site coordinates
-site-is = Three or more control points place the map. They are tested first; check points only judge. The map is made again in the coordinates of the survey; then measure the points in it again.
-site-grid = site grid
-epsg-code = EPSG code
+site-is = Three or more control points place the map; check points only judge it. Try changes nothing.
+site-grid = grid of the site
+epsg-code = System of the survey: EPSG code, or empty
 try = Try
 take-off = Take the map off control points
 not-measured-here = Not measured in this map: { $names }.
-map-remade = The map is made again:
+use-points = Use { $count ->
+    [one] this point
+   *[other] these { $count } points
+}
+lies-map = They lie in the map.
+lies-crs = They lie in the map, in { $crs }.
+lies-own = They have coordinates of their own, as a grid of the site has: measure three or more, then put the map on them.
+what-put-does = The map is made again in the system of the survey ({ $system }). What was measured stays and is judged at once; Undo on the page Review takes it back.
+points-agree = The points agree with each other.
+all-figures = All figures
+w-limit = w (limit)
+map-remade = The map is made again; this page shows it then. The picks stay:
 its-progress = its progress
 
 ## Files

@@ -198,7 +198,8 @@ def test_of_a_survey_in_another_system_nothing_else_is_said(count):
 def test_a_survey_below_or_above_the_map_has_other_heights(heights_m, said):
     points = [ControlPoint("A", (0.0, 0.0, 300.0)), ControlPoint("B", (9.0, 0.0, 304.0))]
 
-    found = residuals(points, {}, ControlContext(map_heights_m=heights_m))
+    bounds_m = heights_m and np.array([(-5.0, -5.0, heights_m[0]), (15.0, 5.0, heights_m[1])])
+    found = residuals(points, {}, ControlContext(map_bounds_m=bounds_m))
 
     assert found.hint.startswith(said) and bool(found.hint) == bool(said)
 
