@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import Recon4Error, StoreError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.progress import Progress
 from recon4.review.newest_approval import APPROVALS, accept_as_it_is
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
@@ -106,7 +106,8 @@ def verify_project(root: Path, progress: Progress) -> Verified:
         rows, approvals, untrusted = review.rows, review.approvals, review.untrusted
         damaged += review.damaged
     except _UNREADABLE as error:
-        damaged.append(f"decisions.sqlite cannot be read: {error}")
+        why = text_of(error)
+        damaged.append(CodedText("cannot-read", file="decisions.sqlite", why=why))
     damaged = list(dict.fromkeys(damaged))
     return Verified(
         checked=found.checked + rows,
@@ -208,7 +209,7 @@ def _is_small_file(path: Path) -> bool:
 
 def _named(found: Verified, name: Path) -> Verified:
     def with_name(words: tuple[str, ...]) -> tuple[str, ...]:
-        return tuple(f"{name}: {one}" for one in words)
+        return tuple(at(str(name), one) for one in words)
 
     return Verified(
         found.checked,

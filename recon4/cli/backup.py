@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from recon4.cli.terminal import write, write_json
+from recon4.cli.terminal import say, write_json
 
 backups = typer.Typer()
 
@@ -41,12 +41,18 @@ def backup(
         write_json(to_json(made))
     else:
         for name in made.left_out:
-            write(f"left out, it changed meanwhile: {name}")
+            say("backup-left-out", name=name)
         for name in made.damaged:
-            write(f"damaged before it was copied: {name}")
-        write(f"{made.path}: {made.files} files, {made.bytes} bytes, {made.new_bytes} of them new")
+            say("backup-damaged", name=name)
+        say(
+            "backup-made",
+            path=str(made.path),
+            files=made.files,
+            bytes=made.bytes,
+            new_bytes=made.new_bytes,
+        )
         if not with_keys:
-            write("keys and people are not in it (--with-keys)")
+            say("backup-no-keys")
     if made.damaged:
         raise typer.Exit(1)
 
@@ -64,8 +70,6 @@ def restore(
 
     with watcher() as progress:
         files = put(backup, root, with_keys=with_keys, progress=progress)
-    write(f"{files} files in {root}; recon4 verify {root} compares them with their seals")
+    say("restored-files", files=files, root=str(root))
     if not with_keys:
-        write(
-            "keys are not in it: approvals count there once their keys are added (recon4 keys add)"
-        )
+        say("restored-no-keys")

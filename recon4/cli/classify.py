@@ -170,7 +170,8 @@ def _withdraw(project: Path, ids: Sequence[str], *, apply: bool) -> None:
 
 
 def _make_again(project: Path) -> None:
-    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.cli.summaries import describe_summary
+    from recon4.cli.terminal import watcher
     from recon4.pipeline import remake
 
     with watcher() as progress:

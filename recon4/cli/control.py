@@ -151,7 +151,8 @@ def _picked_on_page(project: Path, artifacts: dict[str, Path]) -> dict[str, Meas
 
 def _make_again(project: Path, decided: SiteControl) -> None:
     """Note the decision in the journal and make the map again."""
-    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.cli.summaries import describe_summary
+    from recon4.cli.terminal import watcher
     from recon4.evaluation.site_control import control_in, outcome_text
     from recon4.pipeline import remake
     from recon4.review.decisions import Decision, DecisionKind

@@ -10,7 +10,7 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.exports import DraftOption
-from recon4.cli.terminal import write, write_json
+from recon4.cli.terminal import in_terminal, say, say_approval, write, write_json
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import of_terminal
 
@@ -63,12 +63,14 @@ def report(
     )
     if html:
         made = report_files.write_html(project, html, draft=draft)
-        write(f"{html}\n{made.approval.text}")
+        write(str(html))
+        say_approval(made.approval)
     if client:
         page = client.suffix.lower() in (".html", ".htm")
         write_client = report_files.write_client_html if page else report_files.write_pdf
         made = write_client(project, client, wish)
-        write(f"{client}, {'signed' if made.signed else 'not signed'}\n{made.approval.text}")
+        say("written-report", file=str(client), signed=_yes(made.signed))
+        say_approval(made.approval)
 
 
 @delivery.command()
@@ -113,8 +115,18 @@ def deliver(
     )
     with watcher() as progress:
         made = pack(project, out, wish, progress=progress)
-    write(f"{len(made.files)} files, {made.bytes / 1e6:.1f} MB in {out}")
-    write(f"{'signed' if made.signed else 'not signed'}\n{made.approval.text}")
+    say(
+        "written-delivery",
+        count=len(made.files),
+        bytes=made.bytes,
+        folder=str(out),
+        signed=_yes(made.signed),
+    )
+    say_approval(made.approval)
+
+
+def _yes(signed: bool) -> str:
+    return "yes" if signed else "no"
 
 
 def is_delivery(path: Path) -> bool:
@@ -139,12 +151,14 @@ def show_checked(path: Path, *, as_json: bool, accept: bool = False) -> None:
     if as_json:
         write_json(found)
     else:
-        parts = (("intact", found.intact), ("ALTERED", found.altered))
-        for word, names in (*parts, ("MISSING", found.missing), ("ADDED", found.added)):
-            write("".join(f"{word}: {name}\n" for name in names), end="")
-        write("".join(f"{text}\n" for text in (found.says, found.doubt) if text), end="")
+        parts = (("intact", found.intact), ("altered", found.altered))
+        for part, names in (*parts, ("missing", found.missing), ("added", found.added)):
+            for name in names:
+                say(f"verify-{part}", name=name)
+        for text in filter(None, (found.says, found.doubt)):
+            write(in_terminal(text))
         if found.signer and not found.altered:
-            write(f"signed by {found.signer}")
+            say("verify-signer", signer=found.signer)
     if not found.whole:
         raise typer.Exit(1)
 

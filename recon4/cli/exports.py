@@ -11,7 +11,7 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.slices import numbers
-from recon4.cli.terminal import write
+from recon4.cli.terminal import say, say_approval
 from recon4.export.options import Box, ClipBox, ExportOptions, classes_named, option_text
 from recon4.locales.coded import CodedText
 
@@ -91,8 +91,9 @@ def convert(
     sources = Sources.of(*recordings, rig=rig or None, imu=imu)
     with watcher() as progress:
         made = run(sources, out, progress=progress)
-    write(f"{made.points} points and {made.samples} IMU samples in {out}")
-    write("\n".join(f"lost: {text}" for text in made.lost) + "\n" * bool(made.lost), end="")
+    say("written-mandeye", points=made.points, samples=made.samples, folder=str(out))
+    for text in made.lost:
+        say("written-lost", what=text)
 
 
 def _box(text: str) -> Box | None:
@@ -126,22 +127,24 @@ def _write_export(project: Path, file: Path, wanted: ExportOptions) -> None:
         return
     with watcher() as progress:
         if ending == ".gpkg":
-            write(f"{write_layers_file(project, file, wanted, progress=progress)} in {file}")
+            made_of = write_layers_file(project, file, wanted, progress=progress)
+            say("written", file=str(file), what=made_of)
             _write_approval(project, draft=wanted.draft)
             return
         if ending == ".3dtk":
             points = export_3dtk(project, file, progress=progress, draft=wanted.draft)
-            write(f"{points} points in {file}")
+            say("written", file=str(file), what=CodedText("points-all", points=points))
             _write_approval(project, draft=wanted.draft)
             return
         made = export_map(project, file, wanted, progress=progress)
-    write(f"{made.text} in {file}\n{made.approval.text}")
+    say("written", file=str(file), what=made.text)
+    say_approval(made.approval)
 
 
 def _write_approval(project: Path, *, draft: bool) -> None:
     from recon4.review.approval_state import latest_state
 
-    write(latest_state(project, draft=draft).text)
+    say_approval(latest_state(project, draft=draft))
 
 
 def _export_text(project: Path, file: Path, *, draft: bool) -> None:
@@ -149,7 +152,8 @@ def _export_text(project: Path, file: Path, *, draft: bool) -> None:
     from recon4.export.map_files import export_poses
 
     if file.suffix.lower() == ".txt":
-        write(f"{export_poses(project, file, draft=draft)} poses in {file}")
+        what = CodedText("poses-all", poses=export_poses(project, file, draft=draft))
     else:
-        write(f"{export_findings(project, file)} findings in {file}")
+        what = CodedText("findings-all", findings=export_findings(project, file))
+    say("written", file=str(file), what=what)
     _write_approval(project, draft=draft)

@@ -22,7 +22,8 @@ def audit(
 ) -> None:
     """Work out the findings of a finished map again, with the witnesses of this version."""
     confine_command(write=[project])
-    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.cli.summaries import describe_summary
+    from recon4.cli.terminal import watcher
     from recon4.pipeline import audit as run
 
     with watcher() as progress:

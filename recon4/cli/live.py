@@ -9,8 +9,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from recon4.cli.terminal import worded
+from recon4.locales.coded import CodedText
+
 if TYPE_CHECKING:
     from recon4.live.newest_messages import Newest
+    from recon4.locales.texts import Shown
     from recon4.model.rig import Rig
 
 live = typer.Typer()
@@ -60,7 +64,7 @@ def replay(
             repetitions=times,
             rig=load_rig(rig) if rig else None,
         )
-    _write(f"{sent} datagrams sent")
+    _say("replay-sent", count=sent)
 
 
 @live.command()
@@ -97,16 +101,17 @@ def record(
 
     try:
         session = begin(out, loaded, preset=preset, address=address, speed=speed)
-        _write(f"recording to {session.capture} (Ctrl-C stops)")
+        _say("capture-begins", capture=str(session.capture))
         ended = asyncio.run(run())
     except StoppedBySignal:
         discard(CaptureSession(project=out))  # nothing was recorded yet
         raise
     _write(_outcome(ended, of_scans=all(one.kind == "laser2d" for one in loaded.sensors)))
     if ended.stopped is not None and ended.stopped.why != "stopped":
-        _write(f"recording ended by itself: {ended.stopped.why}")
+        _say("capture-ended-early", why=ended.stopped.why)
     recordings = session.capture.parent
-    _write(f"next: recon4 process {session.capture} --rig {recordings / 'rig.toml'} --out {out}")
+    command = f"recon4 process {session.capture} --rig {recordings / 'rig.toml'} --out {out}"
+    _say("capture-next", command=command)
     if ended.done is None or ended.done.problem:
         raise typer.Exit(1)
 
@@ -120,7 +125,7 @@ def _described_rig(rig: str) -> Rig:
     beside = files_near(Path(rig)) if Path(rig).suffix else []
     loaded, used = with_descriptions(load_rig(rig), beside)
     for name, file in used.items():
-        _write(f"{name} is described by {file} beside the rig file")
+        _say("capture-described", name=name, file=str(file))
     return loaded
 
 
@@ -149,8 +154,12 @@ def _outcome(ended: Newest, *, of_scans: bool) -> str:
     recorded = stopped.file.datagrams if stopped is not None else 0
     lost = stopped.kernel_drops + stopped.file.dropped if stopped is not None else 0
     frames, problem = (done.frames, done.problem) if done is not None else (0, "")
-    mapped = problem or f"{frames} {'scans' if of_scans else 'multiframes'} are ready"
-    return f"{recorded} datagrams recorded, {lost} lost; {mapped}"
+    ready = CodedText("capture-scans" if of_scans else "capture-multiframes", count=frames)
+    return worded("capture-counts", recorded=recorded, lost=lost, mapped=problem or ready)
+
+
+def _say(code: str, /, **values: Shown) -> None:
+    _write(worded(code, **values))
 
 
 def _write(text: str) -> None:

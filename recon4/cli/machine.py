@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import write, write_json
+from recon4.cli.terminal import in_terminal, worded, write, write_json
 from recon4.cli.workers import SchedulerOption, TlsOption, certificates_of
 from recon4.errors import ConfigError, StoreError
 
@@ -36,8 +36,10 @@ def doctor(
         write_json(checks)
     else:
         for check in checks:
-            mark = "ok " if check.ok else "NO "
-            write(f"{mark} {check.what:<20} {check.found:<18} {check.advice}".rstrip())
+            mark = worded("doctor-ok" if check.ok else "doctor-no")
+            what = worded("doctor-check", check=check.what)
+            found = worded("doctor-found", found=check.found)
+            write(f"{mark:<3} {what:<20} {found:<18} {in_terminal(check.advice)}".rstrip())
     if not all(check.ok for check in checks):
         raise typer.Exit(1)
 

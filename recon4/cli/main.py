@@ -36,7 +36,7 @@ from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
 from recon4.cli.spoken import speak, wrong_usage
 from recon4.cli.storage import space
-from recon4.cli.terminal import complaint_of, write, write_json
+from recon4.cli.terminal import complaint_of, in_terminal, say, write, write_json
 from recon4.cli.workers import (
     SchedulerOption,
     TlsOption,
@@ -174,7 +174,8 @@ def process(  # noqa: PLR0913 - an argument for each option
         raise typer.Exit(run_confined(context, folder, executor))
     confine_command(write=[folder])
 
-    from recon4.cli.terminal import describe_summary, describe_tried, watcher
+    from recon4.cli.summaries import describe_summary, describe_tried
+    from recon4.cli.terminal import watcher
     from recon4.model.events import Warned
     from recon4.pipeline import process as run
     from recon4.recording.info.nearby_samples import unread_samples
@@ -240,17 +241,21 @@ def verify(
         write_json(found)
     else:
         for name in found.unknown:
-            write(f"not of recon4, left alone: artifacts/{name}")
+            say("verify-unknown", name=name)
         for what in found.notes:
-            write(f"note: {what}")
+            say("verify-note", what=what)
         for what in found.damaged:
-            write(f"damaged: {what}")
+            say("verify-damaged", what=what)
         for what in found.untrusted:
-            write(f"not trusted: {what}")
+            say("verify-untrusted", what=what)
         for what in found.approvals:
-            write(what)
-        untrusted = f", {len(found.untrusted)} not trusted" if found.untrusted else ""
-        write(f"{found.checked} checked, {len(found.damaged)} damaged{untrusted}")
+            write(in_terminal(what))
+        say(
+            "verify-counts",
+            checked=found.checked,
+            damaged=len(found.damaged),
+            untrusted=len(found.untrusted),
+        )
     if found.damaged or found.untrusted:
         raise typer.Exit(1)
 

@@ -13,7 +13,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.exports import DraftOption
 from recon4.cli.slices import ProjectArgument, numbers
-from recon4.cli.terminal import write
+from recon4.cli.terminal import say_approval, write
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
 
@@ -133,7 +133,7 @@ def _open(project: Path, file: Path, crs: str, *, draft: bool = False) -> Opened
     from recon4.review.approval_state import latest_state
 
     opened = open_map(project, draft=draft, crs=crs)
-    write(latest_state(project, draft=draft).text)
+    say_approval(latest_state(project, draft=draft))
     return opened
 
 

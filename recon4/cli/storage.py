@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import write, write_json
+from recon4.cli.terminal import in_terminal, say, worded, write, write_json
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
+from recon4.locales.languages import of_terminal
+from recon4.locales.numbers import localized
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +54,7 @@ def storage(
         return
     _show(parts)
     if chosen:
-        write(f"freed: {_size(freed)} in {len(freed)} artifacts")
+        say("storage-freed", size=_size(freed), count=len(freed))
 
 
 def _chosen(words: Sequence[str]) -> list[Freeable]:
@@ -72,13 +74,14 @@ def _chosen(words: Sequence[str]) -> list[Freeable]:
 
 def _show(parts: Sequence[StoredPart]) -> None:
     for part in parts:
-        end = f"--free {part.freeable}" if part.freeable else part.why
+        end = f"--free {part.freeable}" if part.freeable else in_terminal(part.why)
         write(f"{_size([part]):>10}  {part.what:<24}{end}".rstrip())
-    write(f"{_size(parts):>10}  in all")
+    write(f"{_size(parts):>10}  {worded('storage-in-all')}")
     freeable = [part for part in parts if part.freeable]
     if freeable:
-        write(f"{_size(freeable):>10}  can be freed; processing the recording again makes it again")
+        write(f"{_size(freeable):>10}  {worded('storage-freeable')}")
 
 
 def _size(parts: Sequence[StoredPart]) -> str:
-    return f"{sum(part.bytes for part in parts) / 1e6:.1f} MB"
+    size_mb = f"{sum(part.bytes for part in parts) / 1e6:.1f}"
+    return f"{localized(size_mb, of_terminal())} MB"

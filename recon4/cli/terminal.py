@@ -6,30 +6,49 @@ import json
 import re
 import sys
 import time
-from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, TextIO, cast
+from typing import TYPE_CHECKING, TextIO
 
 from recon4.errors import ConfigError, Recon4Error
-from recon4.locales.coded import coded
+from recon4.locales.coded import CodedText, coded, said
 from recon4.locales.languages import of_terminal
+from recon4.locales.numbers import localized
+from recon4.locales.texts import Shown
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
     from recon4.model.events import Event, StageChanged
-    from recon4.workflows.map_results import Summary
-    from recon4.workflows.planar_results import Summary2d
-    from recon4.workflows.summary import RunSummary
+    from recon4.review.approval_state import ApprovalState
 
 _LINE_EVERY_S = 5.0
-_MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
-"""Of findings, by their level."""
+_HASH = "hash "
+"""Before the name of a file, in the name of a piece of work."""
 
 
 def write(text: str, end: str = "\n") -> None:
     """Say something on standard output."""
     sys.stdout.write(text + end)
+
+
+def say(code: str, /, **values: Shown) -> None:
+    """Say a text in the language of the terminal on standard output."""
+    write(worded(code, **values))
+
+
+def say_approval(state: ApprovalState) -> None:
+    """Say the line that stands beside every file of the results."""
+    write(state.line.said(of_terminal()))
+
+
+def worded(code: str, /, **values: Shown) -> str:
+    """A text in the language of the terminal, if that is known; so is what it quotes."""
+    return in_terminal(CodedText(code, **values))
+
+
+def in_terminal(text: str) -> str:
+    """A text, if it has a code in the language of the terminal."""
+    return said(text, of_terminal())
 
 
 def write_json(value: object) -> None:
@@ -167,18 +186,26 @@ def describe_progress(what: str, done: int, total: int, *, unit: str, seconds: f
     share = (
         f"{100 * done // total:3d} %  {_count(done, unit)}/{_count(total, unit)}" if total else ""
     )
-    parts = [_padded(what), share or _count(done, unit), unit if unit != "B" else ""]
+    named = worded("progress-unit", unit=unit)
+    parts = [_padded(_step(what)), share or _count(done, unit), named if unit != "B" else ""]
     if done and seconds > 0.0:
         rate = done / seconds
-        parts.append(f"{_count(rate, unit)}/s" if unit == "B" else f"{rate:.1f} {unit}/s")
+        per_s = f"{_count(rate, unit)}/s" if unit == "B" else f"{_number(rate)} {named}/s"
         left_s = (total - done) / rate
-        parts.append(f"{left_s:.0f} s left" if left_s > 0.0 else f"{seconds:.1f} s")
+        left = worded("seconds-left", seconds=left_s) if left_s > 0.0 else f"{_number(seconds)} s"
+        parts += [per_s, left]
     return "  ".join(part for part in parts if part)
 
 
 def is_progress(line: str) -> bool:
     """Whether a line of `PlainLines` counts how far a piece of work is, and says nothing else."""
     return re.match(rf".{{{len(_padded(''))},}}?  +\d", line) is not None
+
+
+def _step(what: str) -> str:
+    if what.startswith(_HASH):
+        return worded("step-hash", file=what.removeprefix(_HASH))
+    return worded("progress-step", step=what)
 
 
 def _padded(what: str) -> str:
@@ -194,93 +221,21 @@ def describe_event(event: Event) -> str:
         case StageChanged():
             return _describe_stage(event)
         case Warned(text=text):
-            return f"warning: {text}"
+            return worded("warning", text=text)
         case Remarked(finding=finding):
-            return f"warning: {whole_text(finding)}"
+            return worded("warning", text=whole_text(finding, of_terminal()))
         case ArtifactDamaged(stage=stage, moved_to=moved_to, files=files):
-            return (
-                f"an artifact of the stage {stage} was damaged and is made again; "
-                f"the damaged one is {moved_to}: {'; '.join(files)}"
-            )
+            found = "; ".join(map(in_terminal, files))
+            return worded("artifact-was-damaged", stage=stage, moved_to=moved_to, files=found)
     return ""
-
-
-def describe_tried(out: Path) -> list[str]:
-    """The hypotheses that the odometry of a project tried, in lines; none if it has no table.
-
-    Raises:
-        StoreError: If the table is damaged.
-    """
-    from recon4.report.tried_hypotheses import tried_lines
-    from recon4.store.project import read_artifacts
-    from recon4.store.tried_hypotheses import read_tried
-
-    odometry = read_artifacts(out).get("odometry")
-    tried = read_tried(odometry) if odometry else ()
-    return tried_lines(tried) if tried else []
-
-
-def describe_summary(summary: RunSummary) -> str:
-    """What a finished run came to, and where its results are."""
-    from recon4.workflows.map_results import Summary
-
-    if isinstance(summary, Summary):
-        return _describe_3d(summary)
-    return _describe_2d(cast("Summary2d", summary))
-
-
-def _describe_2d(summary: Summary2d) -> str:
-    edges = ", ".join(f"{count} {verdict}" for verdict, count in summary.edges.items())
-    width_m, height_m = (size * summary.grid.cell_m for size in summary.grid.size)
-    lines = [
-        f"{summary.duration_s:.1f} s, {summary.path_length_m:.1f} m, "
-        f"{summary.scans} scans ({summary.lost} lost)",
-        f"{sum(summary.edges.values())} edges: {edges}; {summary.loops} loop closures",
-        f"{width_m:.0f} x {height_m:.0f} m in cells of {summary.grid.cell_m:g} m, "
-        f"{summary.grid.free_m2:.0f} m² free",
-        f"{summary.seconds:.1f} s of work, {summary.peak_bytes / 1e9:.2f} GB at most",
-        *_describe_verdict(summary),
-        f"map     {summary.folder / 'map.png'}",
-        f"nav2    {summary.folder / 'map.yaml'}",
-        f"report  {summary.folder / 'report.html'}",
-    ]
-    return "\n".join(lines)
-
-
-def _describe_3d(summary: Summary) -> str:
-    edges = ", ".join(f"{count} {verdict}" for verdict, count in summary.edges.items())
-    lines = [
-        f"{summary.duration_s:.1f} s, {summary.path_length_m:.1f} m, "
-        f"{summary.multiframes} multiframes ({summary.lost} lost)",
-        f"{sum(summary.edges.values())} pairs tried: {edges}",
-        f"{summary.points} points in the map",
-        f"{summary.seconds:.1f} s of work, {summary.peak_bytes / 1e9:.2f} GB at most",
-        *_describe_verdict(summary),
-        f"map     {summary.folder / 'map.laz'}",
-        f"report  {summary.folder / 'report.html'}",
-    ]
-    return "\n".join(lines)
-
-
-def _describe_verdict(summary: RunSummary) -> list[str]:
-    """The verdict on the map, with its reasons and notes by their codes, a line each."""
-    from recon4.findings.wording import whole_text
-    from recon4.model.finding import Level
-
-    shown = [one for one in summary.findings if one.level is not Level.GOOD]
-    return [
-        f"verdict: {summary.verdict.usability}",
-        *(f"  {_MARKS[one.level]} {one.kind}: {whole_text(one)}" for one in shown),
-        *(["  recon4 explain CODE says more"] if shown else []),
-    ]
 
 
 def _describe_stage(event: StageChanged) -> str:
     match event.state:
         case "reused":
-            return f"{event.stage}: already there"
+            return worded("stage-was-reused", stage=event.stage)
         case "done":
-            return f"{event.stage}: done in {event.seconds} s"
+            return worded("stage-was-done", stage=event.stage, seconds=event.seconds or 0.0)
     return ""
 
 
@@ -309,4 +264,8 @@ def _count(number: float, unit: str) -> str:
         if number < 1000:
             return f"{number:.0f} {prefix}B"
         number /= 1000
-    return f"{number:.1f} GB"
+    return f"{_number(number)} GB"
+
+
+def _number(value: float) -> str:
+    return localized(f"{value:.1f}", of_terminal())

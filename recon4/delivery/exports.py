@@ -93,7 +93,7 @@ def write_kind(
     if kind.point_bytes:
         map_ = map_to_export(wanted.artifacts, wanted.evidence, wanted.options)
         points = write_map(map_, path, progress=progress)
-        return points, points_text(points, len(map_.tiles), map_.tiles.strays).rstrip(",")
+        return points, points_text(points, len(map_.tiles), map_.tiles.strays)
     if kind.name.startswith("poses"):
         return 0, f"{export_poses(project, path, draft=wanted.options.draft)} poses"
     if kind.name.startswith("findings"):

@@ -71,12 +71,12 @@ def points_text(points: int, of_points: int, left_out: int) -> str:
         left_out: That it leaves out.
     """
     if points == of_points + left_out and left_out:
-        return f"{points} points, with the {left_out} that the map leaves out,"
+        return CodedText("points-with", points=points, left_out=left_out)
     if points != of_points:
-        return f"{points} points of {of_points}"
+        return CodedText("points-of", points=points, all=of_points)
     if not left_out:
-        return f"{points} points"
-    return f"{points} points, without {left_out} (noise, moving, carrier),"
+        return CodedText("points-all", points=points)
+    return CodedText("points-without", points=points, left_out=left_out)
 
 
 @dataclass(frozen=True, slots=True)

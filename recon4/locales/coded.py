@@ -20,10 +20,20 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
 
-FILES = ("problems", "endings", "references", "recordings", "files", "formats", "results", "usage")
+FILES = (
+    "problems",
+    "endings",
+    "references",
+    "recordings",
+    "files",
+    "formats",
+    "results",
+    "usage",
+    "terminal",
+)
 """Files of the texts with a code: problems of requests, reasons why jobs ended, what is said of
-references, of recordings, of files, settings and projects, of formats, of results, and of wrong
-usage of commands."""
+references, of recordings, of files, settings and projects, of formats, of results, of wrong usage
+of commands, and what commands say."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
 COUNTS = ("counts",)

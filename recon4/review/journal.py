@@ -176,15 +176,18 @@ def append(
 
 def broken(rows: Sequence[JournalRow]) -> list[str]:
     """Problems of the hash chain; empty = intact."""
-    problems, before = [], CHAIN_START
+    problems: list[str] = []
+    before = CHAIN_START
     for place, row in enumerate(rows, start=1):
         if row.seq != place:
-            problems.append(f"row {place} is missing")
+            problems.append(CodedText("journal-row-missing", row=place))
             break
         if row.prev_hash != before:
-            problems.append(f"row {place} does not follow the row before it")
+            problems.append(CodedText("journal-row-follows", row=place))
         if row.sealed() != row.hash:
-            problems.append(f"row {place} ({row.kind} by {row.who}) was changed")
+            problems.append(
+                CodedText("journal-row-changed", row=place, kind=str(row.kind), who=row.who)
+            )
         before = row.hash
     return problems
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.model.usability import Usability
 from recon4.progress import Progress, track
 from recon4.review.approved import VERSIONS, Approval, read_approval, versions_without_row
@@ -17,6 +17,7 @@ from recon4.review.newest_approval import refuse_older
 from recon4.review.trusted_keys import TrustedKey, UnknownSigner, trusted_for
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
+from recon4.store.stage import other_names
 from recon4.untrusted.names import visible
 
 
@@ -41,7 +42,7 @@ def verify_review(root: Path, progress: Progress) -> VerifiedReview:
         StoreError: If the journal cannot be read.
     """
     rows, trusted = read_rows(root), trusted_for(root)
-    damaged = [f"journal: {what}" for what in broken(rows)]
+    damaged: list[str] = [at("journal", one) for one in broken(rows)]
     approvals: list[str] = []
     untrusted: list[str] = []
     approving = [row for row in rows if row.kind == DecisionKind.APPROVE]
@@ -52,48 +53,46 @@ def verify_review(root: Path, progress: Progress) -> VerifiedReview:
         try:
             approval, public_key = read_approval(folder, row)
         except Altered as error:
-            damaged.append(f"version {version}: {error}")
+            damaged.append(CodedText("damage-version", version=version, what=text_of(error)))
             continue
         wrong = _files(folder, dict(approval.issued))
-        damaged += [f"version {version}: {what}" for what in wrong]
+        damaged += [CodedText("damage-version", version=version, what=one) for one in wrong]
         try:
             key = trusted.signer(public_key)
         except UnknownSigner as error:
-            untrusted.append(f"version {version} by {visible(approval.stamp.who)}: {error}")
+            who = visible(approval.stamp.who)
+            untrusted.append(
+                CodedText("approval-untrusted", version=version, who=who, why=text_of(error))
+            )
             continue
         if not wrong:
             approvals.append(_approved(approval, key))
     damaged += [
-        f"versions/{name} is in no row of the journal: the row was removed, the journal is an "
-        "older one, or the approval was interrupted"
-        for name in versions_without_row(root, rows)
+        CodedText("approval-no-row", name=name) for name in versions_without_row(root, rows)
     ]
     try:
         refuse_older(root, rows)
     except StoreError as error:
-        damaged.append(str(error))
+        damaged.append(text_of(error))
     return VerifiedReview(len(rows), tuple(approvals), tuple(damaged), tuple(untrusted))
 
 
 def _approved(approval: Approval, key: TrustedKey) -> str:
     stamp = approval.stamp
-    signed = f"version {stamp.version}, approved by {visible(stamp.who)}, {stamp.time}"
-    by = f", key {key.fingerprint} ({visible(key.name)})"
-    return signed + by + _in_spite_of(stamp.verdict, stamp.why)
-
-
-def _in_spite_of(verdict: str, why: str) -> str:
-    """The verdict that a map was approved in spite of, and the reason; empty for a good one."""
-    if verdict in ("", Usability.GOOD):
-        return ""
-    return f', verdict "{verdict}"' + (
-        f', reason "{visible(" ".join(why.split()))}"' if why else ""
+    return CodedText(
+        "approval-valid",
+        version=stamp.version,
+        who=visible(stamp.who),
+        time=stamp.time,
+        fingerprint=key.fingerprint,
+        name=visible(key.name),
+        verdict="none" if stamp.verdict in ("", Usability.GOOD) else stamp.verdict,
+        why=visible(" ".join(stamp.why.split())) or "none",
     )
 
 
 def _files(folder: Path, issued: dict[str, object]) -> list[str]:
     there = {path.name for path in folder.iterdir()} - {"approval.json"}
-    wrong = [f"{name} is missing" for name in sorted(issued.keys() - there)]
-    wrong += [f"{name} does not belong here" for name in sorted(there - issued.keys())]
-    both: Sequence[str] = sorted(there & issued.keys())
-    return wrong + [f"{n} has other bytes" for n in both if hash_file(folder / n) != issued[n]]
+    both = sorted(there & issued.keys())
+    altered = [one for one in both if hash_file(folder / one) != issued[one]]
+    return other_names(there, issued) + [CodedText("damage-bytes", name=one) for one in altered]

@@ -93,7 +93,7 @@ def compare_all(root: Path) -> Iterator[tuple[str, str]]:
         try:
             _compare(root, name, seal)
         except Altered as error:
-            yield name, str(error)
+            yield name, text_of(error)
         else:
             yield name, ""
 

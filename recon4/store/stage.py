@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Concatenate, Generic, TypedDict, TypeVar
@@ -344,16 +344,22 @@ def damage_of(folder: Path, *, hashes: bool) -> list[str]:
     except StoreError as error:
         return [str(error)]
     except (KeyError, TypeError, ValueError, AttributeError) as error:
-        return [f"manifest.json: its list of files makes no sense: {error!r}"]
+        return [CodedText("damage-manifest", why=f"{error!r}")]
     there = set(files_below(folder)) - {"manifest.json"}
-    damage = [f"{name} is missing" for name in sorted(files.keys() - there)]
-    damage += [f"{name} does not belong here" for name in sorted(there - files.keys())]
+    damage = other_names(there, files)
     for name in sorted(files.keys() & there):
         if (folder / name).stat().st_size != files[name].size:
-            damage.append(f"{name} has another size")
+            damage.append(CodedText("damage-size", name=name))
         elif hashes and hash_file(folder / name) != files[name].sha256:
-            damage.append(f"{name} has other bytes")
+            damage.append(CodedText("damage-bytes", name=name))
     return damage
+
+
+def other_names(there: Set[str], expected: Iterable[str]) -> list[str]:
+    """Messages about files that are missing, and about those that are not expected."""
+    known = set(expected)
+    damage: list[str] = [CodedText("damage-missing", name=one) for one in sorted(known - there)]
+    return damage + [CodedText("damage-unexpected", name=one) for one in sorted(there - known)]
 
 
 def _finished_stage(artifact: Artifact) -> FinishedStage:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.progress import Progress, track
 from recon4.store.checked import Altered
 from recon4.store.hashing import files_below, hash_file
@@ -58,14 +59,14 @@ def verify_files(root: Path, progress: Progress) -> VerifiedFiles:
     sealed, damaged, notes = verify_seals(root, [*loose_files(root), *_later_files(root)])
     stages, known = _ledger(root, damaged)
     for row in track(stages, progress, what="artifacts", unit="artifacts"):
-        damaged += [f"{row.stage} {row.key[:12]}: {what}" for what in _stage_damage(root, row)]
+        damaged += _each(f"{row.stage} {row.key[:12]}", _stage_damage(root, row))
     results = _result_hashes(root, damaged)
     for name, sha256 in track(results.items(), progress, what="results", unit="files"):
         path = root / name
         if not path.is_file():
-            damaged.append(f"{name} is missing")
+            damaged.append(CodedText("damage-missing", name=name))
         elif hash_file(path) != sha256:
-            damaged.append(f"{name} has other bytes")
+            damaged.append(CodedText("damage-bytes", name=name))
     folder = root / "artifacts"
     there = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
     unknown = tuple(name for name in there if name not in known)
@@ -87,17 +88,14 @@ def verify_seals(root: Path, expected: list[str]) -> tuple[int, list[str], list[
         seals = read_seals(root)
         found = list(compare_all(root))
     except Altered as error:
-        return 0, [str(error)], []
+        return 0, [text_of(error)], []
     damaged = [message for _, message in found if message]
-    notes = []
+    notes: list[str] = []
     for name in sorted({*expected, *seals}):
         seal = seals.get(name)
         if seal is not None and seal != OPEN:
             continue
-        why = "has no seal (an earlier recon4 wrote it)"
-        if seal is not None:
-            why = "is open (in use, or a process was killed)"
-        notes.append(f"{name} {why}: only its content was checked")
+        notes.append(CodedText("seal-none" if seal is None else "seal-open", name=name))
         damaged += content_damage(root / name)
     return len(found), damaged, notes
 
@@ -108,12 +106,17 @@ def content_damage(path: Path) -> list[str]:
         if path.suffix == ".sqlite" and path.exists():
             with closing(connect_to_read(path)) as db:
                 messages = [str(row[0]) for row in db.execute("PRAGMA integrity_check(5)")]
-            return [] if messages == ["ok"] else [f"{path.name}: {messages[0]}"]
+            return [] if messages == ["ok"] else _each(path.name, messages[:1])
         if path.suffix == ".json" and path.exists():
             read_object(path)
     except (sqlite3.Error, StoreError) as error:
-        return [f"{path.name}: {error}"]
+        return _each(path.name, [text_of(error)])
     return []
+
+
+def _each(of: str, messages: Iterable[str]) -> list[str]:
+    """Messages with what they are of."""
+    return [at(of, one) for one in messages]
 
 
 def _later_files(root: Path) -> Iterator[str]:
@@ -129,7 +132,7 @@ def _ledger(root: Path, damaged: list[str]) -> tuple[list[FinishedStage], set[st
         stages = read_stages(root)
         current = {path.name for path in read_artifacts(root).values()}
     except StoreError as error:
-        damaged.append(str(error))
+        damaged.append(text_of(error))
         return [], set()
     return stages, {row.key for row in stages} | current
 
@@ -137,13 +140,13 @@ def _ledger(root: Path, damaged: list[str]) -> tuple[list[FinishedStage], set[st
 def _stage_damage(root: Path, row: FinishedStage) -> list[str]:
     folder = root / "artifacts" / str(row.key)
     if not folder.is_dir():
-        return ["is missing"]
+        return [CodedText("damage-folder")]
     damage = damage_of(folder, hashes=True)
     try:
         if read_manifest(folder)["done"] != asdict(row):
-            damage.append(f"{LEDGER} and manifest.json have different records of it")
+            damage.append(CodedText("damage-records", ledger=LEDGER))
     except StoreError as error:
-        damage.append(str(error))
+        damage.append(text_of(error))
     return damage
 
 
@@ -154,5 +157,5 @@ def _result_hashes(root: Path, damaged: list[str]) -> dict[str, str]:
         hashes: Any = read_object(root / SUMMARY).get("hashes", {}).get("results", {})
         return {str(name): str(sha256) for name, sha256 in hashes.items()}
     except (StoreError, AttributeError) as error:
-        damaged.append(f"{SUMMARY}: {error}")
+        damaged += _each(SUMMARY, [text_of(error)])
         return {}

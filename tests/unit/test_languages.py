@@ -22,6 +22,8 @@ MADE = re.compile(
     r"|[A-Z][A-Z0-9-]+$"
 )
 """Names that code puts together, of findings and counts; their own tests compare them."""
+NAMED = re.compile(r'\bNAMED\(\$\w+, of: "([a-z-]+)"\)')
+"""Of names that texts put together."""
 WORD = re.compile(r"[\w-]+")
 PREFIX = re.compile(
     r'(?:\bword(?:Of|_of)\(\s*"|_choice\("[a-z-]+", ")([a-z-]+)"|(?:\bt\(`|\bf")([a-z-]+)-\$?\{'
@@ -79,7 +81,9 @@ def test_every_message_is_used():
         for path in room.rglob("*")
         if path.suffix in {".py", ".js", ".html", ".jinja", ".typ"} and "vendor" not in path.parts
     )
+    texts = "".join(path.read_text("utf-8") for path in (ROOT / ENGLISH).glob("*.ftl"))
     made = tuple(f"{one[0] or one[1]}-" for one in PREFIX.findall(code))
+    made += tuple(f"{one}-" for one in NAMED.findall(texts))
     names = [name for file in FILES for name in messages_of(ROOT / ENGLISH / f"{file}.ftl")]
     fixed = [name for name in names if not MADE.match(name) and not name.startswith(made)]
 

@@ -5,6 +5,7 @@ import io
 import pytest
 
 from recon4.cli.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
+from recon4.locales.languages import ENVIRONMENT
 from recon4.model.events import ArtifactDamaged, NodesPlaced, Remarked, StageChanged, Warned
 from recon4.model.finding_kinds import FindingKind
 from recon4.progress import track
@@ -36,8 +37,9 @@ def test_a_line_has_percent_count_rate_with_unit_and_time_left():
 
 
 def test_bytes_are_shown_in_units_a_person_reads():
-    line = describe_progress("hash", 1_500_000, 3_000_000_000, unit="B", seconds=1.0)
+    line = describe_progress("hash walk.pcap", 1_500_000, 3_000_000_000, unit="B", seconds=1.0)
 
+    assert line.startswith("hash walk.pcap  ")
     assert "2 MB/3.0 GB" in line
     assert "2 MB/s" in line
 
@@ -51,14 +53,31 @@ def test_not_at_a_terminal_there_are_plain_lines_one_when_each_piece_ends():
     out = io.StringIO()
 
     with watcher(out) as progress:
-        list(track(range(3), progress, what="reading", unit="packets"))
+        list(track(range(3), progress, what="Reading", unit="packets"))
         list(track(range(2), progress, what="matching", unit="pairs"))
 
     first, second = out.getvalue().splitlines()
     assert isinstance(progress, PlainLines)
-    assert first.startswith("reading")
+    assert first.startswith("Reading")
     assert "100 %  3/3  packets" in first
     assert second.startswith("matching")
+
+
+def test_progress_and_events_are_in_the_language_of_the_terminal(monkeypatch):
+    monkeypatch.setenv(ENVIRONMENT, "de")
+    missing = warning(FindingKind.SENSOR_NOT_RECORDED, sensor="vertical")
+
+    line = describe_progress("place points", 200, 800, unit="tiles", seconds=5.0)
+
+    assert line.split("  ")[0] == "Punkte platzieren"
+    assert line.endswith("200/800  Kacheln  40,0 Kacheln/s  noch 15 s")
+    assert describe_progress("hash a.pcap", 1, 2, unit="B", seconds=0.0).startswith(
+        "Prüfsumme von a.pcap"
+    )
+    assert describe_event(StageChanged(stage="map", state="done", seconds=1.5)) == (
+        "Karte: fertig in 1,5 s"
+    )
+    assert describe_event(Remarked(finding=missing)).startswith("Warnung: Der Sensor vertical")
 
 
 def test_at_a_terminal_there_are_bars_with_the_same_figures():

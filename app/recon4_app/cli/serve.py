@@ -87,7 +87,8 @@ def demo(
     headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
 ) -> None:
     """Simulate a walk through an office, map it and show it in the browser."""
-    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.cli.summaries import describe_summary
+    from recon4.cli.terminal import watcher
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as make_map
     from recon4.recording.sources import Sources

@@ -80,6 +80,16 @@ step-learn-intensities = Intensitäten lernen
 step-map = Karte
 step-place-points = Punkte platzieren
 step-results = Ergebnisse
+step-approvals = Freigaben
+step-artifacts = Artefakte
+step-back-up = sichern
+step-boards = Tafeln
+step-plates = retroreflektierende Tafeln
+step-replay = abspielen
+step-restore = zurückspielen
+step-simulate = simulieren
+step-spheres = Kugeln
+step-targets = Zielmarken
 
 ## Stufen
 

@@ -524,3 +524,28 @@ control-absent = nicht in der Karte: { $names }; kein Scan hat Punkte innerhalb 
  }
 delivery-wrong = die Lieferung ist beim Zurücklesen falsch: { $files }
 delivery-files-missing = Dateien fehlen
+
+## Noch einmal gelesen: was von Hash, Siegel oder Signatur abweicht
+
+damage-manifest = manifest.json: die Liste der Dateien ergibt keinen Sinn: { $why }
+damage-missing = { $name } fehlt
+damage-unexpected = { $name } gehört nicht hierher
+damage-size = { $name } hat eine andere Größe
+damage-bytes = { $name } hat andere Bytes
+damage-folder = fehlt
+damage-records = { $ledger } und manifest.json haben verschiedene Einträge dazu
+damage-version = Version { $version }: { $what }
+seal-none = { $name } hat kein Siegel (ein früheres recon4 hat die Datei geschrieben): nur der Inhalt wurde geprüft
+seal-open = { $name } ist offen (in Gebrauch, oder ein Prozess wurde beendet): nur der Inhalt wurde geprüft
+journal-row-missing = Zeile { $row } fehlt
+journal-row-follows = Zeile { $row } schließt nicht an die Zeile davor an
+journal-row-changed = Zeile { $row } ({ $kind } von { $who }) wurde geändert
+approval-untrusted = Version { $version } von { $who }: { $why }
+approval-no-row = versions/{ $name } steht in keiner Zeile des Journals: die Zeile wurde entfernt, das Journal ist ein älteres, oder die Freigabe wurde unterbrochen
+approval-valid = Version { $version }, freigegeben von { $who }, { $time }, Schlüssel { $fingerprint } ({ $name }){ $verdict ->
+    [none] {""}
+   *[other] , Beurteilung „{ $verdict }“
+ }{ $why ->
+    [none] {""}
+   *[other] , Grund „{ $why }“
+ }

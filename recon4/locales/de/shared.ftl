@@ -86,6 +86,7 @@ unit-rounds = Runden
 unit-kernels = Kernel
 unit-artifacts = Artefakte
 unit-versions = Versionen
+unit-places = Stellen
 
 ## Anfragen
 

@@ -80,6 +80,16 @@ step-learn-intensities = learn intensities
 step-map = map
 step-place-points = place points
 step-results = results
+step-approvals = approvals
+step-artifacts = artifacts
+step-back-up = back up
+step-boards = boards
+step-plates = plates
+step-replay = replay
+step-restore = restore
+step-simulate = simulate
+step-spheres = spheres
+step-targets = targets
 
 ## Stages
 

@@ -524,3 +524,28 @@ control-absent = not in the map: { $names }; no scan has points within 25 cm of 
  } picked
 delivery-wrong = the delivery reads back wrong: { $files }
 delivery-files-missing = files missing
+
+## Read again: what differs from its hash, seal or signature
+
+damage-manifest = manifest.json: its list of files makes no sense: { $why }
+damage-missing = { $name } is missing
+damage-unexpected = { $name } does not belong here
+damage-size = { $name } has another size
+damage-bytes = { $name } has other bytes
+damage-folder = is missing
+damage-records = { $ledger } and manifest.json have different records of it
+damage-version = version { $version }: { $what }
+seal-none = { $name } has no seal (an earlier recon4 wrote it): only its content was checked
+seal-open = { $name } is open (in use, or a process was killed): only its content was checked
+journal-row-missing = row { $row } is missing
+journal-row-follows = row { $row } does not follow the row before it
+journal-row-changed = row { $row } ({ $kind } by { $who }) was changed
+approval-untrusted = version { $version } by { $who }: { $why }
+approval-no-row = versions/{ $name } is in no row of the journal: the row was removed, the journal is an older one, or the approval was interrupted
+approval-valid = version { $version }, approved by { $who }, { $time }, key { $fingerprint } ({ $name }){ $verdict ->
+    [none] {""}
+   *[other] , verdict "{ $verdict }"
+ }{ $why ->
+    [none] {""}
+   *[other] , reason "{ $why }"
+ }

@@ -86,6 +86,7 @@ unit-rounds = rounds
 unit-kernels = kernels
 unit-artifacts = artifacts
 unit-versions = versions
+unit-places = places
 
 ## Requests
 

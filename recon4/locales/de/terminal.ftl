@@ -1,0 +1,145 @@
+### Was Kommandos an einem Terminal sagen.
+
+## Fortschritt
+
+progress-step = { NAMED($step, of: "step") }
+progress-unit = { NAMED($unit, of: "unit") }
+seconds-left = noch { DECIMAL($seconds, digits: 0) } s
+warning = Warnung: { $text }
+artifact-was-damaged = ein Artefakt der Stufe { NAMED($stage, of: "stage") } war beschädigt und wird neu gerechnet; das beschädigte ist { $moved_to }: { $files }
+stage-was-reused = { NAMED($stage, of: "stage") }: schon da
+stage-was-done = { NAMED($stage, of: "stage") }: fertig in { $seconds } s
+
+## Ein beendeter Lauf
+
+run-walk = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $multiframes } Multiframes ({ $lost } verloren)
+run-scans = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $scans } Scans ({ $lost } verloren)
+run-pairs = { $pairs } Paare versucht: { $edges }
+run-edges = { $count } Kanten: { $edges }; { $loops } Schleifenschlüsse
+run-points = { $points } Punkte in der Karte
+run-grid = { DECIMAL($width_m, digits: 0) } x { DECIMAL($height_m, digits: 0) } m in Zellen von { DECIMAL($cell_m, digits: 2) } m, { DECIMAL($free_m2, digits: 0) } m² frei
+run-work = { DECIMAL($seconds, digits: 1) } s Rechenzeit, höchstens { DECIMAL($memory_gb, digits: 2) } GB
+run-verdict = Beurteilung: { NAMED($usability, of: "usability") }
+run-explain = recon4 explain CODE sagt mehr
+pairs-accepted = { $count } angenommen
+pairs-rejected = { $count } verworfen
+pairs-unverified = { $count } nicht verifiziert
+label-map = Karte
+label-nav2 = nav2
+label-report = Bericht
+
+## recon4 verify
+
+verify-unknown = nicht von recon4, bleibt unberührt: artifacts/{ $name }
+verify-note = Hinweis: { $what }
+verify-damaged = beschädigt: { $what }
+verify-untrusted = nicht vertraut: { $what }
+verify-counts = { $checked } geprüft, { $damaged } beschädigt{ $untrusted ->
+    [0] {""}
+   *[other] , { $untrusted } nicht vertraut
+ }
+verify-intact = unverändert: { $name }
+verify-altered = VERÄNDERT: { $name }
+verify-missing = FEHLT: { $name }
+verify-added = HINZUGEFÜGT: { $name }
+verify-signer = signiert von { $signer }
+
+## recon4 storage
+
+storage-in-all = insgesamt
+storage-freeable = können freigegeben werden; die Aufzeichnung noch einmal verarbeiten stellt sie wieder her
+storage-freed = freigegeben: { $size } in { $count ->
+    [one] { $count } Artefakt
+   *[other] { $count } Artefakten
+ }
+
+## recon4 doctor
+
+doctor-ok = ok
+doctor-no = NEIN
+doctor-check = { NAMED($check, of: "check") }
+doctor-found = { NAMED($found, of: "found") }
+check-cores = Kerne
+check-memory = Arbeitsspeicher
+check-disk-free = frei (Datenträger)
+check-threads-of-blas = Threads von BLAS
+check-compiled-loops-kept = Kernel bleiben
+check-workers-of-jobs = Worker der Aufträge
+check-cluster = Cluster
+check-sandbox-privileges = Sandbox: Rechte
+check-sandbox-network = Sandbox: Netz
+check-sandbox-capabilities = Sandbox: Capabilities
+check-sandbox-limits = Sandbox: Grenzen
+check-sandbox-files = Sandbox: Dateien
+check-sandbox-calls = Sandbox: Aufrufe
+found-yes = ja
+found-no = nein
+found-unsafe = unsicher
+found-missing = fehlt
+found-dropped = abgegeben
+found-threads = Threads
+found-cannot-be-used = nicht nutzbar
+found-as-many-as-cores = so viele wie Kerne
+found-memory-files-threads = Speicher, Dateien, Threads
+found-network-namespace = eigener Namensraum
+
+## Dateien, die geschrieben wurden
+
+written-report = { $file }, { $signed ->
+    [yes] signiert
+   *[no] nicht signiert
+ }
+written-delivery = { $count ->
+    [one] { $count } Datei
+   *[other] { $count } Dateien
+ }, { SIZE($bytes) } in { $folder }, { $signed ->
+    [yes] signiert
+   *[no] nicht signiert
+ }
+written = { $file }: { $what }
+points-all = { $points ->
+    [one] { $points } Punkt
+   *[other] { $points } Punkte
+ }
+points-of = { $points } von { $all } Punkten
+points-with = { $points } Punkte, mit den { $left_out }, die die Karte auslässt
+points-without = { $points } Punkte, ohne { $left_out } (Rauschen, Bewegtes, Träger)
+poses-all = { $poses ->
+    [one] { $poses } Pose
+   *[other] { $poses } Posen
+ }
+findings-all = { $findings ->
+    [one] { $findings } Befund
+   *[other] { $findings } Befunde
+ }
+written-mandeye = { $points } Punkte und { $samples } IMU-Messwerte in { $folder }
+written-lost = verloren: { $what }
+
+## Sicherungen
+
+backup-left-out = ausgelassen, inzwischen geändert: { $name }
+backup-damaged = beschädigt, bevor kopiert wurde: { $name }
+backup-made = { $path }: { $files } Dateien, { $bytes } Bytes, davon { $new_bytes } neu
+backup-no-keys = Schlüssel und Personen sind nicht enthalten (--with-keys)
+restored-files = { $files } Dateien in { $root }; recon4 verify { $root } vergleicht sie mit ihren Siegeln
+restored-no-keys = Schlüssel sind nicht enthalten: Freigaben zählen dort, sobald die Schlüssel hinzugefügt sind (recon4 keys add)
+
+## Aufnahmen
+
+replay-sent = { $count ->
+    [one] { $count } Datagramm
+   *[other] { $count } Datagramme
+ } gesendet
+capture-begins = Aufnahme nach { $capture } (Strg-C beendet)
+capture-ended-early = die Aufnahme endete von selbst: { $why }
+capture-next = weiter mit: { $command }
+capture-counts = { $recorded } Datagramme aufgenommen, { $lost } verloren; { $mapped }
+capture-multiframes = { $count ->
+    [one] { $count } Multiframe ist
+   *[other] { $count } Multiframes sind
+ } fertig
+capture-scans = { $count ->
+    [one] { $count } Scan ist
+   *[other] { $count } Scans sind
+ } fertig
+capture-described = { $name } ist mit { $file } neben der Rig-Datei beschrieben

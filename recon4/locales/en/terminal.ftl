@@ -1,0 +1,145 @@
+### What commands say at a terminal.
+
+## Progress
+
+progress-step = { NAMED($step, of: "step") }
+progress-unit = { NAMED($unit, of: "unit") }
+seconds-left = { DECIMAL($seconds, digits: 0) } s left
+warning = warning: { $text }
+artifact-was-damaged = an artifact of the stage { NAMED($stage, of: "stage") } was damaged and is made again; the damaged one is { $moved_to }: { $files }
+stage-was-reused = { NAMED($stage, of: "stage") }: already there
+stage-was-done = { NAMED($stage, of: "stage") }: done in { $seconds } s
+
+## A finished run
+
+run-walk = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $multiframes } multiframes ({ $lost } lost)
+run-scans = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $scans } scans ({ $lost } lost)
+run-pairs = { $pairs } pairs tried: { $edges }
+run-edges = { $count } edges: { $edges }; { $loops } loop closures
+run-points = { $points } points in the map
+run-grid = { DECIMAL($width_m, digits: 0) } x { DECIMAL($height_m, digits: 0) } m in cells of { DECIMAL($cell_m, digits: 2) } m, { DECIMAL($free_m2, digits: 0) } m² free
+run-work = { DECIMAL($seconds, digits: 1) } s of work, { DECIMAL($memory_gb, digits: 2) } GB at most
+run-verdict = verdict: { NAMED($usability, of: "usability") }
+run-explain = recon4 explain CODE says more
+pairs-accepted = { $count } accepted
+pairs-rejected = { $count } rejected
+pairs-unverified = { $count } unverified
+label-map = map
+label-nav2 = nav2
+label-report = report
+
+## recon4 verify
+
+verify-unknown = not of recon4, left alone: artifacts/{ $name }
+verify-note = note: { $what }
+verify-damaged = damaged: { $what }
+verify-untrusted = not trusted: { $what }
+verify-counts = { $checked } checked, { $damaged } damaged{ $untrusted ->
+    [0] {""}
+   *[other] , { $untrusted } not trusted
+ }
+verify-intact = intact: { $name }
+verify-altered = ALTERED: { $name }
+verify-missing = MISSING: { $name }
+verify-added = ADDED: { $name }
+verify-signer = signed by { $signer }
+
+## recon4 storage
+
+storage-in-all = in all
+storage-freeable = can be freed; processing the recording again makes it again
+storage-freed = freed: { $size } in { $count ->
+    [one] { $count } artifact
+   *[other] { $count } artifacts
+ }
+
+## recon4 doctor
+
+doctor-ok = ok
+doctor-no = NO
+doctor-check = { NAMED($check, of: "check") }
+doctor-found = { NAMED($found, of: "found") }
+check-cores = cores
+check-memory = memory
+check-disk-free = disk free
+check-threads-of-blas = threads of BLAS
+check-compiled-loops-kept = compiled loops kept
+check-workers-of-jobs = workers of jobs
+check-cluster = cluster
+check-sandbox-privileges = sandbox: privileges
+check-sandbox-network = sandbox: network
+check-sandbox-capabilities = sandbox: capabilities
+check-sandbox-limits = sandbox: limits
+check-sandbox-files = sandbox: files
+check-sandbox-calls = sandbox: calls
+found-yes = yes
+found-no = no
+found-unsafe = unsafe
+found-missing = missing
+found-dropped = dropped
+found-threads = threads
+found-cannot-be-used = cannot be used
+found-as-many-as-cores = as many as cores
+found-memory-files-threads = memory, files, threads
+found-network-namespace = network namespace
+
+## Files that were written
+
+written-report = { $file }, { $signed ->
+    [yes] signed
+   *[no] not signed
+ }
+written-delivery = { $count ->
+    [one] { $count } file
+   *[other] { $count } files
+ }, { SIZE($bytes) } in { $folder }, { $signed ->
+    [yes] signed
+   *[no] not signed
+ }
+written = { $file }: { $what }
+points-all = { $points ->
+    [one] { $points } point
+   *[other] { $points } points
+ }
+points-of = { $points } points of { $all }
+points-with = { $points } points, with the { $left_out } that the map leaves out
+points-without = { $points } points, without { $left_out } (noise, moving, carrier)
+poses-all = { $poses ->
+    [one] { $poses } pose
+   *[other] { $poses } poses
+ }
+findings-all = { $findings ->
+    [one] { $findings } finding
+   *[other] { $findings } findings
+ }
+written-mandeye = { $points } points and { $samples } IMU samples in { $folder }
+written-lost = lost: { $what }
+
+## Backups
+
+backup-left-out = left out, it changed meanwhile: { $name }
+backup-damaged = damaged before it was copied: { $name }
+backup-made = { $path }: { $files } files, { $bytes } bytes, { $new_bytes } of them new
+backup-no-keys = keys and people are not in it (--with-keys)
+restored-files = { $files } files in { $root }; recon4 verify { $root } compares them with their seals
+restored-no-keys = keys are not in it: approvals count there once their keys are added (recon4 keys add)
+
+## Captures
+
+replay-sent = { $count ->
+    [one] { $count } datagram
+   *[other] { $count } datagrams
+ } sent
+capture-begins = recording to { $capture } (Ctrl-C stops)
+capture-ended-early = recording ended by itself: { $why }
+capture-next = next: { $command }
+capture-counts = { $recorded } datagrams recorded, { $lost } lost; { $mapped }
+capture-multiframes = { $count ->
+    [one] { $count } multiframe is
+   *[other] { $count } multiframes are
+ } ready
+capture-scans = { $count ->
+    [one] { $count } scan is
+   *[other] { $count } scans are
+ } ready
+capture-described = { $name } is described by { $file } beside the rig file
