@@ -174,7 +174,7 @@ def process(  # noqa: PLR0913 - an argument for each option
         raise typer.Exit(run_confined(context, folder, executor))
     confine_command(write=[folder])
 
-    from recon4.cli.summaries import describe_summary, describe_tried
+    from recon4.cli.summaries import show_run
     from recon4.cli.terminal import watcher
     from recon4.model.events import Warned
     from recon4.pipeline import process as run
@@ -187,10 +187,7 @@ def process(  # noqa: PLR0913 - an argument for each option
         for text in (*unread_samples(sources), *located_elsewhere(sources)):
             progress.event(Warned(text=text))
         summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
-    if as_json:
-        write_json(summary.to_json())
-    else:
-        write("\n".join([describe_summary(summary), *(describe_tried(out) if verbose else ())]))
+    show_run(summary, project=out if verbose else None, as_json=as_json)
 
 
 @app.command()

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
-from recon4.cli.terminal import worded
+from recon4.cli.terminal import worded, write, write_json
 from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
@@ -16,6 +16,14 @@ if TYPE_CHECKING:
 
 _MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
 """Of findings, by their level."""
+
+
+def show_run(summary: RunSummary, *, project: Path | None = None, as_json: bool = False) -> None:
+    """Say what a finished run came to; of a project, also what its odometry tried."""
+    if as_json:
+        write_json(summary.to_json())
+    else:
+        write("\n".join([describe_summary(summary), *(describe_tried(project) if project else ())]))
 
 
 def describe_tried(out: Path) -> list[str]:

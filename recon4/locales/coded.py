@@ -20,22 +20,14 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.numbers import as_float, localized
 from recon4.locales.texts import Functions, Shown, Texts
 
-FILES = (
-    "problems",
-    "endings",
-    "references",
-    "recordings",
-    "files",
-    "formats",
-    "results",
-    "usage",
-    "terminal",
-)
+FILES = ("problems", "endings", "references", "recordings", "files", "formats", "results", "usage")
 """Files of the texts with a code: problems of requests, reasons why jobs ended, what is said of
-references, of recordings, of files, settings and projects, of formats, of results, of wrong usage
-of commands, and what commands say."""
+references, of recordings, of files, settings and projects, of formats, of results, and of wrong
+usage of commands."""
 STEPS = ("projects",)
 """Files with the names of stages and steps."""
+TERMINAL = ("terminal",)
+"""Files of what commands say where nothing is wrong."""
 COUNTS = ("counts",)
 """Files of what became of data that is counted, for texts that quote it."""
 CODE = "_code"
@@ -245,7 +237,7 @@ def _again(code: str, values: dict[str, Shown]) -> CodedText:
 
 @cache
 def _texts(language: str) -> Texts:
-    return Texts(language, "shared", *STEPS, *COUNTS, *FILES, functions=_functions)
+    return Texts(language, "shared", *STEPS, *TERMINAL, *COUNTS, *FILES, functions=_functions)
 
 
 def _functions(texts: Texts) -> Functions:

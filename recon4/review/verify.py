@@ -16,8 +16,8 @@ from recon4.review.journal import broken, read_rows
 from recon4.review.newest_approval import refuse_older
 from recon4.review.trusted_keys import TrustedKey, UnknownSigner, trusted_for
 from recon4.store.checked import Altered
+from recon4.store.damage import other_names
 from recon4.store.hashing import hash_file
-from recon4.store.stage import other_names
 from recon4.untrusted.names import visible
 
 

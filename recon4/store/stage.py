@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import secrets
 import time
-from collections.abc import Callable, Iterable, Mapping, Set
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Concatenate, Generic, TypedDict, TypeVar
@@ -21,6 +21,7 @@ from recon4.settings import Settings, to_json
 from recon4.settings.reads import Reads, groups_of, part_of
 from recon4.store.atomic import atomic_folder, write_json
 from recon4.store.checked import Altered
+from recon4.store.damage import other_names
 from recon4.store.hashing import FileDigest, FileEntry, files_below, hash_file, hash_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage
@@ -353,13 +354,6 @@ def damage_of(folder: Path, *, hashes: bool) -> list[str]:
         elif hashes and hash_file(folder / name) != files[name].sha256:
             damage.append(CodedText("damage-bytes", name=name))
     return damage
-
-
-def other_names(there: Set[str], expected: Iterable[str]) -> list[str]:
-    """Messages about files that are missing, and about those that are not expected."""
-    known = set(expected)
-    damage: list[str] = [CodedText("damage-missing", name=one) for one in sorted(known - there)]
-    return damage + [CodedText("damage-unexpected", name=one) for one in sorted(there - known)]
 
 
 def _finished_stage(artifact: Artifact) -> FinishedStage:
