@@ -15,7 +15,8 @@ from msgspec import structs
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
-from recon4_app import server_routes
+from recon4_app import main, server_routes
+from recon4_app.projects.thumbnail import Thumbnails
 from tests.chromium import DRAW_LESS
 from tests.service.running import ROOT
 
@@ -40,6 +41,15 @@ EXPECTED_NOISE = (
 def room_on_the_disk(monkeypatch):
     """The free space of the machine that runs the tests does not matter."""
     monkeypatch.setattr(server_routes, "ROOM", structs.replace(server_routes.ROOM, little_room=0.0))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def thumbnails_are_kept(tmp_path_factory) -> Iterator[None]:
+    """A map that many servers show is drawn once; each drawing takes a process of its own."""
+    folder = tmp_path_factory.mktemp("thumbnails")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(main, "Thumbnails", lambda pool, _: Thumbnails(pool, folder))
+        yield
 
 
 @pytest.fixture(params=["desktop light", "desktop dark", "phone light", "phone dark"])
@@ -120,12 +130,18 @@ def context(browser, look) -> Iterator[BrowserContext]:
         yield context
 
 
+def show_on(page: Page, screen: str) -> None:
+    """Show a page on a screen, and draw it there."""
+    width, height = SCREENS[screen]
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
+
+
 def on_both_screens(page: Page, check: Callable[[Page], None]) -> None:
     """Check a page as it is and on the other screen, and return to its own."""
     own = page.viewport_size
-    for width, height in SCREENS.values():
-        page.set_viewport_size({"width": width, "height": height})
-        page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done)))")
+    for screen in SCREENS:
+        show_on(page, screen)
         check(page)
     assert own is not None
     page.set_viewport_size(own)
