@@ -67,9 +67,17 @@ nothing on both. Only screenshots are made of all four. A test that says nothing
 its neighbors: it runs on one of them, by its name."""
 both_looks = looks(*TWO_LOOKS)
 """What a page has to hold on both screens."""
-one_look = looks(*(TWO_LOOKS if SCREENSHOTS else TWO_LOOKS[:1]))
-"""For a long workflow in which only the layout depends on the screen: the test itself looks at it
-on both, with `on_both_screens`."""
+
+
+def first_of(*names: str) -> pytest.MarkDecorator:
+    """For a long workflow in which only the layout depends on the screen.
+
+    The test looks at the layout on both with `on_both_screens`; screenshots are made of all looks.
+    """
+    return looks(*(names if SCREENSHOTS else names[:1]))
+
+
+one_look = first_of(*TWO_LOOKS)
 
 
 LONG = (

@@ -5,7 +5,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import looks, on_both_screens, one_look
 from tests.e2e.test_pages import fits
 from tests.served import office, served
 
@@ -28,7 +28,7 @@ def choose_survey(page, data):
     page.get_by_label("Survey file").set_input_files(survey)
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     opened(page, server)
 
@@ -58,7 +58,7 @@ def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
         )
     ).to_be_visible()
     expect(page.get_by_role("row", name="mean height")).to_contain_text("≤ 3.0")
-    fits(page)
+    on_both_screens(page, fits)
     page.locator(".verdict").scroll_into_view_if_needed()
     screenshot(page, "slices-control")
     with page.expect_popup() as sheet:

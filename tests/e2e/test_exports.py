@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import leave_out_viewer, looks
+from tests.e2e.conftest import leave_out_viewer, looks, one_look
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 
@@ -21,7 +21,7 @@ def server(tmp_path_factory):
         yield running
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_file_is_ordered_downloaded_and_listed_and_what_cannot_be_made_is_said(
     server, page, screenshot, tmp_path
 ):

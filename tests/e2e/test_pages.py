@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Route, expect
 
-from tests.e2e.conftest import leave_out_viewer, looks
+from tests.e2e.conftest import leave_out_viewer, looks, on_both_screens, one_look
 from tests.project_builder import build_project
 from tests.served import served
 from tests.service.cuttable import cuttable
@@ -275,7 +275,7 @@ def test_a_hostile_link_to_the_viewer_stays_on_this_server(finished, page):
     expect(page.get_by_text("Controls", exact=True)).to_be_visible()
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_the_api_page_works_without_internet(finished, page, look, screenshot):
     page.goto(f"{finished.url}/api")
 
@@ -285,5 +285,5 @@ def test_the_api_page_works_without_internet(finished, page, look, screenshot):
     expect(page.get_by_role("heading", name="Jobs")).to_be_visible()
     expect(route.get_by_role("row").filter(has_text="recordings")).to_contain_text("list of string")
     expect(route.locator(".copy pre")).to_contain_text("curl -X POST -H 'Content-Type")
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "api")

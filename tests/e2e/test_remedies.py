@@ -7,7 +7,7 @@ import httpx
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import leave_out_viewer, looks
+from tests.e2e.conftest import leave_out_viewer, looks, on_both_screens, one_look
 from tests.e2e.test_pages import fits
 from tests.project_builder import build_project
 from tests.served import office, served
@@ -44,7 +44,7 @@ def opened_slices(page, server):
     expect(page.locator("body.drawing")).to_have_count(0)
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_an_upload_without_room_leads_to_what_takes_space(full, page, screenshot):
     page.goto(full.url)
     walk = {"name": "walk.bag", "mimeType": "", "buffer": bytes(1000)}
@@ -53,7 +53,7 @@ def test_an_upload_without_room_leads_to_what_takes_space(full, page, screenshot
     box = page.locator("upload-box")
     expect(box.get_by_role("status")).to_contain_text("make room first")
     link = box.get_by_role("link", name="See what takes space")
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "remedy-upload")
     link.focus()
     storage = opened_by(lambda: page.keyboard.press("Enter"), page)

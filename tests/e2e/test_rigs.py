@@ -8,7 +8,14 @@ from playwright.sync_api import expect
 
 from recon4.model.rig import load_rig
 from recon4.review.trusted_keys import STATE
-from tests.e2e.conftest import leave_out_viewer, looks, open_menu
+from tests.e2e.conftest import (
+    first_of,
+    leave_out_viewer,
+    looks,
+    on_both_screens,
+    one_look,
+    open_menu,
+)
 from tests.e2e.test_pages import fits
 from tests.rig_projects import TOML, calibrated_project, tilted
 from tests.served import served
@@ -125,7 +132,7 @@ def test_a_pointer_turns_the_drawing(server, page):
     assert pitch == pytest.approx(before[1] + 20 * 0.008, abs=2e-3)
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_rig_is_edited_into_a_new_version(server, page, look, screenshot):
     page.goto(f"{server.url}/rigs/field/")
 
@@ -138,7 +145,7 @@ def test_a_rig_is_edited_into_a_new_version(server, page, look, screenshot):
     expect(page.get_by_role("button", name="Save as a new version")).to_be_disabled()
     group.get_by_label("UDP port").fill("2368")
     expect(page.get_by_text("all send to port 2368")).to_be_visible()
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "rig-edit")
     pitch.fill("88.6")
     group.get_by_label("UDP port").fill("2370")
@@ -235,7 +242,7 @@ def test_a_project_is_mapped_again_with_calibration(server, page):
     server.wait_state(jobs[0]["job"]["id"], "cancelled")
 
 
-@looks("desktop dark", "phone light")
+@first_of("desktop dark", "phone light")
 def test_a_calibrated_rig_is_saved_as_a_version(server, page, look, screenshot):
     rig = field_of(server)
     calibrated_project(server.root / "walk", rig=rig, found=tilted(rig))
@@ -255,7 +262,7 @@ def test_a_calibrated_rig_is_saved_as_a_version(server, page, look, screenshot):
         for name in ("rig file", "calibrated")
     )
     assert before["rows"] > after["rows"] > 0
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "project-calibrated")
 
     section.get_by_role("button", name="Save as a new rig version").click()

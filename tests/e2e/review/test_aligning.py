@@ -4,7 +4,7 @@ import pytest
 from playwright.sync_api import expect
 
 from recon4.review.journal import read_rows
-from tests.e2e.conftest import looks, one_look
+from tests.e2e.conftest import first_of, looks, one_look
 from tests.e2e.review.review_page import colored, nearest_pixel, settled
 
 pytestmark = pytest.mark.e2e
@@ -128,7 +128,7 @@ def test_three_picked_pairs_align_the_second_place(opened):
     expect(page.locator("#said")).to_have_text("Moved by hand. Enter refines from here")
 
 
-@looks("desktop dark", "phone light")
+@first_of("desktop dark", "phone light")
 def test_a_loop_closure_is_added_between_two_multiframes(opened, root, screenshot):
     page = opened
 

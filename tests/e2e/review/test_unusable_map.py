@@ -24,12 +24,12 @@ def unusable(root):
     return root
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_an_unusable_map_looks_so_and_is_signed_only_with_a_reason(unusable, opened, screenshot):
     page, bar = opened, opened.locator("map-verdict")
     expect(bar).to_contain_text("Do not use this map")
     expect(bar).to_contain_text(LOST)
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "review-unusable")
 
     page.get_by_role("button", name="Approve map…").click()
