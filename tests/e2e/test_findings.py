@@ -167,7 +167,7 @@ def test_the_link_of_a_finding_opens_where_it_is_and_escape_clears_the_mark(foun
     )
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_each_finding_has_its_level_code_text_and_remedy(found, page, screenshot):
     leave_out_viewer(page)
     page.goto(f"{found.url}/projects/office/")
@@ -206,16 +206,6 @@ def test_a_finding_flies_to_its_stretch_on_the_page_of_the_map_and_marks_it(
     expect(shown).not_to_have_url(re.compile("span="))
 
 
-@looks("desktop light")
-def test_the_findings_are_downloaded_as_a_table_and_for_a_gis(found, page):
-    leave_out_viewer(page)
-    page.goto(f"{found.url}/projects/office/")
-    for name, text in (("Findings, CSV", "WEAK-DIRECTION"), ("Findings, GeoJSON", "LineString")):
-        with page.expect_download() as download:
-            page.get_by_role("link", name=name).click()
-        assert text in download.value.path().read_text("utf-8")
-
-
 @one_look
 def test_a_reviewer_acknowledges_a_finding_with_a_note_that_stays(found, page, screenshot):
     leave_out_viewer(page)
@@ -235,9 +225,14 @@ def test_a_reviewer_acknowledges_a_finding_with_a_note_that_stays(found, page, s
 
 
 @looks("desktop light")
-def test_findings_are_filtered_by_level_and_kind_with_the_keyboard(found, page):
+def test_findings_are_downloaded_and_filtered_by_level_and_kind_with_the_keyboard(found, page):
     leave_out_viewer(page)
     page.goto(f"{found.url}/projects/office/")
+    for name, text in (("Findings, CSV", "WEAK-DIRECTION"), ("Findings, GeoJSON", "LineString")):
+        with page.expect_download() as download:
+            page.get_by_role("link", name=name).click()
+        assert text in download.value.path().read_text("utf-8")
+
     page.get_by_label("Level of findings").focus()
     page.keyboard.type("Note")
 

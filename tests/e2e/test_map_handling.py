@@ -156,28 +156,19 @@ def test_one_flies_as_fast_as_one_chooses(server, page):
     assert of_walk_s / took_s == pytest.approx(16, rel=0.2)
 
 
-def test_a_note_is_begun_before_the_others_have_been_read(server, page):
+def test_a_note_is_begun_at_once_and_an_impatient_person_makes_one(server, page):
     waiting = []
     page.route("**/notes", lambda route: waiting.append(route), times=1)
     opened(page, server, f"?{TOP}&z=..")
-
     page.keyboard.press("n")
     page.mouse.click(*at(page, 6.0, 4.0))
-
-    expect(page.get_by_label("Note at")).to_be_focused()
+    expect(page.get_by_label("Note at")).to_be_focused()  # before the others have been read
     waiting.pop().continue_()
 
-
-def test_an_impatient_person_makes_one_note_and_sees_its_place_before(server, page):
-    opened(page, server, f"?{TOP}&z=..")
-    page.keyboard.press("n")
-    page.mouse.click(*at(page, 6.0, 4.0))
     page.get_by_label("Note at").fill("Crack")
     pin = page.locator("#overlay .pin.note")
     expect(pin).to_have_count(1)
-    waiting = []
     page.route("**/notes", lambda route: waiting.append(route), times=1)
-
     keep = page.get_by_role("button", name="Keep the note")
     with page.expect_request("**/notes"):
         keep.click()

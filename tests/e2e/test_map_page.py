@@ -217,7 +217,7 @@ def test_a_link_opens_exactly_the_same(server, page, context):
 
 
 @looks("desktop light")
-def test_a_drag_orbits_and_the_wheel_zooms_without_a_click_first(server, page):
+def test_a_drag_orbits_the_wheel_zooms_and_a_view_ends_the_flight(server, page):
     opened(page, server)
 
     page.keyboard.press("7")
@@ -231,6 +231,13 @@ def test_a_drag_orbits_and_the_wheel_zooms_without_a_click_first(server, page):
     page.mouse.up()
     expect(page).not_to_have_url(zoomed)
     expect(page).not_to_have_url(re.compile(r"camera=[^&]*,-90,"))
+
+    expect(page.get_by_label("Along the walk")).to_be_visible()
+    fly = page.get_by_role("button", name="Fly")
+    page.keyboard.press("p")
+    expect(fly).to_have_attribute("aria-pressed", "true")
+    page.keyboard.press("7")
+    expect(fly).to_have_attribute("aria-pressed", "false", timeout=5_000)
 
 
 @looks("desktop light")
@@ -266,7 +273,7 @@ def test_corners_are_those_of_the_clicks_in_their_order(server, page):
 
 
 @looks("desktop light")
-def test_one_stands_on_the_walk_or_a_floor_and_nowhere_else(server, page):
+def test_keys_zoom_and_one_stands_on_the_walk_or_a_floor_and_nowhere_else(server, page):
     opened(page, server, f"?{TOP}&z=..")
     expect(page.get_by_label("Along the walk")).to_be_visible()
 
@@ -274,27 +281,7 @@ def test_one_stands_on_the_walk_or_a_floor_and_nowhere_else(server, page):
     page.mouse.click(*at(page, 10.0, -2.2))
 
     expect(page.locator("#status .reading")).to_have_text("Click on the walk, or on a floor")
-
-
-@looks("desktop light")
-def test_a_view_ends_the_flight(server, page):
-    opened(page, server)
-    expect(page.get_by_label("Along the walk")).to_be_visible()
-    fly = page.get_by_role("button", name="Fly")
-
-    page.keyboard.press("p")
-    expect(fly).to_have_attribute("aria-pressed", "true")
-    page.keyboard.press("7")
-
-    expect(fly).to_have_attribute("aria-pressed", "false", timeout=5_000)
-
-
-@looks("desktop light")
-def test_keys_zoom(server, page):
-    opened(page, server, f"?{TOP}&z=..")
-
     page.keyboard.press("+")
-
     expect(page).to_have_url(re.compile(r"camera=8,5,1\.5,0,-90,11\.2,1"))
 
 

@@ -84,7 +84,7 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     screenshot(page, "slices")
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_a_2d_map_is_shown_as_the_one_slice_it_is(server, page, screenshot):
     page.goto(f"{server.url}/projects/plan/slices/")
 
@@ -96,7 +96,7 @@ def test_a_2d_map_is_shown_as_the_one_slice_it_is(server, page, screenshot):
         "href", "/projects/plan/"
     )
     expect(page.locator("#message, .tools")).to_have_count(0)
-    fits(page)
+    on_both_screens(page, fits)
     screenshot(page, "slices-plan")
 
 
@@ -166,13 +166,13 @@ def test_a_distance_is_measured_between_two_points_of_the_map(server, page):
     assert horizontal == pytest.approx(10.0, abs=0.5)
 
 
-@looks("desktop light", "phone dark")
+@one_look
 def test_two_slices_stand_side_by_side_and_move_together(server, page, screenshot):
     opened(page, server, "?kind=horizontal&z=1.5")
 
     page.get_by_label("Map beside").select_option("project:earlier")
     second = page.locator("slice-view").nth(1)
-    expect(second).to_be_visible()
+    on_both_screens(page, lambda _: expect(second).to_be_visible())
     expect(page.locator(".caption.second")).to_contain_text("Project earlier")
     rested(page)
     screenshot(page, "slices-beside")
@@ -246,11 +246,15 @@ def test_a_reference_is_compared_and_shown(server, page):
 
 
 @looks("phone light")
-def test_a_reference_is_uploaded_and_shown(server, page):
+def test_an_invalid_reference_is_rejected_and_another_uploaded_and_shown(server, page):
     rows = "\n".join(f"0.03 {y / 20:.2f} {z / 10:.1f}" for y in range(200) for z in range(30))
     opened(page, server, "?kind=horizontal&z=1.5")
 
     page.get_by_text("Compare with a reference").click()
+    note = {"name": "note.ply", "mimeType": "text/plain", "buffer": b"Dear Sir or Madam"}
+    page.get_by_label("Reference file").set_input_files(note)
+    expect(page.get_by_role("alert").filter(has_text="note.ply")).to_be_visible()
+    expect(page.get_by_role("button", name="Upload file…")).to_be_enabled()
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Upload file…").click()
     chooser.value.set_files({"name": "sent.xyz", "mimeType": "text/plain", "buffer": rows.encode()})
@@ -261,18 +265,6 @@ def test_a_reference_is_uploaded_and_shown(server, page):
     expect(page.get_by_label("Upload of the reference")).to_be_hidden()
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
-
-
-@looks("desktop dark")
-def test_an_invalid_reference_is_rejected_with_a_message(server, page):
-    opened(page, server)
-
-    page.get_by_text("Compare with a reference").click()
-    note = {"name": "note.ply", "mimeType": "text/plain", "buffer": b"Dear Sir or Madam"}
-    page.get_by_label("Reference file").set_input_files(note)
-
-    expect(page.get_by_role("alert").filter(has_text="note.ply")).to_be_visible()
-    expect(page.get_by_role("button", name="Upload file…")).to_be_enabled()
 
 
 def test_tools_take_two_rows_at_most_and_are_large_enough_to_touch(server, page):
@@ -286,19 +278,6 @@ def test_tools_take_two_rows_at_most_and_are_large_enough_to_touch(server, page)
     assert min(box["height"] for box in boxes) >= 44
     assert min(box["width"] for box in boxes) >= 44
     fits(page)
-
-
-@looks("desktop light")
-def test_a_double_wall_is_listed_in_slices_near_it(server, page):
-    opened(page, server)
-
-    found = page.evaluate("""async () => {
-      const { distanceFrom, parse } = await import("/web/slices/state.js");
-      return ["kind=horizontal&z=1.5", "kind=vertical&a=0,1&b=4,1", "kind=free&o=1,2,3&n=2,0,0"]
-        .map((query) => distanceFrom(parse(query), [3, 5, 2]));
-    }""")
-
-    assert found == pytest.approx([0.5, 4.0, 2.0])
 
 
 @looks("desktop light")

@@ -74,6 +74,13 @@ test("moving a cut along its normal moves it by that distance", () => {
   }
 });
 
+test("a double wall is as far from a cut as its middle is along the normal", () => {
+  const far = (/** @type {string} */ query) => distanceFrom(parse(query), [3, 5, 2]);
+  assert.equal(far("kind=horizontal&z=1.5"), 0.5);
+  assert.equal(far("kind=vertical&a=0,1&b=4,1"), 4);
+  assert.equal(far("kind=free&o=1,2,3&n=2,0,0"), 2);
+});
+
 test("steps of a scale are 1, 2 or 5 times a power of ten", () => {
   assert.deepEqual([0.03, 0.2, 0.21, 7, 12].map(roundStep), [0.05, 0.2, 0.5, 10, 20]);
 });

@@ -145,15 +145,20 @@ def test_after_a_decision_keys_do_nothing_until_another_pair_is_drawn(opened, ro
 
 
 @looks("desktop light")
-def test_going_on_after_a_decision_is_off_at_first_and_remembered(opened):
+def test_keys_are_listed_and_going_on_after_a_decision_is_off_at_first(opened, screenshot):
     page = opened
+    page.keyboard.press("?")
+    expect(page.get_by_role("dialog")).to_contain_text("Undo")
+    screenshot(page, "review-keys")
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("dialog")).to_have_count(0)
+
     onwards = page.get_by_label("Go on to the next pair after a decision")
     expect(onwards).not_to_be_checked()
 
     onwards.check()
     page.reload()
-
-    expect(onwards).to_be_checked()
+    expect(onwards).to_be_checked()  # it is remembered
 
 
 def test_the_page_shows_the_effect_of_a_decision(opened, look, screenshot):
@@ -215,16 +220,6 @@ def test_what_leads_on_fits_what_the_filters_list(opened):
     for place in (pair, empty):
         expect(place).to_contain_text("Next (J) shows the first pair")
     expect(next_pair).to_be_enabled()
-
-
-@looks("desktop light")
-def test_the_help_sheet_lists_the_keys(opened, screenshot):
-    opened.keyboard.press("?")
-
-    expect(opened.get_by_role("dialog")).to_contain_text("Undo")
-    screenshot(opened, "review-keys")
-    opened.keyboard.press("Escape")
-    expect(opened.get_by_role("dialog")).to_have_count(0)
 
 
 @looks("phone dark")
