@@ -52,9 +52,8 @@ demo: $(VENV)/installed-run site
 # The kernels take one processor for a minute, which comes first: what needs none takes the other.
 # What both runs of tests need, as a finished project, is made once.
 test:
-	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
 	@made=$$(mktemp -d) && trap 'rm -rf "$$made"' EXIT && trap 'exit 130' INT TERM && export RECON4_MADE_ONCE="$$made" && \
-	$(MAKE) --no-print-directory -j3 $(SYNC) kernels bytecode site types format lint unit e2e
+	$(MAKE) --no-print-directory -j3 $(SYNC) kernels web bytecode site types format lint unit e2e
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
 quick:
@@ -80,6 +79,11 @@ looks: $(VENV)/installed-dev site kernels bytecode
 
 e2e: $(VENV)/installed-dev site kernels bytecode
 	$(BIN)/python -m pytest -m 'e2e and not study' --durations=10
+
+# It installs what tests of the browser judge pages by.
+ifneq ($(filter web,$(MAKECMDGOALS)),)
+e2e: web
+endif
 
 web:
 	.ci/web
