@@ -37,29 +37,7 @@ def test_what_another_person_decides_about_ones_pair_can_be_decided_again(opened
 
 
 @looks("desktop light")
-def test_what_was_typed_is_there_again_where_it_was_refused(opened):
-    page = opened
-    page.keyboard.press("j")
-    settled(page)
-    page.route("**/api/projects/*/review/**", lambda route: route.abort())
-    reason, comment = (
-        page.get_by_role("textbox", name="Reason"),
-        page.locator("#team").get_by_label("Comment"),
-    )
-
-    reason.fill("glass on both sides")
-    page.locator("#decision").get_by_role("button", name="Reject").click()
-    expect(page.locator("#message")).to_contain_text("does not answer")
-    expect(reason).to_have_value("glass on both sides")
-    comment.fill("look at the door")
-    comment.press("Enter")
-    expect(comment).to_have_value("look at the door")
-    page.get_by_label("Assigned to").select_option("local")
-    expect(page.get_by_label("Assigned to")).to_have_value("")
-
-
-@looks("desktop light")
-def test_what_was_typed_about_a_pair_stays_with_it(opened):
+def test_what_was_typed_about_a_pair_stays_with_it_also_where_it_was_refused(opened):
     page = opened
     reason, comment = (
         page.get_by_role("textbox", name="Reason"),
@@ -79,6 +57,16 @@ def test_what_was_typed_about_a_pair_stays_with_it(opened):
     rows.nth(0).click()
     expect(reason).to_have_value("glass on both sides")
     expect(comment).to_have_value("look at the door")
+    settled(page)
+    page.route("**/api/projects/*/review/**", lambda route: route.abort())
+
+    page.locator("#decision").get_by_role("button", name="Reject").click()
+    expect(page.locator("#message")).to_contain_text("does not answer")
+    expect(reason).to_have_value("glass on both sides")
+    comment.press("Enter")
+    expect(comment).to_have_value("look at the door")
+    page.get_by_label("Assigned to").select_option("local")
+    expect(page.get_by_label("Assigned to")).to_have_value("")
 
 
 @looks("desktop light")
