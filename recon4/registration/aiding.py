@@ -6,13 +6,14 @@ keep odometry within decimeters there. Where the LiDAR observes the motion they 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, skew, so3_log
 from recon4.model.trajectory import Times, Trajectory
-from recon4.registration.tuning_motion import AIDING, MOVING_START
+from recon4.registration.tuning_motion import AIDING
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,30 +43,44 @@ class GnssAiding:
         R = self.R_enu_body[near]
         return SE3(R, self._antenna(row, s) - R @ self.p_body_antenna)
 
+    def runs(self) -> list[GnssAiding]:
+        """The fixes between outages over which no motion is predicted from one to the other."""
+        ends = np.flatnonzero(np.diff(self.t_ns) > AIDING.outage_ns) + 1
+        return [self._take(slice(a, b)) for a, b in pairwise([0, *ends.tolist(), len(self.t_ns)])]
+
+    def seen_from(self, T_odom_enu: SE3) -> GnssAiding:
+        """The same fixes in the frame of an odometry."""
+        return replace(
+            self, p_enu=T_odom_enu @ self.p_enu, R_enu_body=T_odom_enu.R @ self.R_enu_body
+        )
+
+    def _take(self, rows: slice) -> GnssAiding:
+        return replace(
+            self,
+            t_ns=self.t_ns[rows],
+            p_enu=self.p_enu[rows],
+            sd_m=self.sd_m[rows],
+            R_enu_body=self.R_enu_body[rows],
+        )
+
     def first(self, t_ns: int) -> tuple[int, SE3] | None:
         """When the fixes place an odometry that begins at a time [ns], and ``T_enu_body`` then.
 
-        None = too late: it begins in a frame of its own, of which they say nothing.
+        None = too late: it begins in a frame of its own.
         """
         at_ns = max(t_ns, int(self.t_ns[0]))
         T_enu_body = self.pose(at_ns)
         return (
-            None
-            if T_enu_body is None or at_ns > t_ns + AIDING.latest_start_ns
-            else (at_ns, T_enu_body)
+            None if T_enu_body is None or at_ns > t_ns + AIDING.outage_ns else (at_ns, T_enu_body)
         )
 
     def velocity(self, t_ns: int) -> Array | None:
-        """Mean velocity right after a time [m/s], (3,).
-
-        None without fixes, or if the body stands: it is known better then.
-        """
+        """Mean velocity right after a time [m/s], (3,); None without fixes."""
         span_ns = AIDING.max_gap_ns
         ends = self.pose(t_ns), self.pose(t_ns + span_ns)
         if ends[0] is None or ends[1] is None:
             return None
-        velocity = (ends[1].t - ends[0].t) / (1e-9 * span_ns)
-        return velocity if float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s else None
+        return np.asarray((ends[1].t - ends[0].t) / (1e-9 * span_ns))
 
     def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
         """Information (6, 6) and gradient (6,) of a left correction about the body's origin.
@@ -105,13 +120,16 @@ class GnssAiding:
     def rejected_ratio(self, trajectory: Trajectory) -> float:
         """Ratio of the fixes that an aided trajectory contradicts, 0..1.
 
-        One that begins before the fixes has a frame of its own and contradicts none.
+        Only those of the run in whose frame it begins: it meets others where it is.
         """
-        inside = (self.t_ns >= trajectory.t_ns[0]) & (self.t_ns <= trajectory.t_ns[-1])
-        if self.first(int(trajectory.t_ns[0])) is None or not inside.any():
+        run = next((run for run in self.runs() if run.first(int(trajectory.t_ns[0]))), None)
+        if run is None:
             return 0.0
-        T = trajectory.at(self.t_ns[inside])
-        z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
+        inside = (run.t_ns >= trajectory.t_ns[0]) & (run.t_ns <= trajectory.t_ns[-1])
+        if not inside.any():
+            return 0.0
+        T = trajectory.at(run.t_ns[inside])
+        z = (T.t + T.R @ run.p_body_antenna - run.p_enu[inside]) / run.sd_m[inside]
         return float(np.mean((z**2).sum(axis=1) > AIDING.outlier_sd**2))
 
     def agrees(self, T_enu_body: SE3, t_ns: int) -> bool:

@@ -16,10 +16,10 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.fix_start import start_at_fixes
 from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.frame_view import FrameView
 from recon4.registration.lost import LostLimits
+from recon4.registration.met_fixes import MetFixes
 from recon4.registration.motion import FreeMotion, ImuMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
 from recon4.registration.scan_chain import ScanChain, body_points
@@ -40,15 +40,14 @@ class ImuStrategy:
     def __init__(
         self, imu: ImuSamples, rig: Rig, settings: OdometryReads, *, aiding: GnssAiding | None
     ) -> None:
-        self._rig, self._settings, self._aiding = rig, settings, aiding
+        self._rig, self._settings = rig, settings
         self._imu, self._free = (
             ImuMotion(imu, rig, settings.odometry),
             FreeMotion(settings.odometry),
         )
         self._before_hole: MotionState | None = None
         """During a gap in the samples: the last state before it, with the IMU biases."""
-        self._fixes: GnssAiding | None = None
-        """The aiding, if the odometry began in its frame."""
+        self._met = MetFixes(aiding, settings.odometry)
         self._begun: tuple[Multiframe, MotionState] | None = None
         """The first frame until the second one comes, and the state at its start."""
         self.longest_map = tuned(OdometryTuning, settings.odometry).history
@@ -71,7 +70,7 @@ class ImuStrategy:
     def moving_start(self, frame: Multiframe) -> tuple[Multiframe, MotionState] | None:
         """See `MotionStrategy.moving_start`."""
         begun, self._begun = self._begun, None
-        if begun is None or self._fixes:
+        if begun is None or self._met.fixes:
             return None
         first, state = begun
         velocity = starting_velocity(
@@ -99,13 +98,12 @@ class ImuStrategy:
         """See `MotionStrategy.predict`."""
         if state is None:
             state = self._imu.initial(view.start_ns)
-            state, self._fixes = start_at_fixes(
-                state, self._aiding, self._settings.odometry, predict=self._move
-            )
-            self.fitter = replace(self.fitter, aiding=self._fixes)
+            state = self._met.begin(state, self._move)
             self._begun = view.frame, state
         if state.t_ns < view.start_ns:  # frames are missing in between
             state = self._move(state, view.start_ns).end
+        state = self._met.meet(state)
+        self.fitter = replace(self.fitter, aiding=self._met.fixes)
         return self._move(state, view.end_ns)
 
     def _move(self, state: MotionState, end_ns: int) -> Prediction:
@@ -135,7 +133,7 @@ class ImuStrategy:
 
     def by_fixes(self, view: FrameView, prediction: Prediction) -> Prediction | None:
         """See `MotionStrategy.by_fixes`: they pull what the IMU predicts."""
-        known = self._fixes is not None and self._fixes.covers(view.start_ns, view.end_ns)
+        known = self._met.fixes is not None and self._met.fixes.covers(view.start_ns, view.end_ns)
         return prediction if known else None
 
     def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
@@ -144,7 +142,7 @@ class ImuStrategy:
 
     def unknown_cov(self, frame: Multiframe, fit: FrameFit) -> Array:
         """See `MotionStrategy.unknown_cov`: fixes and accelerometer exclude the rest."""
-        if self._fixes and self._fixes.pose(frame.t_ns + frame.duration_ns):
+        if self._met.fixes and self._met.fixes.pose(frame.t_ns + frame.duration_ns):
             return np.zeros((6, 6))
         return unknown_motion_cov(fit, seconds=1e-9 * frame.duration_ns)
 

@@ -10,10 +10,10 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.samples import ImuSamples
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.fix_start import start_at_fixes
 from recon4.registration.frame_fit import FrameFit, FrameFitter, pose_correction
 from recon4.registration.frame_view import FrameView
 from recon4.registration.lost import FreshChain, LostLimits
+from recon4.registration.met_fixes import MetFixes
 from recon4.registration.motion import FreeMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
 from recon4.registration.scan_chain import ScanChain
@@ -31,15 +31,14 @@ class ScanStrategy:
     """Without an IMU: the last scan says where the next one is expected."""
 
     def __init__(self, settings: OdometryReads, aiding: GnssAiding | None) -> None:
-        self._settings, self._aiding = settings, aiding
+        self._settings = settings
         self._free, self._chain = (
             FreeMotion(settings.odometry),
             ScanChain(tuned(OdometryTuning, settings.odometry).scans),
         )
         self._fresh: FreshChain | None = None
         """The scans since tracking was lost."""
-        self._fixes: GnssAiding | None = None
-        """The aiding, if the odometry began in its frame."""
+        self._met = MetFixes(aiding, settings.odometry)
         self._goes_on = False
         """Whether the velocity predicted the newest scan, as nothing else places it."""
         self.longest_map = tuned(OdometryTuning, settings.odometry).longest_map(with_imu=False)
@@ -86,11 +85,11 @@ class ScanStrategy:
         found = view.locate_in(self._chain)
         if state is None:
             state = self._free.initial(view.start_ns)
-            state, self._fixes = start_at_fixes(
-                state, self._aiding, self._settings.odometry, predict=self._free.predict
-            )
-            self.fitter = replace(self.fitter, aiding=self._fixes)
+            state = self._met.begin(state, self._free.predict)
+            self.fitter = replace(self.fitter, aiding=self._met.fixes)
             return self._move(state, view)
+        state = self._met.meet(state)
+        self.fitter = replace(self.fitter, aiding=self._met.fixes)
         by_scans = self._chain.last[0] @ found if found else None
         expected = self._placed(by_scans, view.frame.t_mid_ns)
         if expected is None:
@@ -105,9 +104,9 @@ class ScanStrategy:
 
     def _placed(self, by_scans: SE3 | None, t_ns: int) -> SE3 | None:
         """Pose by the last good scan, else by fixes."""
-        if self._chain.is_sure or self._fixes is None:
+        if self._chain.is_sure or self._met.fixes is None:
             return by_scans
-        return self._fixes.pose(t_ns) or by_scans
+        return self._met.fixes.pose(t_ns) or by_scans
 
     def _through(self, now: SE3, view: FrameView) -> Prediction:
         """Constant velocity from the last good scan to a pose in the middle of a frame."""
@@ -135,9 +134,9 @@ class ScanStrategy:
 
     def by_fixes(self, view: FrameView, prediction: Prediction) -> Prediction | None:
         """See `MotionStrategy.by_fixes`."""
-        if self._fixes is None or not self._fixes.covers(view.start_ns, view.end_ns):
+        if self._met.fixes is None or not self._met.fixes.covers(view.start_ns, view.end_ns):
             return None
-        return replace(prediction, expected=self._fixes.pose(view.frame.t_mid_ns))
+        return replace(prediction, expected=self._met.fixes.pose(view.frame.t_mid_ns))
 
     def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
         """See `MotionStrategy.refined`: two scans that agree are those of a body at rest."""
@@ -147,7 +146,7 @@ class ScanStrategy:
 
     def unknown_cov(self, frame: Multiframe, fit: FrameFit) -> Array:
         """See `MotionStrategy.unknown_cov`: fixes bound what no velocity excludes."""
-        aided = self._fixes and self._fixes.pose(frame.t_ns + frame.duration_ns)
+        aided = self._met.fixes and self._met.fixes.pose(frame.t_ns + frame.duration_ns)
         most_m = tuned(OdometryTuning, self._settings.odometry).gnss_sd_m if aided else float("inf")
         return unknown_motion_cov(fit, seconds=1e-9 * frame.duration_ns, most_m=most_m)
 

@@ -11,9 +11,9 @@ class AidingTuning(Struct, frozen=True, kw_only=True):
 
     max_gap_ns: int = 300_000_000
     """No position is interpolated between two fixes farther apart than this [ns]."""
-    latest_start_ns: int = 1_000_000_000
-    """Fixes that begin so much later than the odometry still say where it began [ns]: the motion
-    of a walker is predicted so far."""
+    outage_ns: int = 1_000_000_000
+    """Over so long the motion of a walker is predicted [ns]. Fixes that begin later than this do
+    not say where an odometry began, nor do those after such a gap go on in its frame."""
     outlier_sd: float = 3.0
     """Residual in standard deviations at which a fix has half its weight."""
 

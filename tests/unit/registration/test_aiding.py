@@ -111,7 +111,7 @@ def test_the_velocity_of_a_body_that_moves_is_that_between_its_fixes() -> None:
     found = walking().velocity(100_000_000)
 
     assert found == pytest.approx([1.0, 0.0, 0.0], abs=1e-9)
-    assert standing().velocity(100_000_000) is None
+    assert standing().velocity(100_000_000) == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
     assert walking().velocity(2_900_000_000) is None  # no fixes are so far after it
 
 

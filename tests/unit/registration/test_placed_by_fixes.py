@@ -46,14 +46,17 @@ def test_fixes_that_begin_a_quarter_of_a_second_later_place_it_too(open_sky):
     assert worst_m < 0.06
 
 
-def test_fixes_of_another_frame_pull_nothing(open_sky):
-    late, none = (
-        tracked(open_sky, aiding)[0] for aiding in (strolling_fixes(FRAMES, first_s=1.15), None)
+def test_fixes_that_begin_later_pull_nothing_before_and_place_it_from_then_on(open_sky):
+    (late, worst_m), (none, lost_m) = (
+        tracked(open_sky, aiding) for aiding in (strolling_fixes(FRAMES, first_s=1.15), None)
     )
 
-    for a, b in zip(late, none, strict=True):
+    for a, b in zip(late[:11], none[:11], strict=True):
         np.testing.assert_array_equal(a.T_odom_body.t, b.T_odom_body.t)
         np.testing.assert_array_equal(a.T_odom_body.R, b.T_odom_body.R)
+    assert all(step.lost for step in none[12:14])
+    assert not any(step.lost for step in late[12:])
+    assert worst_m < 0.5 * lost_m
 
 
 def test_without_fixes_it_is_lost(open_sky):
@@ -63,7 +66,7 @@ def test_without_fixes_it_is_lost(open_sky):
     assert worst_m > 0.1
 
 
-def test_fixes_of_another_frame_or_far_from_the_prediction_place_nothing(open_sky):
+def test_fixes_to_come_or_far_from_the_prediction_place_nothing(open_sky):
     begun = replace(open_sky, frames=open_sky.frames[:8])
     aside = strolling_fixes(FRAMES)
     moved = np.where(aside.t_ns[:, None] > T0_NS + 300_000_000, 30.0, 0.0)
