@@ -170,10 +170,10 @@ def _withdraw(project: Path, ids: Sequence[str], *, apply: bool) -> None:
 
 
 def _make_again(project: Path) -> None:
-    from recon4.cli.summaries import describe_summary
+    from recon4.cli.summaries import show_run
     from recon4.cli.terminal import watcher
     from recon4.pipeline import remake
 
     with watcher() as progress:
         summary = remake(project, progress=progress)
-    write(describe_summary(summary))
+    show_run(summary)

@@ -151,7 +151,7 @@ def _picked_on_page(project: Path, artifacts: dict[str, Path]) -> dict[str, Meas
 
 def _make_again(project: Path, decided: SiteControl) -> None:
     """Note the decision in the journal and make the map again."""
-    from recon4.cli.summaries import describe_summary
+    from recon4.cli.summaries import show_run
     from recon4.cli.terminal import watcher
     from recon4.evaluation.site_control import control_in, outcome_text
     from recon4.pipeline import remake
@@ -165,7 +165,7 @@ def _make_again(project: Path, decided: SiteControl) -> None:
     append(project, Decision(kind=DecisionKind.CONTROL, who=getuser(), control=decided))
     with watcher() as progress:
         summary = remake(project, progress=progress)
-    write(describe_summary(summary))
+    show_run(summary)
     if decided.targets:
         path = read_artifacts(project)["level"] / "georeference.json"
         outcome = control_in(read_object(path, max_bytes=LIMITS.findings_bytes))

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.cli.terminal import write, write_json
+from recon4.cli.terminal import write
 from recon4.locales.languages import of_terminal
 
 findings = typer.Typer()
@@ -22,16 +22,13 @@ def audit(
 ) -> None:
     """Work out the findings of a finished map again, with the witnesses of this version."""
     confine_command(write=[project])
-    from recon4.cli.summaries import describe_summary
+    from recon4.cli.summaries import show_run
     from recon4.cli.terminal import watcher
     from recon4.pipeline import audit as run
 
     with watcher() as progress:
         summary = run(project, progress=progress)
-    if as_json:
-        write_json(summary.to_json())
-    else:
-        write(describe_summary(summary))
+    show_run(summary, as_json=as_json)
 
 
 @findings.command()

@@ -23,10 +23,10 @@ def show_run(summary: RunSummary, *, project: Path | None = None, as_json: bool 
     if as_json:
         write_json(summary.to_json())
     else:
-        write("\n".join([describe_summary(summary), *(describe_tried(project) if project else ())]))
+        write("\n".join([_describe(summary), *(_describe_tried(project) if project else ())]))
 
 
-def describe_tried(out: Path) -> list[str]:
+def _describe_tried(out: Path) -> list[str]:
     """The hypotheses that the odometry of a project tried, in lines; none if it has no table.
 
     Raises:
@@ -41,7 +41,7 @@ def describe_tried(out: Path) -> list[str]:
     return tried_lines(tried) if tried else []
 
 
-def describe_summary(summary: RunSummary) -> str:
+def _describe(summary: RunSummary) -> str:
     """What a finished run came to, and where its results are."""
     from recon4.workflows.map_results import Summary
 

@@ -87,7 +87,7 @@ def demo(
     headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
 ) -> None:
     """Simulate a walk through an office, map it and show it in the browser."""
-    from recon4.cli.summaries import describe_summary
+    from recon4.cli.summaries import show_run
     from recon4.cli.terminal import watcher
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as make_map
@@ -104,7 +104,7 @@ def demo(
         rig = load_rig(recording / "rig.toml")
         sources = Sources((recording / "recording.pcap",), rig, imu=recording / "imu.csv")
         summary = make_map(sources, project, progress=progress)
-    write(describe_summary(summary))
+    show_run(summary)
     if not headless:
         from recon4_app.settings import ServerSettings, recording_folders_from_environment
 
