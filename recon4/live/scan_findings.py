@@ -38,5 +38,3 @@ def scan_remarks(notes: Notes, say: Texts) -> Iterator[str]:
         yield say("laser-blind")
     if recent.get("lines_without_angle", 0) >= SCAN_WARNINGS.least:
         yield say("head-angles-missing")
-    if recent.get("clock_jumps", 0) and any(recent.get(name, 0) for name in ("scans", "lines")):
-        yield say("scanner-clock-jumped")

@@ -11,6 +11,8 @@ from enum import StrEnum
 
 FREE_CLOCK = "clock_runs_freely_"
 """Count, followed by the name of a LiDAR whose stamps count from power-on."""
+JUMPS_OF = "clock_jumps_of_"
+"""Count of the jumps of one source's clock, followed by its name."""
 
 
 class CountKind(StrEnum):
@@ -99,6 +101,7 @@ _PACKETS = {
     "positions_duplicate": _repaired("positions"),
     FREE_CLOCK: _usual(),
     "clock_jumps": _repaired(),
+    JUMPS_OF: _usual(),
     "clock_jumps_back": _repaired(),
 }
 _POINTS = {

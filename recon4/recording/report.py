@@ -11,6 +11,7 @@ import numpy as np
 from recon4.findings.derived import derived_text
 from recon4.findings.wording import whole_text
 from recon4.locales.coded import CODE, KINDS, CodedText, coded, flat_values
+from recon4.model.count_meanings import JUMPS_OF
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level, Value
@@ -66,6 +67,11 @@ class ImportReport:
         """Add to a counter; zero adds nothing."""
         if number:
             self.counts[name] += int(number)
+
+    def count_jump(self, source: str) -> None:
+        """Count a jump of a sensor's or topic's clock, also as ``clock_jumps_of_NAME``."""
+        self.count("clock_jumps")
+        self.count(f"{JUMPS_OF}{source}")
 
     def note_lag(self, what: str, lag_ns: int) -> None:
         """Remember how long after its stamp a message was recorded [ns]."""

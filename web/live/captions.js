@@ -123,7 +123,7 @@ const rateChip = (name, rate) =>
  * @param {Phone | null} phone
  * @returns {Array<[string, string]>}
  */
-export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
+export function supplies({ rates = {}, fix, status, battery }, phone) {
   if (!status) return [];
   const { free_bytes: free, left_s: left } = status.disk;
   const lost = status.kernel_drops + status.file.dropped;
@@ -145,15 +145,8 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
     ],
     [t("computer"), battery ? poweredText(battery) : t("no-battery")],
     [t("phone"), phone ? chargingText(phone) : t("battery-unknown")],
-    ...(notes?.counts.clock_jumps ? [clocksRow(notes.counts.clock_jumps)] : []),
   ];
 }
-
-/** @returns {[string, string]} */
-const clocksRow = (/** @type {number} */ jumps) => [
-  t("clocks"),
-  t("clocks-jumped", { jumps: String(jumps) }),
-];
 
 /** @param {Battery} battery */
 const poweredText = (battery) =>
@@ -173,11 +166,11 @@ function positionText(fix, rate) {
 }
 
 /** A row of the table of LiDARs: [name, rate, lost, clock]. */
-export const lidarRow = (/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps }) => [
+export const lidarRow = (/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps, jumps }) => [
   name,
   rate < 1 ? t("silent") : `${Math.round(rate)}/s`,
   lost === null ? "–" : t("ratio", { ratio: lost }),
-  keeps ? t(CLOCKS[keeps] ?? keeps) : "–",
+  keeps ? t(CLOCKS[keeps] ?? keeps, { jumps }) : "–",
 ];
 
 const percent = (/** @type {number} */ ratio) => `${Math.round(100 * ratio)} %`;

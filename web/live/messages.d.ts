@@ -42,6 +42,7 @@ export interface Lidar {
   per_s: number;
   lost: number | null;
   clock: string;
+  jumps: number;
 }
 export interface Fix {
   quality: number;
@@ -100,5 +101,4 @@ export interface Message {
   battery?: Battery | null;
   loop?: Loop | null;
   motion?: Motion | null;
-  notes?: { counts: Record<string, number> } | null;
 }

@@ -8,9 +8,7 @@ from recon4.live.findings import rates
 from recon4.live.mapper.tuning import NOTES
 from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Notes
-from recon4.model.count_meanings import FREE_CLOCK
-from recon4.model.finding import Finding
-from recon4.model.finding_kinds import FindingKind
+from recon4.model.count_meanings import FREE_CLOCK, JUMPS_OF
 from recon4.model.rig import Rig, Sensor
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
@@ -28,6 +26,8 @@ class LidarHealth:
     clock: str
     """`IN_STEP` with the recorder's clock or GPS, `SHIFTED` if it runs freely (no PPS),
     `JUMPED` if it or the recorder's clock jumped since the start; empty = unknown."""
+    jumps: int = 0
+    """How often."""
 
 
 def lidars(rig: Rig, newest: Newest) -> list[LidarHealth]:
@@ -47,17 +47,11 @@ def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
     name = sensor.name
     if notes is None or per_s <= 0.0:
         return LidarHealth(name, per_s, None, "")
-    mine = [one for one in notes.findings if one.sensor == name]
+    jumps = notes.counts.get(f"{JUMPS_OF}{name}", 0)
     free = f"{FREE_CLOCK}{name}" in notes.counts
+    clock = JUMPED if jumps else SHIFTED if free else IN_STEP
     if sensor.kind != "lidar":  # its datagrams have no numbers
-        return LidarHealth(name, per_s, None, _clock(mine, free=free))
+        return LidarHealth(name, per_s, None, clock, jumps)
     missing = notes.recent.get(f"packets_missing_{name}", 0)
     lost = round(missing / (missing + NOTES.recent_s * per_s), 3)
-    return LidarHealth(name, per_s, lost, _clock(mine, free=free))
-
-
-def _clock(findings: list[Finding], *, free: bool) -> str:
-    """State of the clock, from the findings of its reader."""
-    if any(one.kind is FindingKind.CLOCK_JUMP for one in findings):
-        return JUMPED
-    return SHIFTED if free else IN_STEP
+    return LidarHealth(name, per_s, lost, clock, jumps)

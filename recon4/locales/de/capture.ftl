@@ -57,7 +57,6 @@ scans-damaged = { $damaged } Datagramme mit Scans sind nicht lesbar
 lines-damaged = { $damaged } Datagramme mit Linienscans sind nicht lesbar
 laser-blind = Der 2-D-Laser sieht nichts: ist er verdeckt, oder ist alles außer Reichweite?
 head-angles-missing = Die Winkel des Profilerkopfes fehlen: seine Linien können nicht platziert werden
-scanner-clock-jumped = Eine Uhr der Scanner sprang: die Zeiten seiner Scans sind die ihrer Ankunft
 
 ## Bemerkungen des Kartierers
 

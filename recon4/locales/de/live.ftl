@@ -124,7 +124,10 @@ gnss-within-cm = GNSS { $fix } ±{ DECIMAL($cm, digits: 0) } cm
 gnss-within-m = GNSS { $fix } ±{ DECIMAL($m, digits: 1) } m
 clock-in-step = im Takt
 clock-shifted = eigene, verschoben
-clock-jumped = gesprungen
+clock-jumped = { $jumps ->
+    [one] gesprungen
+    *[other] { $jumps }-mal gesprungen
+}
 clock-shifted-brief = eigene Uhr
 clock-jumped-brief = Uhr gesprungen
 disk-brief = Speicher { $left }
@@ -150,8 +153,6 @@ phone = Telefon
 charging = { $charge }, lädt
 battery-unknown = Akku unbekannt
 ratio = { PERCENT($ratio, digits: 1) }
-clocks = Uhren
-clocks-jumped = { $jumps }-mal gesprungen, korrigiert
 hours = { $hours } h
 minutes = { $minutes } min
 

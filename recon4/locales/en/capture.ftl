@@ -57,7 +57,6 @@ scans-damaged = { $damaged } datagrams with scans cannot be read
 lines-damaged = { $damaged } datagrams with line scans cannot be read
 laser-blind = The 2-D laser sees nothing: is it covered, or is everything beyond its range?
 head-angles-missing = The angles of the profiler's head are missing: its lines cannot be placed
-scanner-clock-jumped = A clock of the scanners jumped: its scans are timed by their arrival
 
 ## Remarks of the mapper
 

@@ -124,7 +124,10 @@ gnss-within-cm = GNSS { $fix } ±{ DECIMAL($cm, digits: 0) } cm
 gnss-within-m = GNSS { $fix } ±{ DECIMAL($m, digits: 1) } m
 clock-in-step = in step
 clock-shifted = own, shifted
-clock-jumped = jumped
+clock-jumped = { $jumps ->
+    [one] jumped
+    *[other] jumped { $jumps } times
+}
 clock-shifted-brief = own clock
 clock-jumped-brief = clock jumped
 disk-brief = disk { $left }
@@ -150,8 +153,6 @@ phone = Phone
 charging = { $charge }, charging
 battery-unknown = battery unknown
 ratio = { PERCENT($ratio, digits: 1) }
-clocks = Clocks
-clocks-jumped = jumped { $jumps } times, corrected
 hours = { $hours } h
 minutes = { $minutes } min
 

@@ -92,7 +92,7 @@ class ExactClock:
         self._others = [*self._others, ahead][-POINT_CLOCK.confirm :]
         if len(self._others) == POINT_CLOCK.confirm and np.ptp(self._others) < POINT_CLOCK.jump_ns:
             jump_s = (self._offset_ns - ahead) * 1e-9
-            self._report.count("clock_jumps")
+            self._report.count_jump(self._name)
             self._report.warn(
                 FindingKind.CLOCK_JUMP,
                 sensor=self._name,

@@ -230,7 +230,7 @@ class _StampedMessages:
             recorder_jumped = 0 < step_ns < SCAN_DATAGRAMS.jump_ns
             if abs(off_ns) > SCAN_DATAGRAMS.jump_ns and not recorder_jumped:
                 self._shift_ns -= off_ns
-                self._report.count("clock_jumps")
+                self._report.count_jump(self._sensor.name)
                 self._report.warn(
                     FindingKind.CLOCK_JUMP,
                     sensor=self._sensor.name,

@@ -386,7 +386,7 @@ class SensorClock:
     def _report_jump(self, whose: str, jump_ns: int) -> None:
         if whose == "recorder":
             self._report.recorder_jumps_ns.setdefault(self._name, []).append(jump_ns)
-        self._report.count("clock_jumps")
+        self._report.count_jump(self._name)
         self._report.warn(
             FindingKind.CLOCK_JUMP,
             sensor=self._name,

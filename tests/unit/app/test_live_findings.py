@@ -369,7 +369,6 @@ def test_a_direction_that_is_not_observed_is_said_in_words(unobserved, text):
         ({"scans_damaged": 30}, "Nothing of what the 2-D laser sends can be read: 30 datagrams"),
         ({"scans": 100, "scans_without_returns": 100}, "The 2-D laser sees nothing: is it covered"),
         ({"lines_without_angle": 300}, "The angles of the profiler's head are missing"),
-        ({"scans": 100, "clock_jumps": 1}, "A clock of the scanners jumped"),
     ],
 )
 def test_what_is_wrong_with_scans_is_said(recent, text):

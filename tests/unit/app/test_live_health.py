@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from recon4.live.findings import findings
 from recon4.live.mapper.import_notes import NotesWatch
 from recon4.live.newest_messages import Newest
 from recon4.live.session import CaptureSession
@@ -14,7 +13,6 @@ from recon4_app.live.current_capture import marks_of
 from recon4_app.live.health import lidars
 from recon4_app.live.power import Battery, Power, battery_findings, read_battery
 from recon4_app.live.rigs import rig_files, rigs_in, shipped_rigs
-from tests.live_messages import notes as notes_of
 from tests.live_messages import sender, status
 
 RIG = load_rig("4recon")
@@ -70,12 +68,31 @@ def test_what_went_wrong_before_the_first_message_is_reported_for_ten_seconds():
     assert recent == [{"clock_jumps": 1}, {"clock_jumps": 1}, {}]
 
 
-def test_a_jump_of_a_lidars_clock_is_not_said_of_the_scanners():
-    for recent, said in (({"packets": 900}, []), ({"scans": 90}, ["A clock of the scanners"])):
-        found = findings(RIG, newest(notes=notes_of(recent={**recent, "clock_jumps": 1})), "")
+def test_a_jump_is_counted_of_the_sensor_whose_clock_jumped():
+    """Also of one whose name is a part of that of another."""
+    report = ImportReport()
+    for name in ("vertical", "horizontal", "vertical", "horizontal 2"):
+        report.count_jump(name)
 
-        texts = [one.text for one in found if "clock" in one.text]
-        assert [text[:23] for text in texts] == said
+    found = health(report)
+
+    assert report.counts["clock_jumps"] == 4
+    assert {name: (one.clock, one.jumps) for name, one in found.items()} == {
+        "vertical": ("jumped", 2),
+        "horizontal": ("jumped", 1),
+    }
+
+
+@pytest.mark.parametrize("jumped", ["profiler", "laser2d"])
+def test_a_jump_of_a_profiler_is_not_one_of_the_laser_beside_it(jumped):
+    rig, report = load_rig("wuerzburg"), ImportReport()
+    scans, lines = sender(8311, 25.0, data_per_s=0.0), sender(8312, 300.0, data_per_s=0.0)
+    report.count_jump(jumped)
+    notes = NotesWatch(report).message(0.0)
+
+    found = lidars(rig, Newest(status=status(scans, lines), notes=notes))
+
+    assert [(one.name, one.jumps) for one in found if one.clock == "jumped"] == [(jumped, 1)]
 
 
 def test_without_data_and_for_a_silent_lidar_loss_and_clock_are_unknown():
