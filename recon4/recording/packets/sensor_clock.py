@@ -211,9 +211,10 @@ class SensorClock:
             self._shift_ns = int(np.min(behind)) - self._packet_ns + known
             self._say_free_running(offset)
         self._offset_ns = offset
-        first = int(nearest_hour(t_us[:1], t_arrival_ns[:1] + offset)[0])
-        self._since_ns = first
-        self._last = (int(t_arrival_ns[0]), int(t_arrival_ns[0]) + offset)
+        expected = int(t_arrival_ns[0]) + offset
+        self._since_ns = first = int(nearest_hour(t_us[:1], expected)[0])
+        is_sound = abs(first - expected) <= CLOCKS.jump_ns  # it may be late
+        self._last = (int(t_arrival_ns[0]), first if is_sound else expected)
         self._report_ahead()
         return offset
 

@@ -91,3 +91,15 @@ def test_samples_beside_the_points_are_of_their_hour_before_the_jump_is_confirme
 
     assert valid.all()
     np.testing.assert_array_equal(out, t_ns[550:560] // 1000 * 1000)
+
+
+@KEPT_CLOCKS
+@pytest.mark.parametrize("late_s", [0.15, 0.31])
+def test_packets_that_come_late_at_the_start_are_no_jump(late_s, off_ns):
+    t_ns, arrival, stamps = packets(3000, off_ns=off_ns)
+    waited = np.arange(len(arrival)) * 20_000 + round(late_s * 1e9)
+
+    out, kept, report = judged(np.maximum(arrival, arrival[0] + waited), stamps, batch=754)
+
+    assert kept.all() and not report.findings
+    np.testing.assert_allclose(np.diff(out), np.diff(t_ns), atol=1000)
