@@ -48,11 +48,14 @@ class SampleDecoder:
 
     report: ImportReport
     _last_ns: dict[str, int] = field(default_factory=dict)
+    _last_imu: list[float] = field(default_factory=list)
     _stamps: dict[str, StampClock] = field(default_factory=dict)
     _arrived_ns: dict[str, int] = field(default_factory=dict)
     """Kind -> arrival of its last sample [ns]."""
     _sd: tuple[int, list[float]] = (0, [math.nan] * 3)
     """Time of arrival [ns] of the last GST sentence, and its standard deviations e, n, u [m]."""
+    _gga_ns: int = -NMEA.lasts_ns
+    """Time of arrival of the last GGA sentence [ns]."""
 
     def push(
         self, t_arrival_ns: list[int], texts: list[bytes]
@@ -60,7 +63,8 @@ class SampleDecoder:
         """Decode the samples of datagrams.
 
         Counts ``sample_datagrams``, ``imu_samples``, ``gnss_samples``, ``samples_damaged``,
-        ``samples_out_of_order``, ``nmea_damaged`` and ``nmea_no_fix``.
+        ``samples_out_of_order``, ``imu_copies``, ``gnss_copies``, ``nmea_damaged`` and
+        ``nmea_no_fix``.
 
         Args:
             t_arrival_ns: Times of arrival [ns].
@@ -80,10 +84,14 @@ class SampleDecoder:
             self._find_set_back(sample)
             if not self._is_of_the_clock(sample):
                 self.report.count("samples_damaged")
-            elif sample.t_ns <= self._last_ns.get(sample.kind, -1):
-                self.report.count("samples_out_of_order")
+            elif sample.t_ns <= (last_ns := self._last_ns.get(sample.kind, -1)):
+                same = sample.kind == "gnss" or sample.values == self._last_imu
+                twice = sample.t_ns == last_ns and same
+                self.report.count(f"{sample.kind}_copies" if twice else "samples_out_of_order")
             else:
                 self._last_ns[sample.kind] = sample.t_ns
+                if sample.kind == "imu":
+                    self._last_imu = sample.values
                 times[sample.kind].append(sample.t_ns)
                 rows[sample.kind].append(sample.values)
         for kind in rows:
@@ -154,6 +162,10 @@ class SampleDecoder:
             return
         if line[3:6] not in (b"GGA", b"RMC"):
             return
+        if line[3:6] == b"GGA":
+            self._gga_ns = arrival_ns
+        elif 0 <= arrival_ns - self._gga_ns < NMEA.lasts_ns:
+            return
         fix = parse_fix(line, arrival_ns, self.report)
         if fix is None:
             return
@@ -161,7 +173,7 @@ class SampleDecoder:
         if abs(t_ns - arrival_ns) > NMEA.utc_within_ns:
             t_ns = arrival_ns
             self.report.derive(DerivedKind.POSITIONS_BY_ARRIVAL, nmea=True)
-        fresh = arrival_ns - self._sd[0] < NMEA.gst_lasts_ns
+        fresh = arrival_ns - self._sd[0] < NMEA.lasts_ns
         sd = self._sd[1] if fresh else [math.nan] * 3
         place = [fix.lat_deg, fix.lon_deg, fix.height_m]
         values = [*place, *sd, float(fix.quality), *([math.nan] * 3)]

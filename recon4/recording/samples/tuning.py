@@ -100,8 +100,9 @@ class NmeaTuning(Struct, frozen=True, kw_only=True):
 
     utc_within_ns: int = 5 * SECOND_NS // 2
     """Largest difference between an NMEA time and its arrival at which the time is used."""
-    gst_lasts_ns: int = 3 * SECOND_NS
-    """A GST sentence holds for the fixes of this time [ns]."""
+    lasts_ns: int = 3 * SECOND_NS
+    """A GST sentence holds for the fixes of this time; after a GGA sentence, RMC sentences of this
+    time, which have no heights, are left out [ns]."""
 
 
 NMEA = NmeaTuning()

@@ -71,3 +71,44 @@ def test_one_sample_with_an_absurd_time_does_not_block_those_after_it():
 
     assert len(imu) == 19 and report.counts["samples_damaged"] == 1
     assert report.counts["samples_out_of_order"] == 0
+
+
+def test_a_datagram_that_comes_twice_is_no_loss():
+    """As of a network that doubles packets; an earlier sample, or another of that time, is one."""
+    arrival_ns = [NOON_NS + k * 10_000_000 for k in range(6)]
+    texts = [b'{"t_ns": %d, %s' % (t, IMU[1:]) for t in arrival_ns]
+    other = texts[5].replace(b"0.1", b"0.7", 1)
+    report = ImportReport()
+    decoder = SampleDecoder(report)
+
+    sent = [*texts[:3], texts[2], *texts[3:], texts[4], other]
+    parts = [decoder.push([arrival_ns[-1]], [text])[0] for text in sent]
+
+    assert sum(len(part) for part in parts if part is not None) == 6
+    assert report.counts["imu_copies"] == 1
+    assert report.counts["samples_out_of_order"] == 2
+
+
+def test_a_fix_that_comes_twice_is_no_loss():
+    (_, gnss), report = pushed(NOON_NS, GGA, GGA)
+
+    assert len(gnss) == 1
+    assert report.counts["gnss_copies"] == 1 and not report.lost()
+
+
+@pytest.mark.parametrize("first", ["GGA", "RMC"])
+def test_of_the_sentences_of_one_fix_the_one_with_the_height_is_used(first):
+    """As receivers send them by default, also RMC before GGA."""
+    decoder, heights_m = SampleDecoder(report := ImportReport()), []
+    for second in range(5):
+        time = b"1200%02d.00" % second
+        rmc = b"GPRMC,%s,A,4912.0,N,01636.0,E,0.1,90.0,210926,,,R" % time
+        bodies = [_GGA.replace(b"120000.00", time), rmc]
+        for body in bodies if first == "GGA" else bodies[::-1]:
+            text = b"$%s*%02X\r\n" % (body, reduce(xor, body))
+            _, gnss = decoder.push([NOON_NS + second * 10**9 + 50_000_000], [text])
+            heights_m += [] if gnss is None else gnss.height_m.tolist()
+
+    without = np.flatnonzero(np.isnan(heights_m)).tolist()
+    assert len(heights_m) == 5 and without == ([] if first == "GGA" else [0])
+    assert not report.lost()

@@ -90,8 +90,8 @@ class ImuPackets:
         """Samples in order; None if there are none.
 
         The time is that of the gyroscope; the acceleration is interpolated to it.
-        Counts ``sample_datagrams``, ``samples_damaged``, ``samples_out_of_order`` and
-        ``imu_samples``.
+        Counts ``sample_datagrams``, ``samples_damaged``, ``samples_out_of_order``,
+        ``imu_copies`` and ``imu_samples``.
         """
         datagrams = self._own(datagrams)
         parts = [
@@ -102,8 +102,10 @@ class ImuPackets:
         if not parts:
             return None
         t_ns, accel, gyro = (np.concatenate(column) for column in zip(*parts, strict=True))
-        later = t_ns > np.maximum.accumulate(np.concatenate([[self._last_ns], t_ns[:-1]]))
-        self._report.count("samples_out_of_order", int((~later).sum()))
+        newest_ns = np.maximum.accumulate(np.concatenate([[self._last_ns], t_ns[:-1]]))
+        later = t_ns > newest_ns
+        self._report.count("samples_out_of_order", int((t_ns < newest_ns).sum()))
+        self._report.count("imu_copies", int((t_ns == newest_ns).sum()))
         self._report.count("imu_samples", int(later.sum()))
         if not later.any():
             return None
