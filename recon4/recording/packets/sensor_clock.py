@@ -360,8 +360,9 @@ class SensorClock:
             self._host_jump_ns += jump_ns
             self._report_jump("recorder", jump_ns)
         else:
-            if abs(arrived) < CLOCKS.step_ns:
-                off_ns -= self._early_ns()
+            early_ns = self._early_ns()
+            if abs(arrived) < CLOCKS.step_ns or abs(early_ns) > CLOCKS.step_ns:
+                off_ns -= early_ns
             self._offset_ns += off_ns
             self._shift_ns = int(self._shift(going_on)) - off_ns
             self._rate = 0.0

@@ -93,6 +93,22 @@ def test_samples_beside_the_points_are_of_their_hour_before_the_jump_is_confirme
     np.testing.assert_array_equal(out, t_ns[550:560] // 1000 * 1000)
 
 
+@pytest.mark.parametrize("jump_s", [-600.0, 900.0])
+def test_a_sensor_that_is_set_while_its_sender_is_starved_leaves_no_gap(jump_s):
+    """Where packets come late and in pieces: 8 of them take longer than those of an even sender."""
+    t_ns, arrival, stamps = packets(20_000)
+    late = starved(arrival, 2)
+    waits = late[8:] - late[:-8] > SECOND_NS // 5
+    row = 8 + int(np.argmax(np.where(waits, (late - arrival)[8:], 0)))
+    stamps[row - 4 :] = (stamps[row - 4 :] + round(jump_s * 1e6)) % (HOUR_NS // 1000)
+
+    out, kept, report = judged(late, stamps)
+
+    assert (late - arrival)[row] > SECOND_NS and kept.sum() == len(kept) - 7
+    assert np.abs(out - t_ns)[kept].max() < late[row + 4] - late[row - 5]
+    assert warned(report, K.CLOCK_JUMP, whose="sensor")
+
+
 @KEPT_CLOCKS
 @pytest.mark.parametrize("late_s", [0.15, 0.31])
 def test_packets_that_come_late_at_the_start_are_no_jump(late_s, off_ns):
