@@ -137,18 +137,53 @@ def test_signing_out_shows_the_login_and_clears_the_session(server, page):
 
 
 @looks("desktop dark")
-def test_who_is_signed_out_while_a_page_is_open_reads_why_and_goes_on_there(server, page):
-    sign_in(page, server, "rita", "/projects/office/review/")
-    expect(page.locator(".account")).to_contain_text("rita")
+def test_who_is_signed_out_while_a_page_is_open_signs_in_there_and_loses_nothing(
+    server, page, screenshot
+):
+    sign_in(page, server, "rita", "/projects/office/map/")
+    expect(page.locator("#status .shown")).to_contain_text("20 000 points")
+    page.keyboard.press("n")
+    page.locator("#map").click(position={"x": 500, "y": 450})
+    page.locator("#panel textarea").fill("crack over the door")
+    open_at = page.url
 
     page.context.clear_cookies()  # as when a role was changed: all sessions of the person ended
-
-    expect(page.get_by_text("Your session has ended")).to_be_visible()
-    expect(page.get_by_label("Name")).to_have_value("rita")
-    expect(page.get_by_label("Password", exact=True)).to_be_focused()
-    page.keyboard.type(PASSWORD)
+    page.get_by_text("Keep the note").dispatch_event("click")  # the login may cover it already
+    login = page.get_by_role("dialog", name="Sign in")
+    expect(login).to_contain_text("Your session has ended")
+    expect(login.get_by_label("Name")).to_have_value("rita")
+    expect(login.get_by_label("Password")).to_be_focused()
+    page.keyboard.type("wrong wrong wrong")
     page.keyboard.press("Enter")
-    page.wait_for_url(f"{server.url}/projects/office/review/")
+    expect(login.get_by_role("alert")).to_have_text("wrong name or password")
+    screenshot(page, "login-again")
+    login.get_by_label("Password").fill(PASSWORD)
+    page.keyboard.press("Enter")
+
+    expect(page.locator("#panel .notes li")).to_contain_text("crack over the door")
+    assert page.url.split("?")[0] == open_at.split("?")[0]
+
+    page.context.clear_cookies()
+    page.reload()  # no page, nobody to ask
+    expect(page.get_by_role("heading", name="Sign in", level=1)).to_be_visible()
+
+
+@looks("desktop dark")
+def test_another_person_gets_a_page_of_their_own_and_nobody_the_page_of_who_was_there(server, page):
+    sign_in(page, server, "rita", "/projects/office/map/")
+    expect(page.locator("#status .shown")).to_contain_text("20 000 points")
+    page.context.clear_cookies()
+    login = page.get_by_role("dialog", name="Sign in")
+    login.get_by_label("Name").fill("vera")
+    login.get_by_label("Password").fill(PASSWORD)
+    with page.expect_navigation():
+        page.keyboard.press("Enter")
+    expect(page.get_by_role("link", name="Account of vera viewer")).to_be_attached()
+
+    page.context.clear_cookies()
+    expect(login).to_be_visible()
+    page.keyboard.press("Escape")
+    page.wait_for_url(f"{server.url}/login#next=*")
 
 
 @looks("desktop dark")

@@ -11,7 +11,6 @@ const controls = fields(form);
 const go = byId("go", HTMLButtonElement);
 const given = new URLSearchParams(location.hash.slice(1));
 const setup = given.get("setup");
-const ended = given.get("ended"); // who was signed in
 forgetFragment();
 
 /** Where to go after the login: a page of this server and nothing else. */
@@ -25,13 +24,6 @@ function offerSetup() {
   byId("words").hidden = byId("hint").hidden = false;
   controls.password.autocomplete = "new-password";
   controls.password.minLength = 12;
-}
-
-/** Somebody was signed in a moment ago, and goes on where the session ended. */
-function offerAgain(/** @type {string} */ who) {
-  byId("words").textContent = t("session-ended");
-  byId("words").hidden = false;
-  controls.name.value = who;
 }
 
 async function submit(/** @type {SubmitEvent} */ event) {
@@ -55,7 +47,6 @@ byId("show").addEventListener("change", (event) => {
   controls.password.type = targetOf(event).checked ? "text" : "password";
 });
 if (setup) offerSetup();
-else if (ended) offerAgain(ended);
 // Before any wait: a password that is being typed would go on in the field of the name.
-if (!form.contains(document.activeElement)) (ended ? controls.password : controls.name).focus();
+if (!form.contains(document.activeElement)) controls.name.focus();
 if (!setup && (await isSignedIn())) location.replace(next());

@@ -61,7 +61,7 @@ export async function request(operation, ...parts) {
   const content = json ? await response.json() : await response.text();
   if (response.ok) return content;
   const error = new ApiError(response.status, json ? content : { detail: content });
-  if (error.name === "Unknown") leaveForLogin();
+  if (error.name === "Unknown" && (await signedInAgain())) return request(operation, ...parts);
   if (error.name === "StaleToken") known.me = null;
   throw error;
 }
@@ -87,7 +87,10 @@ export function urlOf(template, path, query = {}) {
 // -- who is signed in
 
 /** What this page knows of the signed-in person; null = not requested yet. */
-const known = { me: /** @type {Promise<import("./http_types").Me> | null} */ (null) };
+const known = {
+  me: /** @type {Promise<import("./http_types").Me> | null} */ (null),
+  asked: /** @type {Promise<boolean> | null} */ (null), // to sign in again
+};
 
 /** Who is signed in, requested once a page, or `again`. */
 export const readCurrentUser = (again = false) =>
@@ -117,15 +120,25 @@ export async function changeHeaders(method = "POST") {
   return token ? { "X-Recon4-Token": token } : {};
 }
 
-async function leaveForLogin() {
-  if (BEFORE_LOGIN.includes(location.pathname)) return;
+/** Whether one may go on: who was signed in does so on the page; others leave for the login. */
+async function signedInAgain() {
+  if (BEFORE_LOGIN.includes(location.pathname)) return false;
   const me = await known.me?.catch(() => null);
-  if (me && isGuest(me)) return location.assign(GUEST_ENDED); // a guest has no password
+  const leave = (/** @type {string} */ address) => {
+    location.assign(address);
+    return false;
+  };
+  if (me && isGuest(me)) return leave(GUEST_ENDED); // a guest has no password
   // A phone may have no password; the pairing page offers both.
-  const paired = location.pathname === LIVE_URL;
-  const ended = me ? `&ended=${name(me.name)}` : "";
-  const login = at(`/login#next=${name(pathHere())}${ended}`);
-  location.assign(paired ? at("/pair#again") : login);
+  if (location.pathname === LIVE_URL) return leave(at("/pair#again"));
+  const login = at(`/login#next=${name(pathHere())}`);
+  if (!me) return leave(login);
+  known.asked ??= import("./login_again.js")
+    .then(({ askLogin }) => askLogin(me.name))
+    .catch(() => false) // the server has another version
+    .then((again) => again || leave(login))
+    .finally(() => (known.asked = null));
+  return known.asked;
 }
 
 /** Keeps who is signed in from a response that contains it: the token has changed. */
@@ -137,20 +150,27 @@ export async function become(/** @type {Promise<Me>} */ response) {
 
 /** Asks for a file without reading it; an `ApiError` if the server refuses it. */
 export async function canBeRead(/** @type {string} */ url) {
-  const response = await fetch(url).catch(() => {
-    throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
-  });
-  if (!response.ok) throw await refusalOf(response);
+  const response = await responseOf(() => fetch(url));
   await response.body?.cancel();
 }
 
 /** Reads a binary response; an `ApiError` if the server refuses it. */
-export async function readBytes(/** @type {string} */ url) {
-  const response = await fetch(url).catch(() => {
+export const readBytes = async (/** @type {string} */ url) =>
+  (await responseOf(() => fetch(url))).arrayBuffer();
+
+/**
+ * The response if the server does not refuse; asked for again when the person has signed in again.
+ * @param {() => Promise<Response>} ask
+ * @returns {Promise<Response>}
+ */
+async function responseOf(ask) {
+  const response = await ask().catch((error) => {
+    if (error.name === "AbortError") throw error;
     throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
   });
-  if (!response.ok) throw await refusalOf(response);
-  return response.arrayBuffer();
+  if (response.ok) return response;
+  if (response.status === 401 && (await signedInAgain())) return responseOf(ask);
+  throw await refusalOf(response);
 }
 
 /** The error of a response that is JSON, or the text of a proxy in between. */
@@ -162,7 +182,6 @@ async function refusalOf(/** @type {Response} */ response) {
   } catch {
     // from a proxy in between, or the response to HEAD, which has no body
   }
-  if (response.status === 401) leaveForLogin();
   return new ApiError(response.status, problem);
 }
 
@@ -174,20 +193,13 @@ async function refusalOf(/** @type {Response} */ response) {
  * @param {string} path
  * @param {RequestInit} options
  */
-export async function tus(method, path, { headers = {}, body, signal } = {}) {
-  let response;
-  try {
+export const tus = (method, path, { headers = {}, body, signal } = {}) =>
+  responseOf(async () => {
     /** @type {Record<string, any>} */
     const all = {
       "Tus-Resumable": "1.0.0",
       ...(method === "HEAD" ? {} : await changeHeaders(method)),
       ...headers,
     };
-    response = await fetch(path, { method, headers: all, body, signal, cache: "no-store" });
-  } catch (error) {
-    if (error instanceof Error && error.name === "AbortError") throw error;
-    throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
-  }
-  if (response.ok) return response;
-  throw await refusalOf(response);
-}
+    return fetch(path, { method, headers: all, body, signal, cache: "no-store" });
+  });

@@ -3,12 +3,10 @@
 ## Anmeldung
 
 login-page = Anmelden · recon4
-sign-in = Anmelden
 show-password = Passwort zeigen
 password-hint = Mindestens 12 Zeichen. Gut sind einige Wörter, die sonst nicht zusammen vorkommen
 first-admin-page = Erster Verwalter · recon4
 first-admin = Ersten Verwalter anlegen
-session-ended = Ihre Sitzung ist beendet. Nach der Anmeldung geht es dort weiter, wo Sie waren.
 first-admin-why = Dieser Server hat noch keine Konten. Dieser Link gilt einmal
 first-admin-go = Verwalter anlegen und anmelden
 

@@ -276,8 +276,10 @@ preset-hector = Ein 2-D-Laser, eingepasst wie bei hector_slam; keine Schleifensc
 preset-wuerzburg = Ein Rucksack mit Profiler, nach den Verfahren seiner Veröffentlichung
 preset-thesis = Das Verfahren der 4RECON-Dissertation, wie veröffentlicht
 
-## Passwort noch einmal
+## Anmelden, oder Passwort noch einmal
 
+sign-in = Anmelden
+session-ended = Ihre Sitzung ist beendet. Nach der Anmeldung geht es dort weiter, wo Sie waren.
 password = Passwort
 password-again = Passwort noch einmal
 password-why = Dies wird mit dem eigenen Namen gezeichnet, und die Anmeldung ist eine Weile her

@@ -3,12 +3,10 @@
 ## Login
 
 login-page = Sign in · recon4
-sign-in = Sign in
 show-password = Show the password
 password-hint = At least 12 characters. A few words you do not say together are good
 first-admin-page = First admin · recon4
 first-admin = Create the first admin
-session-ended = Your session has ended. Sign in to go on where you were.
 first-admin-why = This server has no accounts yet. This link works once
 first-admin-go = Create admin and sign in
 

@@ -276,8 +276,10 @@ preset-hector = A 2-D laser, matched as hector_slam does; no loop closures
 preset-wuerzburg = A backpack with a profiler, by the methods of its publication
 preset-thesis = The algorithm of the 4RECON thesis as published
 
-## Password again
+## Sign in, or password again
 
+sign-in = Sign in
+session-ended = Your session has ended. Sign in to go on where you were.
 password = Password
 password-again = Your password again
 password-why = This is signed with your name, and you signed in a while ago
