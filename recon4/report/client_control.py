@@ -41,7 +41,10 @@ def control_section(georeference: Mapping[str, object], words: Words) -> Section
         Row(words("control.crs"), words("control.crs_site") if grid else shown(outcome.crs)),
         Row(words("control.freedom"), str(outcome.freedom)),
         Row(words("control.scale"), scale),
-        *(Row(words("control.statement"), text) for text in statements(outcome, words.language)),
+        *(
+            Row("" if k else words("control.statement"), text)
+            for k, text in enumerate(statements(outcome, words.language))
+        ),
         *(
             Row(words("control.blunder"), shown(blunder_in(text, words)))
             for text in outcome.blunders

@@ -62,6 +62,8 @@ def accuracy_rows(assessed: Assessment, words: Words) -> list[Row]:
     stated = level.uncertainty if level else None
     if stated is not None:
         kind = "earth" if stated.on_earth else "start"
+        if assessed.facts.crs == SITE_GRID:
+            kind = "site"
         value = words(
             f"accuracy.position_{kind}", value=words.number(stated.largest_sd_m, 1, 100.0)
         )

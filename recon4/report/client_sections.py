@@ -44,7 +44,7 @@ def sections(
         words: The catalog.
     """
     made = [
-        _drawings(drawings, words),
+        _drawings(assessed, drawings, words),
         control_section(assessed.results.georeference, words),
         _findings(assessed, drawings, notes, words=words),
         _loops(assessed, drawings, words),
@@ -58,8 +58,17 @@ def sections(
     return [one for one in made if not one.empty]
 
 
-def _drawings(drawings: MapDrawings, words: Words) -> Section:
-    return Section(title=words("section.drawings"), drawings=tuple(drawings.all()))
+def _drawings(assessed: Assessment, drawings: MapDrawings, words: Words) -> Section:
+    title, drawn = words("section.drawings"), tuple(drawings.all())
+    if not drawn:
+        return Section(title=title)
+    crs = assessed.results.georeference.get("crs") or {}
+    text = words("text.axes_local")
+    if isinstance(crs, Mapping) and "origin_m" in crs:
+        east, north, up = (words.number(value, 3) for value in crs["origin_m"])
+        name = shown(assessed.facts.crs)
+        text = words("text.axes", east=east, north=north, up=up, crs=name)
+    return Section(title=title, text=(text,), drawings=drawn)
 
 
 def _sensors(assessed: Assessment, words: Words) -> Section:
@@ -88,7 +97,8 @@ def _coordinates(assessed: Assessment, words: Words) -> Section:
     results = assessed.results
     rows = [Row(words("front.crs"), shown(assessed.facts.crs))] if assessed.facts.crs else []
     # The points have a section of their own.
-    rows += _rows(placed_rows(results.georeference, words.language, points=False), words)
+    placed = placed_rows(results.georeference, words.language, points=False)
+    rows += _rows([(name, text) for name, text in placed if name != "CRS: name" or not rows], words)
     drawn = charts_on_paper(charts.gnss_charts(results.placement.gnss), words)
     return Section(title=words("section.coordinates"), rows=tuple(rows), drawings=drawn)
 

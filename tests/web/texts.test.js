@@ -29,6 +29,8 @@ test("numbers are written as the language does, with the digits that the text as
   assert.equal(t("points", { points: 1234567 }), "1\u202f234\u202f567 Punkte");
   assert.equal(t("off", { m: 1.25, rad: Math.PI, short: 0.123 }), "+1,3 m, 180°, 12,3 cm");
   assert.equal(decimal(12.34, 1), "12,3");
+  assert.equal(decimal(-0.04, 1), "0,0");
+  assert.equal(t("off", { m: -0.04, rad: 0, short: 0 }), "+0,0 m, 0°, 0,0 cm");
 });
 
 test("a text selects by number", () => {

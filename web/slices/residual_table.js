@@ -40,6 +40,7 @@ export function statedText(/** @type {Residual | undefined} */ residual) {
   const parts = [t("stated", { ellipse: stated(map) })];
   if (survey) parts.push(t("of-survey", { ellipse: stated(survey) }));
   const ratio = sigmas === null ? "" : t("residual-sigma", { value: decimal(sigmas, 1) });
+  if (ratio) parts.push("");
   return html`<span class="quiet">${parts.join(" · ")}</span> ${
       ratio
         ? html`<span class=${outlier ? "bad" : "quiet"}>${outlier ? "⚠ " : ""}${ratio}</span>`

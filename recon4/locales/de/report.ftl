@@ -40,6 +40,7 @@ accuracy =
     .position = Position, größte Standardabweichung (1σ)
     .position_earth = { $value } cm auf der Erde
     .position_start = { $value } cm relativ zum Start
+    .position_site = { $value } cm im Baustellennetz
     .shape = Form des Weges, erwarteter RMS
     .shape_value = { $value } cm
     .thickness = Dicke ebener Flächen (1σ), Median / 95 %
@@ -105,6 +106,8 @@ text =
     .thickest = Wo ebene Flächen am dicksten sind:
     .settings = Einstellungen, die von der Voreinstellung { $preset } abweichen:
     .settings_none = Alle Einstellungen sind die der Voreinstellung { $preset }.
+    .axes = Achsen in Metern: x Ost, y Nord, z nach oben vom Ursprung der Karte, er ist E { $east } N { $north } H { $up } in { $crs }. Der Balken unter einer Zeichnung ist ihr Maßstab.
+    .axes_local = Achsen in Metern im lokalen System der Karte, z nach oben, vom Beginn der Begehung aus. Der Balken unter einer Zeichnung ist ihr Maßstab.
     .control = Restfehler sind Karte minus Vermessung. Passpunkte haben die Karte platziert; nur Kontrollpunkte beurteilen sie. „Gefunden ab“ ist der kleinste Fehler eines Punktes, den die anderen gezeigt hätten.
     .people = Was Menschen an die Karte geheftet und in ihr gemessen haben, mit ihren Namen. Es ist nicht Teil der Freigabe.
 

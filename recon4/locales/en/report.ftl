@@ -40,6 +40,7 @@ accuracy =
     .position = Position, largest standard deviation (1σ)
     .position_earth = { $value } cm on the earth
     .position_start = { $value } cm relative to the start
+    .position_site = { $value } cm in the grid of the site
     .shape = Shape of the walk, expected RMS
     .shape_value = { $value } cm
     .thickness = Thickness of flat surfaces (1σ), median / 95 %
@@ -105,6 +106,8 @@ text =
     .thickest = Where flat surfaces are thickest:
     .settings = Settings that differ from the preset { $preset }:
     .settings_none = All settings are those of the preset { $preset }.
+    .axes = Axes in meters: x east, y north, z up from the origin of the map, which is E { $east } N { $north } H { $up } in { $crs }. The bar below a drawing is its scale.
+    .axes_local = Axes in meters in the local frame of the map, z up, from where the walk began. The bar below a drawing is its scale.
     .control = Residuals are map minus survey. Control points placed the map; only check points judge it. “Found from” is the smallest error of a point that the others would have shown.
     .people = What people pinned to the map and measured in it, with their names. It is not part of the approval.
 

@@ -50,3 +50,7 @@ def test_residuals_that_are_larger_than_stated_are_said_beyond_chance():
     assert "The residuals are 3.1 times as large as stated; up to 1.8" in outcome_text(
         replace(found, sd0=3.1)
     )
+
+
+def test_what_is_rounded_to_zero_has_no_sign():
+    assert "-0.0" not in outcome_text(outcome((-0.0004, 0.0, -0.0)))

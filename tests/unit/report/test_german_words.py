@@ -34,9 +34,11 @@ def test_accuracy_and_blunders_at_control_points_are_german(kind):
 
     section = control_section({"control": msgspec.to_builtins(outcome)}, SAY)
     said = " ".join(f"{row.label} {row.value}" for row in section.rows)
+    labels = [row.label for row in section.rows if row.label]
 
     assert "RMSE_H = 5,2 cm an Kontrollpunkten (Anzahl: 1)" in said and "Lage 1 und Höhe 1" in said
     assert not re.search(r"\b(the|and|of|is|are|have)\b", said), said
+    assert len({*labels}) == len(labels), "each label once"
     assert known.said("de") in said, "read from the file as it is said at once"
     if kind in {BlunderKind.POINT, BlunderKind.OFFSET}:
         assert "0,374 m (+0,100 E, +0,200 N, -0,300 H)" in said
