@@ -21,7 +21,7 @@ MOVED_M, FAR_M = 0.045, 2.0
 
 def projects(root):
     for moved_m in (FAR_M, 0.0, MOVED_M):
-        build_project(root / "office", points=150_000, normals=True, moved_m=moved_m)
+        build_project(root / "office", points=60_000, normals=True, moved_m=moved_m)
 
 
 server = served(projects)
@@ -40,7 +40,7 @@ def on_canvas(page, *, color):
 def shown(page, points):
     """Wait until that many points are drawn."""
     text = f"{points:,}".replace(",", ".")  # any narrow space
-    expect(page.locator("#status .shown")).to_have_text(re.compile(f"^{text} of 150.000 points$"))
+    expect(page.locator("#status .shown")).to_have_text(re.compile(f"^{text} of 60.000 points$"))
 
 
 @looks("desktop light")
@@ -74,7 +74,7 @@ def test_the_map_before_the_last_one_is_shown_as_differences(server, page):
     shown(page, counts["core_points"])
     expect(colors.locator(".ends")).to_contain_text("200 mm in front")
     panel.get_by_role("button", name="This map only").click()
-    shown(page, 150_000)
+    shown(page, 60_000)
     expect(colors.get_by_label("Color by")).to_be_visible()
     assert on_canvas(page, color="red") < 50
 
