@@ -151,7 +151,7 @@ def _what(assessed: Assessment, tiles: TileSet | None, words: Words) -> list[Row
 def _where(assessed: Assessment, tiles: TileSet | None, words: Words) -> list[Row]:
     crs = assessed.facts.crs
     local = "front.crs_local_level" if assessed.results.placement.is_leveled else "front.crs_local"
-    out = [Row(words("front.crs"), shown(crs) if crs else words(local))]
+    out = [Row(words("front.crs"), words.term(shown(crs)) if crs else words(local))]
     controlled = control_in(assessed.results.georeference) is not None
     heights = words(f"heights.{height_system(crs, controlled=controlled)}", crs=shown(crs))
     out.append(Row(words("front.heights"), heights))

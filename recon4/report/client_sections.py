@@ -66,7 +66,7 @@ def _drawings(assessed: Assessment, drawings: MapDrawings, words: Words) -> Sect
     text = words("text.axes_local")
     if isinstance(crs, Mapping) and "origin_m" in crs:
         east, north, up = (words.number(value, 3) for value in crs["origin_m"])
-        name = shown(assessed.facts.crs)
+        name = words.term(shown(assessed.facts.crs))
         text = words("text.axes", east=east, north=north, up=up, crs=name)
     return Section(title=title, text=(text,), drawings=drawn)
 
@@ -95,7 +95,8 @@ def _sensors(assessed: Assessment, words: Words) -> Section:
 def _coordinates(assessed: Assessment, words: Words) -> Section:
     """Leveling, CRS with datum, geoid and factors, and the residuals of the positions."""
     results = assessed.results
-    rows = [Row(words("front.crs"), shown(assessed.facts.crs))] if assessed.facts.crs else []
+    crs = words.term(shown(assessed.facts.crs))
+    rows = [Row(words("front.crs"), crs)] if crs else []
     # The points have a section of their own.
     placed = placed_rows(results.georeference, words.language, points=False)
     rows += _rows([(name, text) for name, text in placed if name != "CRS: name" or not rows], words)

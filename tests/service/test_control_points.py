@@ -37,6 +37,7 @@ def test_control_points_are_looked_at_kept_and_judged(server):
 
     assert (preview["crs"], projected["crs"]) == ("", "EPSG:32633")
     assert preview["table"]["question"].startswith("is 0.02 the easting")
+    assert (preview["lies"], projected["lies"]) == ("map", "")
     assert kept.status_code == 200
     assert report["rows"][0]["east_m"] == pytest.approx(-0.02)
     assert report["passed"] is None and report["outdated"] == []

@@ -76,9 +76,13 @@ export function siteSection(host, id) {
           : nothing
       }
       ${triedTable(points)} ${forbidden.length ? nothing : decision()}
-      <ul class="quiet statements">
-        ${remarks.map((one) => html`<li>${one}</li>`)}
-      </ul>
+      ${
+        forbidden.length // of points that contradict each other nothing more is said
+          ? nothing
+          : html`<ul class="quiet statements">
+              ${remarks.map((one) => html`<li>${one}</li>`)}
+            </ul>`
+      }
       <details class="folded">
         <summary>${t("all-figures")}</summary>
         <pre class="scroll" tabindex="0" aria-label=${t("residuals-after-fit")}>${text}</pre>
