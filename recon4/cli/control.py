@@ -56,14 +56,11 @@ def control_points(
     Exit code 1 if a blunder of control points is suspected; the map is then not put on them.
     """
     confine_command(write=[project])
-    from recon4.model.site_control import SiteControl
     from recon4.slices.site_control import require_agreement, trial_text
     from recon4.slices.stored_picks import as_stored, keep_seen_picks
 
     if not survey:
-        if not apply or picks or crs:
-            raise ConfigError(CodedText("control-no-survey"))
-        _make_again(project, SiteControl(targets=(), crs=""))
+        _take_off(project, asked=apply and not (picks or crs))
         return
     points, crs = surveyed_points(survey[0], crs)
     if survey[1:]:
@@ -77,6 +74,15 @@ def control_points(
         if picks is None:
             keep_seen_picks(project, trial.control, as_stored(project).picks)
         _make_again(project, trial.control)
+
+
+def _take_off(project: Path, *, asked: bool) -> None:
+    """Make the map again without the points it was put on."""
+    from recon4.model.site_control import SiteControl
+
+    if not asked:
+        raise ConfigError(CodedText("control-no-survey"))
+    _make_again(project, SiteControl(targets=(), crs=""))
 
 
 def surveyed_points(survey: Path, crs: str) -> tuple[tuple[ControlPoint, ...], str]:
