@@ -212,6 +212,11 @@ def _job(row: sa.Row[Any]) -> Job:
         )
 
 
+_CELLS = [msgspec.json.Decoder(kind) for kind in (Inputs, ExportedFile, JobReason)]
+"""Makes the types known before threads convert to them: msgspec 0.22 ends the process if two do so
+at the first use of a dataclass."""
+
+
 def _whole_job(row: sa.Row[Any]) -> Job:
     inputs = msgspec.convert(parse_object(row.inputs, "inputs"), Inputs)
     made = msgspec.convert(parse_object(row.made, "made"), ExportedFile) if row.made else None
