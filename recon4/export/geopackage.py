@@ -83,12 +83,15 @@ def write_geopackage(
         changed: Time of the contents, ISO 8601 UTC: the same map gives the same bytes.
 
     Raises:
+        NoSpace: If the disk is full.
         StoreError: If it cannot be written, or reads back wrong.
     """
     with atomic_file(path) as temporary:
         try:
-            with closing(sqlite3.connect(temporary, isolation_level=None)) as file:
+            # SQLite does not say that a file may not grow further: the system does.
+            with closing(sqlite3.connect(":memory:", isolation_level=None)) as file:
                 _write(file, layers, place, changed=changed)
+                temporary.write_bytes(file.serialize())
             count = _count(temporary, layers)
         except sqlite3.Error as error:
             raise StoreError(
@@ -107,8 +110,6 @@ def _write(
     *,
     changed: str,
 ) -> None:
-    # The file is a temporary one until it is complete: it needs no journal of its own.
-    file.execute("PRAGMA journal_mode = OFF")
     file.execute(f"PRAGMA application_id = {GEOPACKAGES.application_id}")
     file.execute(f"PRAGMA user_version = {GEOPACKAGES.version}")
     file.execute("BEGIN")

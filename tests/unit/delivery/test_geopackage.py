@@ -9,7 +9,7 @@ import pyogrio
 import pytest
 
 from recon4.delivery.exports import export_file
-from recon4.errors import StoreError
+from recon4.errors import NoSpace, StoreError
 from recon4.export.geopackage import Feature, FeatureLayer, write_geopackage
 from recon4.export.options import ExportOptions
 from recon4.findings.wording import said
@@ -25,6 +25,7 @@ from recon4.store.project import read_artifacts
 from recon4.store.seal import changing
 from recon4_app.annotations.model import NewNote
 from recon4_app.annotations.store import add_note
+from tests.full_disk import files_end_at
 from tests.project_builder import build_project, loop_walk, write_summary
 
 WALK = loop_walk()
@@ -159,6 +160,13 @@ def test_a_local_map_has_no_system(tmp_path):
         assert file.execute("PRAGMA application_id").fetchone() == (0x47504B47,)
         bounds = file.execute("SELECT min_x, min_y, max_x, max_y FROM gpkg_contents").fetchone()
         assert bounds == (0.0, 0.0, 1.0, 2.0)
+
+
+def test_a_full_disk_is_named_and_leaves_nothing(tmp_path):
+    path = tmp_path / "a.gpkg"
+    with files_end_at(40_000), pytest.raises(NoSpace, match=f"writing {path};"):
+        write_geopackage(path, [_layer([[0, 0, 0]])], None, changed="2026-01-02T03:04:05Z")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_nothing_is_left_of_a_file_that_cannot_be_written(tmp_path):
