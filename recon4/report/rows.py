@@ -99,8 +99,10 @@ def imported_rows(report: Mapping[str, Any]) -> Rows:
             out += [(f"sensor {one.get('name', '')}", _sensor(one)) for one in value]
         elif name == "counts":
             out += [_count_row(count, value) for count in value]
+        elif value == []:
+            out.append((name, "none"))
         elif name == "gaps":
-            out.append(("gaps", f"{len(value)}" if value else "none"))
+            out.append(("gaps", f"{len(value)}"))
         elif name in {"imu", "gnss"}:
             out += _rows(value, f"{name.upper()}: ") if value else [(name.upper(), "none")]
         elif name == "duration_ns":
