@@ -43,8 +43,12 @@ class CheckedFile:
         return not (self.altered or self.missing or self.added or self.doubt)
 
 
-def check_file(path: Path) -> CheckedFile:
+def check_file(path: Path, trusted: TrustedKeys | None = None) -> CheckedFile:
     """Verify a delivery (ZIP, or the folder that it was unpacked to) or a PDF.
+
+    Args:
+        path: The file or folder.
+        trusted: Whose signatures count; None = of the place where it lies (`trusted_for`).
 
     Raises:
         ConfigError: If a PDF is given and the extra ``pdf`` is not installed.
@@ -53,17 +57,17 @@ def check_file(path: Path) -> CheckedFile:
         UnknownFormat: If it is something else.
     """
     if path.is_dir():
-        return _check_folder(path)
+        return _check_folder(path, trusted or trusted_for(path))
     with open_regular(path) as file:
         head = file.read(len(_ZIP))
     if head == _PDF:
-        return _check_pdf(path)
+        return _check_pdf(path, trusted or trusted_for(path))
     if head == _ZIP:
-        return _check_zip(path)
+        return _check_zip(path, trusted or trusted_for(path))
     raise UnknownFormat(CodedText("check-unknown", file=path.name))
 
 
-def _check_zip(path: Path) -> CheckedFile:
+def _check_zip(path: Path, trusted: TrustedKeys) -> CheckedFile:
     with open_zip(path) as (archive, entries):
         if MANIFEST not in entries:
             raise CorruptFile(CodedText("check-no-manifest", file=path.name, manifest=MANIFEST))
@@ -75,10 +79,10 @@ def _check_zip(path: Path) -> CheckedFile:
             if name in entries:
                 stored = blocks_of(archive, entries[name], most=listed.bytes, where=path.name)
                 found[name] = _hash(stored)
-        return _judged(manifest, found, set(entries), trusted=trusted_for(path))
+        return _judged(manifest, found, set(entries), trusted=trusted)
 
 
-def _check_folder(folder: Path) -> CheckedFile:
+def _check_folder(folder: Path, trusted: TrustedKeys) -> CheckedFile:
     """An unpacked delivery; links are files that do not belong there."""
     with open_regular(folder / MANIFEST) as file:
         manifest = read_manifest(file.read(DELIVERIES.max_manifest_bytes))
@@ -91,7 +95,7 @@ def _check_folder(folder: Path) -> CheckedFile:
     for name in manifest.files:
         if name in there and not unsafe_name(name) and not (folder / name).is_symlink():
             found[name] = _hash(_blocks(folder / name))
-    return _judged(manifest, found, there, trusted=trusted_for(folder))
+    return _judged(manifest, found, there, trusted=trusted)
 
 
 def _judged(
@@ -116,7 +120,7 @@ def _judged(
     )
 
 
-def _check_pdf(path: Path) -> CheckedFile:
+def _check_pdf(path: Path, trusted: TrustedKeys) -> CheckedFile:
     signatures = signatures_in(path)
     if not signatures:
         return CheckedFile(doubt="it is not signed: a draft, or not of recon4")
@@ -124,7 +128,7 @@ def _check_pdf(path: Path) -> CheckedFile:
     if broken or len(signatures) > 1:
         why = broken[0].why if broken else "it is signed more than once"
         return CheckedFile(altered=(f"{path.name}: {why}",))
-    signer, doubt = _pdf_signer(signatures[0], trusted_for(path))
+    signer, doubt = _pdf_signer(signatures[0], trusted)
     return CheckedFile(intact=(path.name,), signer=signer, doubt=doubt)
 
 
@@ -139,7 +143,7 @@ def _pdf_signer(one: SignedBy, trusted: TrustedKeys) -> tuple[str, str]:
 
 def _signer(signature: Mapping[str, str] | None, trusted: TrustedKeys) -> tuple[str, str]:
     if signature is None:
-        return "", "it is not signed"
+        return "", CodedText("check-not-signed")
     return _named(signature["public_key"], trusted)
 
 

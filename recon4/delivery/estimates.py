@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from recon4.delivery.kinds import ExportEstimate, ExportKind, kind_named
+from recon4.delivery.kinds import (
+    DELIVERY,
+    KINDS,
+    ExportEstimate,
+    ExportKind,
+    checked_kind,
+    kind_named,
+)
 from recon4.export.expected import expected_points
 from recon4.export.map_files import map_to_export
 from recon4.export.options import ExportOptions
 from recon4.mapping.tiles import TileSet
+from recon4.report.pdf import require_pdf
 from recon4.slices.map_crs import frame_of
 
 
@@ -48,6 +56,37 @@ def estimate_export(
         is_most=False,
         sorted_bytes=round(points * kind.sorted_bytes),
     )
+
+
+def estimate_delivery(
+    artifacts: Mapping[str, Path],
+    kind_names: Sequence[str],
+    options: ExportOptions,
+    *,
+    packed_bytes: int,
+) -> ExportEstimate:
+    """Estimate a delivery: its files lie beside the ZIP while it is packed.
+
+    Args:
+        artifacts: Of the run; it has a map.
+        kind_names: Of `recon4.delivery.kinds.KINDS`, made now.
+        options: Their CRS.
+        packed_bytes: Size of the files that were exported before.
+
+    Raises:
+        ConfigError: If the extra ``pdf`` is not installed, or as `estimate_export`.
+        GeoreferenceError, StoreError: As `estimate_export`.
+    """
+    require_pdf()
+    checked_kind(DELIVERY, options)
+    parts = []
+    for name in kind_names:
+        taken = ExportOptions(crs=options.crs if "crs" in KINDS[name].takes else "")
+        parts.append(estimate_export(artifacts, name, taken))
+    size = packed_bytes + sum(one.bytes for one in parts)
+    beside = size + max((one.sorted_bytes for one in parts), default=0)
+    is_most = any(one.is_most and one.bytes for one in parts)
+    return ExportEstimate(points=0, bytes=size, is_most=is_most, sorted_bytes=beside)
 
 
 def _point_bytes(kind: ExportKind, points: int, of_points: int) -> float:

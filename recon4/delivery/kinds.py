@@ -38,6 +38,8 @@ class ExportKind:
     """Usual bytes of a point of a whole map; 0 = it has none. Measured: docs/how-to/deliver.md."""
     thinned_bytes: float = 0.0
     """The same where thinning leaves one point of 32: neighbors are less alike. 0 = as many."""
+    with_notes: bool = False
+    """Whether it holds what people add to a finished map: another one each time."""
     sorted_bytes: float = 0.0
     """Bytes of a point in the temporary files that sort the points; 0 = there are none."""
 
@@ -141,11 +143,21 @@ KINDS: dict[str, ExportKind] = {
         _kind("poses.txt", "Poses, KITTI", "SLAM tools", group=_LISTS, takes=_ALWAYS),
         _kind("findings.csv", "Findings, CSV", "spreadsheets", group=_LISTS, takes=()),
         _kind("layers.gpkg", "Trajectory, points, findings, notes, double walls, GeoPackage",
-              "QGIS", group=_LISTS, takes=("crs",)),
+              "QGIS", group=_LISTS, takes=("crs",), with_notes=True),
         _kind("findings.geojson", "Findings, GeoJSON", "GIS", group=_LISTS, takes=()),
     )
 }  # fmt: skip
 """Name -> kind, in the order in which pages list them."""
+
+DELIVERY = _kind("delivery.zip", "Delivery, ZIP", "the client", group="Delivery", takes=("crs",),
+                 with_notes=True)  # fmt: skip
+"""Other kinds, report and license in one file: `recon4.delivery.package`."""
+
+
+def title_of(name: str) -> str:
+    """What a kind is called; the name itself of what is none now."""
+    found = DELIVERY if name == DELIVERY.name else KINDS.get(name)
+    return found.title if found else name
 
 
 def kind_named(name: str, options: ExportOptions) -> ExportKind:
@@ -156,7 +168,15 @@ def kind_named(name: str, options: ExportOptions) -> ExportKind:
     """
     if name not in KINDS:
         raise ConfigError(CodedText("deliver-kind", kinds=", ".join(KINDS), name=visible(name)))
-    kind = KINDS[name]
+    return checked_kind(KINDS[name], options)
+
+
+def checked_kind(kind: ExportKind, options: ExportOptions) -> ExportKind:
+    """The kind, which takes these options.
+
+    Raises:
+        ConfigError: If it takes no such option.
+    """
     for option in options.changed:
         if option not in kind.takes:
             raise ConfigError(CodedText("deliver-option", title=kind.title, option=option))

@@ -6,7 +6,7 @@ import shutil
 import stat
 import tempfile
 import zipfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
@@ -17,6 +17,7 @@ from recon4.delivery.check import CheckedFile, check_file
 from recon4.delivery.exports import WantedFile, write_kind
 from recon4.delivery.hostile_zip import unsafe_name
 from recon4.delivery.kinds import KINDS
+from recon4.delivery.made_files import MadeFile, copy_made, named, refuse_other_maps
 from recon4.delivery.manifest import MANIFEST, DeliveredFile, DeliveryManifest, manifest_text
 from recon4.delivery.pdf_signature import Organization
 from recon4.delivery.report_files import (
@@ -62,7 +63,9 @@ class DeliveryWish:
     """What is packed, and how."""
 
     files: Sequence[str] = USUAL
-    """Names, of `CHOICES`."""
+    """Names, of `CHOICES`; they are made now."""
+    made: Sequence[MadeFile] = ()
+    """Files that were exported before."""
     crs: str = ""
     """Code of the CRS of maps; empty = that of the map."""
     license: Path | None = None
@@ -93,6 +96,8 @@ class _Map:
     state: ApprovalState
     approval: Approval | None
     export: MapToExport
+    made: Mapping[str, MadeFile]
+    """Files that were exported before, by their names in the delivery."""
     plans: FittedPlans = field(default_factory=FittedPlans)
 
 
@@ -127,7 +132,9 @@ def deliver(project: Path, out: Path, wish: DeliveryWish, *, progress: Progress)
         text = manifest_text(_manifest(map_, listed), key)
         write_text(folder / MANIFEST, text)
         with atomic_file(out) as temporary:
-            _pack(folder, [README, MANIFEST, *(n for n in names if n != README)], temporary)
+            packed = [README, MANIFEST, *(n for n in names if n != README)]
+            _pack(folder, packed, temporary, progress=progress)
+            progress.start("compare", 0, "files")
             _compare(check_file(temporary), listed)
     return Delivered(tuple(names), out.stat().st_size, signed, map_.state)
 
@@ -162,9 +169,11 @@ def _open(project: Path, wish: DeliveryWish) -> _Map:
     if "map" not in artifacts:
         raise StoreError(CodedText("deliver-no-map", project=str(project)))
     state, approval = checked_approval(project, draft=False)
+    refuse_other_maps(wish.made, artifacts["map"].name, state.text)
     evidence = approval.evidence if approval else None
     options = ExportOptions(crs=wish.crs)
-    return _Map(project, state, approval, map_to_export(artifacts, evidence, options))
+    export = map_to_export(artifacts, evidence, options)
+    return _Map(project, state, approval, export, named(wish.files, wish.made))
 
 
 @contextmanager
@@ -196,10 +205,15 @@ def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Prog
     draft = map_.approval is None
     for name in wish.files:
         _write_export(name, folder / name, map_, crs=wish.crs, progress=progress)
-    rows = [Row(name, FileDigest.of(folder / name).sha256) for name in wish.files]
+    for name, made in map_.made.items():
+        copy_made(made, folder / name, progress=progress)
+    files = (*wish.files, *map_.made)
+    rows = [Row(name, FileDigest.of(folder / name).sha256) for name in files]
     if wish.license is not None:
         shutil.copyfile(wish.license, folder / LICENSE)
     key = wish.certificate or wish.key
+    progress.start("report", 0, "files")
+    progress.advance(0)  # a request to stop counts before the long work
     report = ReportWish(language=wish.language, draft=draft, key=key, files=rows)
     write_pdf(map_.project, folder / REPORT_PDF, report)
     write_html(map_.project, folder / REPORT_HTML, draft=draft)
@@ -245,11 +259,15 @@ def _heights(project: Path, wish: DeliveryWish, texts: Words) -> str:
     return texts(f"heights.{height_system(crs, controlled=controlled)}", crs=visible(crs))
 
 
+def _spaced(count: int) -> str:
+    return f"{count:,}".replace(",", " ")
+
+
 def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words, name: str) -> None:
     """What is in the delivery and how it is checked, in plain words."""
     summary = read_summary(map_.project) or {}
     kinds = {REPORT_PDF: "report_pdf", REPORT_HTML: "report_html", LICENSE: "license"}
-    points = f"{len(map_.export.tiles):,}".replace(",", " ")
+    points = _spaced(len(map_.export.tiles))
     lines = [texts("readme.title", title=visible(str(summary.get("name", "")))), ""]
     lines.append(texts("readme.state", state=said_state(map_.state, texts)))
     crs = wish.crs or str(summary.get("crs") or "") or texts("front.crs_local")
@@ -257,8 +275,13 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
     lines.append(texts("readme.heights", heights=_heights(map_.project, wish, texts)))
     lines += ["", texts("readme.what"), ""]
     for one in sorted(path.name for path in folder.iterdir()):
-        kind = kinds.get(one, {"map": "cloud"}.get(one.partition(".")[0], one.partition(".")[0]))
-        lines.append(f"  {one:<16} {texts(f'readme.{kind}', points=points)}")
+        made = map_.made.get(one)
+        stem = (made.kind if made else one).partition(".")[0]
+        kind = kinds.get(one, {"map": "cloud"}.get(stem, stem))
+        count = _spaced(made.made.points) if made else points
+        line = f"  {one:<16} {texts(f'readme.{kind}', points=count)}"
+        chosen = made.chosen if made else ""
+        lines.append(line + (f" {texts('readme.chosen', options=chosen)}" if chosen else ""))
     lines.append(f"  {MANIFEST:<16} {texts('readme.manifest')}")
     lines += ["", texts("readme.check", name=name), "", texts("readme.check_by_hand"), ""]
     if map_.approval is not None and wish.key is not None:
@@ -270,8 +293,9 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
     write_text(folder / README, "\n".join(lines) + "\n")
 
 
-def _pack(folder: Path, names: Sequence[str], out: Path) -> None:
+def _pack(folder: Path, names: Sequence[str], out: Path, *, progress: Progress) -> None:
     """Write the ZIP, streaming; compressed formats are stored as they are."""
+    progress.start("pack", sum((folder / name).stat().st_size for name in names), "bytes")
     with zipfile.ZipFile(out, "w", allowZip64=True) as archive:
         for name in names:
             path = folder / name
@@ -281,7 +305,9 @@ def _pack(folder: Path, names: Sequence[str], out: Path) -> None:
             entry.compress_type = zipfile.ZIP_STORED if packed else zipfile.ZIP_DEFLATED
             entry.file_size = path.stat().st_size
             with path.open("rb") as source, archive.open(entry, "w") as target:
-                shutil.copyfileobj(source, target, DELIVERIES.block_bytes)
+                while block := source.read(DELIVERIES.block_bytes):
+                    target.write(block)
+                    progress.advance(len(block))
 
 
 def _compare(found: CheckedFile, listed: dict[str, DeliveredFile]) -> None:

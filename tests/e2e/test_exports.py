@@ -1,13 +1,15 @@
 """Files of the map from the page of its project."""
 
 import re
+import zipfile
 
 import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from recon4.review.trusted_keys import ensure_own_key
 from tests.e2e.conftest import leave_out_viewer, looks, one_look
-from tests.project_builder import build_project
+from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
@@ -17,6 +19,9 @@ pytestmark = pytest.mark.e2e
 def server(tmp_path_factory):
     root = tmp_path_factory.mktemp("projects")
     build_project(root / "office", points=5_000, strays=3)
+    build_project(root / "house", points=5_000)
+    ensure_own_key(root / ".recon4")
+    approve_project(root / "house", root / ".recon4/signing.key", who="J. Novák")
     with server_thread(root) as running:
         yield running
 
@@ -93,3 +98,46 @@ def test_the_part_that_the_page_map_shows_is_exported_and_the_way_leads_back(
     panel.get_by_role("button", name="All of the map").click()
     expect(part).to_have_count(0)
     assert page.url == f"{server.url}/projects/office/"
+
+
+@one_look
+def test_a_delivery_is_chosen_packed_downloaded_and_verified_on_the_page(
+    server, page, screenshot, tmp_path
+):
+    leave_out_viewer(page)
+    page.goto(f"{server.url}/projects/house/")
+    panel = page.locator("export-panel")
+    kind = panel.get_by_role("combobox", name="File")
+    kind.select_option("map.ply")
+    panel.get_by_label("Thin out").fill("300")
+    panel.get_by_role("button", name="Make file").click()
+    rows = panel.locator(".exports > li")
+    expect(rows.first.get_by_role("link")).to_be_visible()
+    before = rows.count()
+
+    kind.select_option("delivery.zip")
+    now = panel.get_by_role("group", name="Made now, of the whole map")
+    for name in ("COPC", "Findings, CSV"):
+        now.get_by_role("checkbox", name=name, exact=True).uncheck()
+    expect(panel.get_by_role("alert").first).to_contain_text("at least one file")
+    now.get_by_role("checkbox", name="LAZ", exact=True).check()
+    panel.get_by_role("group", name="Exported before").get_by_role("checkbox").first.check()
+    panel.get_by_label("License of the data").fill("CC BY 4.0")
+    panel.get_by_role("combobox", name="Language").select_option("de")
+    expect(panel.get_by_role("status").first).to_contain_text("About ")
+    panel.locator("button.primary").evaluate("button => button.scrollIntoView(false)")
+    screenshot(page, "delivery")
+    panel.get_by_role("button", name="Make file").click()
+    row = rows.first
+    expect(rows).to_have_count(before + 1)
+    row.get_by_role("button", name="Verify").click()
+    expect(row).to_contain_text("✓ 6 files are intact")
+    expect(row).to_contain_text(re.compile("Signed by this server, key [0-9a-f]+"))
+    expect(row).to_contain_text("map.laz, map.ply · German · with a license")
+    row.evaluate("row => row.scrollIntoView({ block: 'center' })")
+    screenshot(page, "delivery-verified")
+    with page.expect_download() as download:
+        row.get_by_role("link", name="Delivery, ZIP").click()
+    assert download.value.suggested_filename == "house-delivery.zip"
+    with zipfile.ZipFile(download.value.path()) as packed:
+        assert {"map.laz", "map.ply", "LICENSE.txt", "report.pdf"} < set(packed.namelist())

@@ -6,6 +6,7 @@ import { badge } from "../shared/badge.js";
 import { html, nothing, repeat } from "../shared/dom.js";
 import { bytes, when } from "../shared/format.js";
 import { t, wordOf } from "../shared/texts.js";
+import { deliveryWords } from "./delivery_check.js";
 import { optionWords } from "./export_options.js";
 import { stepText } from "./steps.js";
 
@@ -41,9 +42,14 @@ export const exportList = (project, rows, known, actions) =>
  */
 function exportRow(project, row, known, actions) {
   const open = row.state === "queued" || row.state === "running";
-  const words = optionWords(row.options, known.classes);
+  const packed = row.delivery ? deliveryWords(row.delivery) : [];
+  const words = [...packed, ...optionWords(row.options, known.classes)];
   const { made } = row;
-  const facts = [made && contents(made), row.person, when(row.finished || row.created)];
+  const facts = [
+    made && contents(made, Boolean(row.delivery)),
+    row.person,
+    when(row.finished || row.created),
+  ];
   const name = wordOf("export", row.title);
   const title =
     made && row.kept
@@ -59,6 +65,9 @@ function exportRow(project, row, known, actions) {
     ${words.length ? html`<p class="quiet">${words.join(" · ")}</p>` : nothing}
     <p class="quiet">${facts.filter(Boolean).join(" · ")}</p>
     ${made ? details(row) : nothing} ${row.note ? html`<p class="quiet">${row.note}</p>` : nothing}
+    ${
+      row.delivery && row.kept ? html`<delivery-check .export=${row.id}></delivery-check>` : nothing
+    }
     <div class="buttons">
       ${open && known.mine(row) ? button(t("cancel"), () => actions.cancel(row)) : nothing}
       ${row.kept && known.mine(row) ? button(t("remove-file"), () => actions.remove(row)) : nothing}
@@ -67,8 +76,10 @@ function exportRow(project, row, known, actions) {
 }
 
 /** What is in a file, in the language of the page; its record says it in English. */
-const contents = (/** @type {NonNullable<ExportView["made"]>} */ { points, text }) =>
-  points ? t("made-points", { points }) : text;
+const contents = (
+  /** @type {NonNullable<ExportView["made"]>} */ { points, text },
+  /** @type {boolean} */ isDelivery,
+) => (points ? t("made-points", { points }) : isDelivery ? "" : text);
 
 const stepName = (/** @type {string} */ what) =>
   what ? wordOf("export", stepText(what)) : t("starting");

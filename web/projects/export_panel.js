@@ -24,6 +24,13 @@ import {
 import { bytes, shareText } from "../shared/format.js";
 import { t, wordOf } from "../shared/texts.js";
 import { clipLines, clipOfAddress, clipWords, comesFromMap, forgetClip } from "./export_clip.js";
+import {
+  DELIVERY,
+  deliveryFields,
+  deliveryOf,
+  takeField,
+  usualDelivery,
+} from "./delivery_fields.js";
 import { exportList } from "./export_list.js";
 import { clipBoxOf, orderOf, usual } from "./export_options.js";
 
@@ -37,6 +44,7 @@ const CORNERS = [t("box-from-x"), "y", "z", t("box-to-x"), "y", "z"];
 
 export class ExportPanel extends HTMLElement {
   #chosen = { ...usual(), clip: clipOfAddress() };
+  #packed = usualDelivery();
   /** @type {ExportChoices | null} */
   #choices = null;
   /** @type {ExportView[]} */
@@ -132,6 +140,7 @@ export class ExportPanel extends HTMLElement {
         </select>
       </label>
       ${this.#clip(takes("clip"))}
+      ${kind.name === DELIVERY ? deliveryFields(this.#packed, choices, this.#rows) : nothing}
       ${takes("classes") ? this.#points(choices, takes("all_points")) : nothing}
       ${takes("storey") && choices.storeys.length ? this.#storey(choices, kind) : nothing}
       ${takes("thin_m") ? this.#number("thin", t("thin-out"), t("thin-all")) : nothing}
@@ -290,6 +299,7 @@ export class ExportPanel extends HTMLElement {
   #change = (/** @type {Event} */ event) => {
     const field = targetOf(event);
     const { name, value, checked } = field;
+    if (takeField(this.#packed, field)) return this.#renew();
     if (name === "class") {
       const others = this.#chosen.classes.filter((code) => code !== Number(value));
       this.#chosen.classes = checked ? [...others, Number(value)] : others;
@@ -321,7 +331,7 @@ export class ExportPanel extends HTMLElement {
     const asked = ++this.#asked;
     let estimate = "";
     try {
-      const found = await estimateExport(idHere(), orderOf(this.#chosen, kind));
+      const found = await estimateExport(idHere(), this.#order(kind));
       if (asked === this.#asked) say(this.#message(), "");
       const points = found.points ? [t("estimate-points", { points: found.points })] : [];
       const most = found.is_most ? "estimate-most" : "estimate-size";
@@ -339,8 +349,15 @@ export class ExportPanel extends HTMLElement {
   #submit = (/** @type {Event} */ event) => {
     event.preventDefault();
     const kind = this.#kind;
-    if (kind) this.#act(() => orderExport(idHere(), orderOf(this.#chosen, kind)));
+    if (kind) this.#act(() => orderExport(idHere(), this.#order(kind)));
   };
+
+  /** What the server is asked for; throws an error with words if a field cannot be read. */
+  #order(/** @type {ExportKind} */ kind) {
+    const order = orderOf(this.#chosen, kind);
+    if (kind.name !== DELIVERY) return order;
+    return { ...order, delivery: deliveryOf(this.#packed, this.#rows) };
+  }
 
   async #act(/** @type {() => Promise<unknown>} */ action) {
     const done = await attempt(this.#message(), async () => {

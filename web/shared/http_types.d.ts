@@ -427,6 +427,22 @@ export interface Deleted {
   goes: string;
 }
 
+export interface DeliveryCheck {
+  intact: Array<string>;
+  altered: Array<string>;
+  missing: Array<string>;
+  added: Array<string>;
+  signer: string;
+  doubt: string;
+}
+
+export interface DeliveryOrder {
+  files: Array<string>;
+  exports: Array<PackedExport>;
+  license: string;
+  language: string;
+}
+
 export interface Difference {
   chi2_before: number;
   chi2_after: number;
@@ -544,6 +560,7 @@ export interface ExportKind {
   takes: Array<string>;
   point_bytes: number;
   thinned_bytes: number;
+  with_notes: boolean;
   sorted_bytes: number;
 }
 
@@ -564,6 +581,7 @@ export interface ExportOptions {
 export interface ExportOrder {
   file: string;
   options: ExportOptions;
+  delivery: DeliveryOrder | null;
 }
 
 export interface ExportView {
@@ -581,6 +599,7 @@ export interface ExportView {
   made: ExportedFile | null;
   kept: boolean;
   of_this_map: boolean;
+  delivery: DeliveryOrder | null;
 }
 
 export interface ExportedFile {
@@ -1020,9 +1039,17 @@ export interface NewDecision {
   seen_seq?: number | null;
 }
 
+export interface NewDelivery {
+  files?: Array<string>;
+  exports?: Array<string>;
+  license?: string;
+  language?: string;
+}
+
 export interface NewExport {
   file: string;
   options?: ExportOptions;
+  delivery?: NewDelivery | null;
 }
 
 export interface NewGuestLink {
@@ -1175,6 +1202,13 @@ export interface OtherMap {
   kind: "map" | "project";
   name: string;
   label: string;
+}
+
+export interface PackedExport {
+  id: string;
+  file: string;
+  options: ExportOptions;
+  made: ExportedFile;
 }
 
 export interface PairFacts {
@@ -2172,6 +2206,10 @@ export interface Operations {
   "GET /api/projects/{project_id}/exports/choices": {
     path: { project_id: string };
     response: ExportChoices;
+  };
+  "GET /api/projects/{project_id}/exports/{export_id}/check": {
+    path: { project_id: string; export_id: string };
+    response: DeliveryCheck;
   };
   "GET /api/projects/{project_id}/exports/{export_id}/file": {
     path: { project_id: string; export_id: string };

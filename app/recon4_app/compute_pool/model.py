@@ -27,7 +27,7 @@ class Lane(StrEnum):
     SURVEY = "survey"
     """References, control points, checks of the whole map."""
     SIGN = "sign"
-    """Approvals: the only lane whose children can read the signing key."""
+    """Approvals and reports: the only lane whose children can read the signing key."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,22 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from recon4.delivery.kinds import ExportedFile, ExportKind
 from recon4.export.options import ExportOptions
-from recon4_app.jobs.model import JobState
+from recon4_app.jobs.model import DeliveryOrder, JobState
+
+
+class NewDelivery(BaseModel):
+    """What is in a delivery, besides its report, README, hashes and signature."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    files: list[str] = Field(default=[], max_length=32)
+    """Kinds of files that are made now, of the whole map."""
+    exports: list[str] = Field(default=[], max_length=32)
+    """Ids of exports of the present map whose files are packed."""
+    license: str = Field(default="", max_length=100_000)
+    """Text of the license of the data; empty = none is given."""
+    language: str = Field(default="", max_length=16)
+    """Of the report and the README; empty = that of the request."""
 
 
 class NewExport(BaseModel):
@@ -20,6 +35,8 @@ class NewExport(BaseModel):
     """Kind of file: see `/api/projects/{project_id}/exports/choices`."""
     options: ExportOptions = ExportOptions()
     """What is written of the map; each kind of file takes some of them."""
+    delivery: NewDelivery | None = None
+    """What is in it, if the file is a delivery."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,3 +100,21 @@ class ExportView:
     """Whether the file can still be downloaded."""
     of_this_map: bool
     """Whether it was made of the map of the latest run."""
+    delivery: DeliveryOrder | None
+    """What is in a delivery; None = it is none."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeliveryCheck:
+    """What `recon4 verify` says of a delivery that was made here."""
+
+    intact: list[str]
+    """Files with the listed hash."""
+    altered: list[str]
+    missing: list[str]
+    added: list[str]
+    """Files that the list does not name."""
+    signer: str
+    """Whose signature it is; empty = no signature counts."""
+    doubt: str
+    """Why a signature does not count, or that there is none; empty = it counts."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from fastapi import APIRouter, Depends, Request
@@ -13,7 +14,7 @@ from fastapi.responses import FileResponse, JSONResponse
 from pydantic import TypeAdapter, ValidationError
 from starlette.concurrency import run_in_threadpool
 
-from recon4.delivery.kinds import KINDS, ExportEstimate
+from recon4.delivery.kinds import ExportEstimate, title_of
 from recon4.errors import StoreError
 from recon4.export.options import ExportOptions
 from recon4.locales.coded import CodedText, at
@@ -25,8 +26,9 @@ from recon4_app.deps import Server, ServerParts
 from recon4_app.error_responses import problems
 from recon4_app.errors import STORAGE, Conflict, NoRoom, NotFound
 from recon4_app.exports import export_work
+from recon4_app.exports.deliveries import checked, order_of
 from recon4_app.exports.equal_orders import equal_order
-from recon4_app.exports.model import ExportChoices, ExportView, NewExport
+from recon4_app.exports.model import DeliveryCheck, ExportChoices, ExportView, NewExport
 from recon4_app.exports.tuning import KEPT_EXPORTS
 from recon4_app.jobs.model import ExportOrder, Inputs, Job, JobKind
 from recon4_app.jobs.orders import add_order, find_order, latest_map_key, refuse_others
@@ -71,7 +73,7 @@ async def read_choices(project_id: str, *, server: Server, caller: CalledBy) -> 
         work: Callable[..., None] = export_work.write_choices
         await slices.run_interactive(made, work, artifacts, out, evidence=evidence)
 
-    name = f"{Path(artifacts['map']).name}-{Path(artifacts.get('level', '')).name[:16]}-exports-1"
+    name = f"{Path(artifacts['map']).name}-{Path(artifacts.get('level', '')).name[:16]}-exports-2"
     path = await caller.wait(slices.kept(f"{name}.json", make))
     return await run_in_threadpool(_read_choices, path)
 
@@ -81,7 +83,8 @@ async def estimate(
     project_id: str, new: NewExport, *, server: Server, caller: CalledBy
 ) -> ExportEstimate:
     """Say about how many points and bytes a file will have; what cannot be made is refused."""
-    return await _estimate(project_id, new, server=server, caller=caller)
+    wanted = await _wanted(project_id, new, server=server, caller=caller)
+    return await _estimate(project_id, wanted, server=server, caller=caller)
 
 
 @router.post(
@@ -98,14 +101,16 @@ async def order(
     """Add an export to the queue; it runs beside jobs that process.
 
     If the same one of this map waits, runs or is kept, that one is returned, with status 200.
+    A delivery, and a file with notes, is made again: people may have added to them.
     """
-    wanted = ExportOrder(file=new.file, options=new.options)
+    wanted = await _wanted(project_id, new, server=server, caller=caller)
     if same := await run_in_threadpool(equal_order, server, project_id, wanted):
         map_key = latest_map_key(server, project_id)
         row = _view(server, same, map_key, language=language_of(request))
         return JSONResponse(jsonable_encoder(row))
-    found = await _estimate(project_id, new, server=server, caller=caller)
-    return await run_in_threadpool(_add, project_id, new, server, request=request, expected=found)
+    found = await _estimate(project_id, wanted, server=server, caller=caller)
+    add = partial(_add, project_id, wanted, server, request=request, expected=found)
+    return await run_in_threadpool(add)
 
 
 @router.post("/{export_id}/cancel", responses=REFUSALS, summary="Cancel an export")
@@ -136,6 +141,23 @@ def download(project_id: str, export_id: str, server: Server) -> FileResponse:
     )
 
 
+@router.get(
+    "/{export_id}/check",
+    responses=problems(429),
+    dependencies=[Depends(at_most(60, within_s=3600.0, what="verifications"))],
+    summary="Verify a delivery",
+)
+async def check(
+    project_id: str, export_id: str, *, server: Server, caller: CalledBy
+) -> DeliveryCheck:
+    """Read a delivery that was made here again: what is intact, and whose signature it has.
+
+    It says what ``recon4 verify`` says on a computer that trusts the keys of this server.
+    """
+    job = await run_in_threadpool(_export, server, project_id, export_id)
+    return await checked(server, job, caller=caller)
+
+
 @router.delete("/{export_id}/file", responses=REFUSALS, summary="Remove the file of an export")
 def remove(project_id: str, export_id: str, *, server: Server, request: Request) -> ExportView:
     """Remove a file; its row stays in the list."""
@@ -148,19 +170,26 @@ def remove(project_id: str, export_id: str, *, server: Server, request: Request)
     return _view(server, job, latest_map_key(server, project_id), language=language_of(request))
 
 
-async def _estimate(
+async def _wanted(
     project_id: str, new: NewExport, *, server: ServerParts, caller: Caller
+) -> ExportOrder:
+    look_up = partial(order_of, server, project_id, new, language=caller.language)
+    return await run_in_threadpool(look_up)
+
+
+async def _estimate(
+    project_id: str, wanted: ExportOrder, *, server: ServerParts, caller: Caller
 ) -> ExportEstimate:
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
     terms = replace(slices.terms(project_id, caller.name), limit_s=KEPT_EXPORTS.estimate_limit_s)
     work: Callable[..., ExportEstimate] = export_work.estimate
-    return await caller.wait(slices.run_interactive(terms, work, artifacts, new.file, new.options))
+    return await caller.wait(slices.run_interactive(terms, work, artifacts, wanted))
 
 
 def _add(
     project_id: str,
-    new: NewExport,
+    wanted: ExportOrder,
     server: ServerParts,
     *,
     request: Request,
@@ -168,7 +197,7 @@ def _add(
 ) -> ExportView:
     refuse_too_many(server)
     # Refuses an approval that does not count; one that counts is added to a copy of the file.
-    approved = server.slices.evidence(project_id, draft=new.options.draft) is not None
+    approved = server.slices.evidence(project_id, draft=wanted.options.draft) is not None
     beside = max(expected.sorted_bytes, approved * expected.bytes)
     reserve = server.settings.free_disk_reserve_bytes
     needed = expected.bytes + beside + reserve
@@ -178,9 +207,9 @@ def _add(
             CodedText("export-no-room", needed_bytes=needed, free_bytes=free),
             remedy=STORAGE,
         )
-    asked = Inputs(recordings=(), export=ExportOrder(file=new.file, options=new.options))
+    asked = Inputs(recordings=(), export=wanted)
     job = add_order(server, project_id, asked, request=request)
-    audit(request, "export", f"{project_id}: {new.file}")
+    audit(request, "export", f"{project_id}: {wanted.file}")
     return _view(server, job, latest_map_key(server, project_id), language=language_of(request))
 
 
@@ -198,7 +227,7 @@ def _view(server: ServerParts, job: Job, map_key: str, *, language: str) -> Expo
     return ExportView(
         id=job.id,
         file=file,
-        title=KINDS[file].title if file in KINDS else file,
+        title=title_of(file),
         options=job.inputs.export.options if job.inputs.export else ExportOptions(),
         state=job.state,
         person=job.person,
@@ -210,6 +239,7 @@ def _view(server: ServerParts, job: Job, map_key: str, *, language: str) -> Expo
         made=job.made,
         kept=server.exports.path(job) is not None,
         of_this_map=job.made is not None and job.made.map_key == map_key,
+        delivery=job.inputs.export.delivery if job.inputs.export else None,
     )
 
 

@@ -14,6 +14,8 @@ class KeptExportLimits(Struct, frozen=True, kw_only=True):
     """Of all files; the oldest are removed first."""
     listed: int = 200
     """Newest rows on the page of a project."""
+    check_limit_s: float = 600.0
+    """Longest time of the verification of a delivery [s]: 100 GB at 170 MB/s."""
     estimate_limit_s: float = 60.0
     """Longest time of an estimate [s]."""
 

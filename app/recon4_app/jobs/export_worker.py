@@ -1,6 +1,6 @@
 """The worker of an export: ``python -m recon4_app.jobs.export_worker JOB_FOLDER``.
 
-It may read its project only, and write its own folder only.
+It may read its project only, and write its own folder only; see `policy`.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from recon4.review.trusted_keys import STATE
 from recon4.sandbox import Policy
 from recon4.store.atomic import make_folders
 from recon4.system.stopping import end_process
+from recon4_app.jobs.delivery_work import pack, readable
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.jobs.tuning import WORKER_LIMITS
 from recon4_app.jobs.worker import main
@@ -42,6 +43,8 @@ def export(folder: JobFolder, progress: Progress) -> ExportedFile:
         raise NoSpace(CodedText("export-disk-full", reserve_bytes=reserve, free_bytes=free))
     make_folders(folder.made)
     try:
+        if order.delivery is not None:
+            return pack(folder, order, order.delivery, progress=progress)
         return export_file(
             request.project, order.file, folder.made, options=order.options, progress=progress
         )
@@ -50,11 +53,16 @@ def export(folder: JobFolder, progress: Progress) -> ExportedFile:
 
 
 def policy(folder: JobFolder) -> Policy:
-    """The sandbox policy: read the project and who may approve it, write the job's folder."""
+    """The sandbox policy: read the project and who may approve it, write the job's folder.
+
+    The worker of a delivery also reads the signing key, and the files that it packs.
+    """
     request = folder.request()
+    order = request.inputs.export
+    packed = readable(folder, order.delivery) if order and order.delivery else ()
     free = shutil.disk_usage(folder.path).free - request.limits.reserve_bytes
     return Policy(
-        read=(request.project, *judging_folders(request.project.parent / STATE)),
+        read=(request.project, *judging_folders(request.project.parent / STATE), *packed),
         write=(folder.path,),
         temporary=folder.temporary,
         memory_bytes=request.limits.memory_bytes,

@@ -51,12 +51,40 @@ TRANSITIONS: dict[JobState, frozenset[JobState]] = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class PackedExport:
+    """An export whose file goes into a delivery, as its row was when it was chosen."""
+
+    id: str
+    """Of its job."""
+    file: str
+    """Kind of file."""
+    options: ExportOptions
+    made: ExportedFile
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeliveryOrder:
+    """What is in a delivery, besides its report, hashes and signature."""
+
+    files: tuple[str, ...]
+    """Kinds of files that are made now."""
+    exports: tuple[PackedExport, ...] = ()
+    """Files that were exported before."""
+    license: str = ""
+    """Text of the license of the data; empty = none is given, which the README says."""
+    language: str
+    """Of the report and the README."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ExportOrder:
     """A file that is to be made."""
 
     file: str
-    """Kind of file: a name of `recon4.delivery.kinds.KINDS`."""
+    """Kind of file: a name of `recon4.delivery.kinds.KINDS`, or a delivery."""
     options: ExportOptions
+    delivery: DeliveryOrder | None = None
+    """What is in a delivery; None = it is none."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

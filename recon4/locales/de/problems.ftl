@@ -378,6 +378,7 @@ word-trash-project = ein Projekt
 word-trash-recording = eine Aufzeichnung
 word-started-jobs = Aufträge
 word-started-exports = Exporte
+word-started-verifications = Prüfungen von Lieferungen
 word-started-comparisons = Vergleiche
 word-started-target-searches = Suchen nach Zielmarken
 word-streams-assistant-calls = Aufrufe von Assistenten

@@ -73,6 +73,9 @@ step-2-d-odometry = 2-D-Odometrie
 step-grid = Raster
 step-loop-closures = Schleifenschlüsse
 step-classify-points = Punkte klassifizieren
+step-copy = kopieren
+step-report = Bericht
+step-pack = packen
 step-compare = Vergleichen
 step-export = Exportieren
 step-find-the-carrier = Träger finden
@@ -214,6 +217,26 @@ estimate-most = höchstens { $size }
 estimate-size = etwa { $size }
 estimate-none = kein Punkt der Karte ist ausgewählt
 export-nothing = Noch nichts exportiert.
+delivery-made-now = Jetzt erstellt, aus der ganzen Karte
+delivery-made-before = Schon exportiert
+delivery-license = Lizenz der Daten
+delivery-no-license = keine angegeben
+delivery-language = Sprache von Bericht und README
+delivery-choose = Mindestens eine Datei für die Lieferung auswählen.
+delivery-with-license = mit Lizenz
+delivery-without-license = ohne Lizenz
+delivery-verify = Prüfen
+delivery-verifying = Jede Datei wird gelesen…
+verify-intact = { $count ->
+    [one] { COUNT($count) } Datei ist unversehrt
+   *[other] { COUNT($count) } Dateien sind unversehrt
+    }
+verify-altered = Verändert:
+verify-missing = Fehlt:
+verify-added = Nicht in der Liste:
+verify-signed = Signiert von { $signer }
+verify-signer = { $name }, Schlüssel { $key }
+signer-this-server = diesem Server
 remove-file = Datei entfernen
 progress-file = Fortschritt dieser Datei
 export-waits = Wartet auf andere Exporte
@@ -245,6 +268,9 @@ option-draft = Entwurf
 
 ## Arten von Dateien
 
+export-delivery = Lieferung
+export-delivery-zip = Lieferung, ZIP
+program-the-client = für den Kunden
 export-point-cloud = Punktwolke
 export-drawings-and-images = Zeichnungen und Bilder
 export-tables-and-lines = Tabellen und Linien

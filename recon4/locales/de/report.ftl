@@ -184,6 +184,7 @@ readme =
     .manifest = Liste aller Dateien mit SHA-256, und ihre Signatur
     .license = Lizenz der Daten
     .cloud = die Karte: { $points } Punkte
+    .chosen = (gewählt mit: { $options })
     .poses = Posen des Scanners entlang des Weges, im lokalen System der Karte
     .findings = Befunde als Tabelle
     .plan = Grundrisse als Linien

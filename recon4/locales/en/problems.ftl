@@ -390,6 +390,7 @@ word-trash-project = project
 word-trash-recording = recording
 word-started-jobs = jobs
 word-started-exports = exports
+word-started-verifications = verifications of deliveries
 word-started-comparisons = comparisons
 word-started-target-searches = searches for targets
 word-streams-assistant-calls = calls of assistants

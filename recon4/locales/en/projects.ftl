@@ -73,6 +73,9 @@ step-2-d-odometry = 2-D odometry
 step-grid = Grid
 step-loop-closures = Loop closures
 step-classify-points = classify points
+step-copy = copy
+step-report = report
+step-pack = pack
 step-compare = compare
 step-export = export
 step-find-the-carrier = find the carrier
@@ -214,6 +217,26 @@ estimate-most = at most { $size }
 estimate-size = about { $size }
 estimate-none = no point of the map is chosen
 export-nothing = Nothing was exported yet.
+delivery-made-now = Made now, of the whole map
+delivery-made-before = Exported before
+delivery-license = License of the data
+delivery-no-license = none is given
+delivery-language = Language of report and README
+delivery-choose = Choose at least one file for the delivery.
+delivery-with-license = with a license
+delivery-without-license = without a license
+delivery-verify = Verify
+delivery-verifying = Every file is read…
+verify-intact = { $count ->
+    [one] { COUNT($count) } file is intact
+   *[other] { COUNT($count) } files are intact
+    }
+verify-altered = Altered:
+verify-missing = Missing:
+verify-added = Not in the list:
+verify-signed = Signed by { $signer }
+verify-signer = { $name }, key { $key }
+signer-this-server = this server
 remove-file = Remove file
 progress-file = Progress of this file
 export-waits = Waits for other exports
@@ -245,6 +268,9 @@ option-draft = draft
 
 ## Kinds of files
 
+export-delivery = Delivery
+export-delivery-zip = Delivery, ZIP
+program-the-client = for the client
 export-point-cloud = Point cloud
 export-drawings-and-images = Drawings and images
 export-tables-and-lines = Tables and lines

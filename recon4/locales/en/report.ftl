@@ -184,6 +184,7 @@ readme =
     .manifest = list of all files with SHA-256, and its signature
     .license = license of the data
     .cloud = the map: { $points } points
+    .chosen = (chosen by: { $options })
     .poses = poses of the scanner along the walk, in the local frame of the map
     .findings = findings as a table
     .plan = floor plans as lines

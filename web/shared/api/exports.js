@@ -33,6 +33,14 @@ export const cancelExport = (project_id, export_id) =>
  * @param {string} project_id
  * @param {string} export_id
  */
+export const checkDelivery = (project_id, export_id) =>
+  request("GET /api/projects/{project_id}/exports/{export_id}/check", {
+    path: { project_id, export_id },
+  });
+/**
+ * @param {string} project_id
+ * @param {string} export_id
+ */
 export const removeExport = (project_id, export_id) =>
   request("DELETE /api/projects/{project_id}/exports/{export_id}/file", {
     path: { project_id, export_id },
