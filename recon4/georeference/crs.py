@@ -199,7 +199,7 @@ def _system(name: str) -> Any:
     try:
         system = CRS.from_user_input(code_of(name))
     except CRSError as error:
-        raise GeoreferenceError(CodedText("crs-unknown", name=name, why=str(error))) from error
+        raise GeoreferenceError(CodedText("crs-unknown", name=name)) from error
     if not (system.is_projected or (system.is_compound and system.sub_crs_list[0].is_projected)):
         raise GeoreferenceError(CodedText("crs-no-projection", name=name, system=system.name))
     if any(axis.unit_name != "metre" for axis in system.axis_info):
