@@ -26,7 +26,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.free_space import VERDICT
 from recon4.kernels.seen_through import EVIDENCE, RangeViews, find_seen_through
 from recon4.kernels.things import Cubes, JudgedPoints, move_as_things, spread_to_neighbors
-from recon4.mapping.mirrors import Mirror, Sight, load_mirrors
+from recon4.mapping.mirrors import Mirror, Sight, load_mirrors, reflections
 from recon4.mapping.threads import in_order
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.mapping.undistort import place, place_with_origins
@@ -82,12 +82,14 @@ def classify(
         OutOfRange: If the trajectory does not cover the frames.
     """
     watch = progress or Silent()
-    carrier = _learn_carrier(frames, trajectory, watch)
+    carrier = _learn_carrier(frames, trajectory, mirrors, progress=watch)
     known = _Compared(frames, trajectory, carrier, mirrors)
     if ordered is None:
         found = _by_threads(known)
     else:
-        here = partial(_of_part, known=known, views=RegularViews(frames, trajectory))
+        here = partial(
+            _of_part, known=known, views=RegularViews(frames, trajectory, mirrors=mirrors)
+        )
         found = ordered.found(_parts(frames), carrier, here=here, progress=watch)
     made = chain.from_iterable(found)
     yield from track(made, watch, what="classify points", unit="frames", total=len(frames))
@@ -96,7 +98,7 @@ def classify(
 def _by_threads(known: _Compared) -> Iterator[Classes]:
     """Classes of the multiframes of each span."""
     frames = known.frames
-    views = RegularViews(frames, known.trajectory)
+    views = RegularViews(frames, known.trajectory, mirrors=known.mirrors)
     # Images of scans are made here, in order, so that the threads only read them.
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
         yield from in_order(pool, known.classes, _compared_spans(frames, views))
@@ -130,7 +132,7 @@ class ClassMaker:
         mirrors = load_mirrors(level / "mirrors.npz")
         frames = walk.folders.open()
         known = _Compared(frames, trajectory, carrier, mirrors)
-        return ClassMaker(known, RegularViews(frames, trajectory), folder)
+        return ClassMaker(known, RegularViews(frames, trajectory, mirrors=mirrors), folder)
 
     def make(self, numbers: tuple[int, ...]) -> None:
         """Classify a part and leave its classes in the folder, whole or not at all.
@@ -182,9 +184,14 @@ def _middle_ns(t_ns: Times) -> int:
 
 
 def _learn_carrier(
-    frames: RecordedFrames, trajectory: Trajectory, progress: Progress
+    frames: RecordedFrames,
+    trajectory: Trajectory,
+    mirrors: Sequence[Mirror],
+    *,
+    progress: Progress,
 ) -> CarrierCubes:
-    views = RegularViews(frames, trajectory, every_ns=VOLUME.views_every_ns)
+    every_ns = VOLUME.views_every_ns
+    views = RegularViews(frames, trajectory, mirrors=mirrors, every_ns=every_ns)
     volume, rig = CarrierVolume(), frames.rig
     scans = range(0, len(frames), 1 + len(frames) // VOLUME.scans)
     for k in track(scans, progress, what="find the carrier", unit="frames", total=len(scans)):
@@ -228,8 +235,8 @@ def _classes(frame: Multiframe, places: KnownPlaces, *, known: _Compared) -> NDA
     rig, trajectory = known.frames.rig, known.trajectory
     placed = place_with_origins(frame, trajectory, rig)
     classes = np.full(len(frame), PointClass.UNCLASSIFIED, np.uint8)
-    for mirror in known.mirrors:
-        classes[mirror.reflects(Sight(placed.xyz_m, placed.origin_m))] = PointClass.REFLECTION
+    reflected = reflections(known.mirrors, Sight(placed.xyz_m, placed.origin_m))
+    classes[reflected] = PointClass.REFLECTION
     near, p_body = near_points(frame, rig)
     classes[near[known.carrier.surely(p_body)]] = PointClass.CARRIER
     others = classes == PointClass.UNCLASSIFIED

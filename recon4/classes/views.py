@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.classes.tuning import VIEWS
 from recon4.kernels.free_space import NO_SURFACE, Sights, nearest_ranges
 from recon4.kernels.seen_through import RangeViews
-from recon4.mapping.undistort import place
+from recon4.mapping.mirrors import Mirror, Sight, reflections
+from recon4.mapping.undistort import place_with_origins
 from recon4.model.frames import RecordedFrames
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
@@ -19,16 +22,23 @@ class RegularViews:
     """Scans at regular times; those near to the multiframe in work are in memory, some eighty."""
 
     def __init__(
-        self, frames: RecordedFrames, trajectory: Trajectory, *, every_ns: int = VIEWS.every_ns
+        self,
+        frames: RecordedFrames,
+        trajectory: Trajectory,
+        *,
+        mirrors: Sequence[Mirror],
+        every_ns: int = VIEWS.every_ns,
     ) -> None:
         """Nothing is read yet.
 
         Args:
             frames: The multiframes.
             trajectory: ``T_map_body``, dense.
+            mirrors: Their reflections are not in the images: a beam to one passes through nothing
+                behind the mirror.
             every_ns: Time between two scans [ns].
         """
-        self._frames, self._trajectory = frames, trajectory
+        self._frames, self._trajectory, self._mirrors = frames, trajectory, mirrors
         slots = (frames.t_mid_ns - frames.t_mid_ns[:1]) // every_ns
         self._rows = np.unique(slots, return_index=True)[1]
         self._t_ns: Times = frames.t_mid_ns[self._rows]
@@ -82,12 +92,13 @@ class RegularViews:
         T_map_body = self._trajectory.at(np.array([frame.t_mid_ns]), slack_ns=frame.duration_ns)
         T_map_sensor = T_map_body @ rig.T_body_sensor
         self._R[place_of_it], self._t[place_of_it] = T_map_sensor.R, T_map_sensor.t
-        p_map = place(frame, self._trajectory, rig)
+        placed = place_with_origins(frame, self._trajectory, rig)
+        direct = ~reflections(self._mirrors, Sight(placed.xyz_m, placed.origin_m))
         images = self._images[place_of_it]
         images.fill(NO_SURFACE)
         for sensor, image in enumerate(images):
             T = T_map_sensor[sensor]
-            nearest_ranges(p_map[frame.sensor == sensor], T.R, T.t, image)
+            nearest_ranges(placed.xyz_m[direct & (frame.sensor == sensor)], T.R, T.t, image)
             self._slopes[place_of_it, sensor] = _slopes(image)
 
 

@@ -22,6 +22,7 @@ from recon4.georeference.site_grid import SiteGrid
 from recon4.georeference.tuning import LEVEL_STAGE, GnssTuning
 from recon4.georeference.tuning_leveling import FLOOR
 from recon4.mapping.mirrors import Mirror, Sight, find_mirrors, save_mirrors
+from recon4.mapping.small_mirrors import find_small_mirrors
 from recon4.mapping.undistort import place_with_origins
 from recon4.model.corrections import apply_corrections
 from recon4.model.figures import AntennaFigures, LevelFigures
@@ -232,7 +233,9 @@ def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[Mirror, ...]:
     """Mirrors in a map of LiDARs; a profiler sees too little of a wall at once."""
     if frames.rig.row_of("profiler") is not None or not len(frames):
         return ()
-    return tuple(find_mirrors(Sight(*_sample_points(frames, trajectory))))
+    sight = Sight(*_sample_points(frames, trajectory))
+    large = find_mirrors(sight)
+    return (*large, *find_small_mirrors(sight, large))
 
 
 def _uncertainty(

@@ -68,3 +68,49 @@ def count_passes(
             if row >= 0 and cluster_of[row] != mine and cluster_of[row] != last:
                 last = cluster_of[row]
                 counts[last, 0] += 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def find_crossing(
+    origin: NDArray[np.float64],
+    end: NDArray[np.float64],
+    cells: CellIndex,
+    stands: NDArray[np.bool_],
+    rules: tuple[float, float, float],
+    crosses: NDArray[np.bool_],
+) -> None:
+    """Find beams that cross a cell of something that stands.
+
+    Args:
+        origin: Positions of the sensor [m], (N, 3).
+        end: Where the beams ended [m], (N, 3).
+        cells: Of the map.
+        stands: Which of them no beam should cross, (C,).
+        rules: As in `count_passes`.
+        crosses: Which beams do, filled, (N,).
+    """
+    edge, margin, farthest = rules
+    at = np.empty(3)
+    for n in range(len(end)):
+        crosses[n] = False
+        range_m = 0.0
+        for d in range(3):
+            range_m += (end[n, d] - origin[n, d]) ** 2
+        range_m = np.sqrt(range_m)
+        if not edge < range_m <= farthest:
+            continue
+        for k in range(int(max(range_m - margin, 0.0) / edge)):
+            part = (k + 0.5) * edge / range_m
+            for d in range(3):
+                at[d] = (origin[n, d] + part * (end[n, d] - origin[n, d])) / edge
+            row = find_row(
+                cells,
+                key_at(
+                    np.int64(np.floor(at[0])),
+                    np.int64(np.floor(at[1])),
+                    np.int64(np.floor(at[2])),
+                ),
+            )
+            if row >= 0 and stands[row]:
+                crosses[n] = True
+                break

@@ -23,6 +23,7 @@ from scipy.spatial import cKDTree
 from recon4.errors import StoreError
 from recon4.geometry.distinct import distinct
 from recon4.geometry.se3 import Array
+from recon4.kernels.mirror_planes import Beams, find_reflections
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tuning import MIRRORS
 from recon4.model.figures import MirrorFigures
@@ -57,10 +58,21 @@ class Wall:
         """Points in the mirror, (N, 3)."""
         return np.asarray(p - 2.0 * self.height(p)[:, None] * self.normal)
 
-    def cells(self, p: Array) -> NDArray[np.int64]:
-        """Cells of points on the wall: along it and in height, (N, 2)."""
+    def on(self, p: Array) -> Array:
+        """Places of points on the wall: along it and in height [m], (N, 3) -> (N, 2)."""
         along = np.array([-self.normal[1], self.normal[0], 0.0])
-        return np.floor(np.stack([p @ along, p[:, 2]], axis=1) / MIRRORS.grid_m).astype(np.int64)
+        return np.stack([p @ along, p[:, 2]], axis=1)
+
+    def crossed(self, sight: Sight) -> Array:
+        """Where beams that end behind the wall cross it, as `on` has it, (N, 2)."""
+        before, behind = self.height(sight.origin_m), -self.height(sight.point_m)
+        part = (before / (before + behind))[:, None]
+        return self.on(sight.origin_m + part * (sight.point_m - sight.origin_m))
+
+    def place(self, on_m: Array) -> tuple[float, float]:
+        """Place in the map, without its height [m], of one on the wall, (2,)."""
+        x, y, _ = self.normal * self.offset_m
+        return float(x - on_m[0] * self.normal[1]), float(y + on_m[0] * self.normal[0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,26 +81,40 @@ class Mirror:
 
     wall: Wall
     cells: NDArray[np.int64]
-    """Cells on the wall of `Wall.cells`, (K, 2)."""
+    """Cells on the wall, along it and in height, (K, 2)."""
     figures: MirrorFigures
+    grid_m: float = MIRRORS.grid_m
+    """Edge of a cell [m]."""
 
     def reflects(self, sight: Sight) -> NDArray[np.bool_]:
-        """Which points are reflections: their beams cross the mirror or its rim, (N,)."""
+        """Which points are reflections: their beams cross the mirror, (N,)."""
         found = np.zeros(len(sight.point_m), np.bool_)
-        before, behind = self.wall.height(sight.origin_m), -self.wall.height(sight.point_m)
-        rows = np.flatnonzero((before > 0.0) & (behind > MIRRORS.reflected_m))
-        if not len(rows):
-            return found
-        part = before[rows] / (before[rows] + behind[rows])
-        origin = sight.origin_m[rows]
-        at = origin + part[:, None] * (sight.point_m[rows] - origin)
-        low = self.cells.min(axis=0) - 2
-        mirrored = np.zeros(self.cells.max(axis=0) + 3 - low, np.bool_)
+        low = self.cells.min(axis=0)
+        mirrored = np.zeros(np.ptp(self.cells, axis=0) + 1, np.bool_)
         mirrored[tuple((self.cells - low).T)] = True
-        mirrored = binary_dilation(mirrored, np.ones((3, 3)))
-        cell = np.clip(self.wall.cells(at) - low, 0, np.array(mirrored.shape) - 1)
-        found[rows] = mirrored[tuple(cell.T)]
+        x, y, _ = self.wall.normal.tolist()
+        find_reflections(
+            Beams(np.ascontiguousarray(sight.point_m), np.ascontiguousarray(sight.origin_m)),
+            (x, y, self.wall.offset_m),
+            MIRRORS.reflected_m,
+            mirrored,
+            (int(low[0]), int(low[1]), self.grid_m),
+            found,
+        )
         return found
+
+
+def reflections(mirrors: Sequence[Mirror], sight: Sight) -> NDArray[np.bool_]:
+    """Which points are reflections of any mirror, (N,)."""
+    found = np.zeros(len(sight.point_m), np.bool_)
+    for mirror in mirrors:
+        found |= mirror.reflects(sight)
+    return found
+
+
+def cells_of(on_m: Array, grid_m: float) -> NDArray[np.int64]:
+    """Cells of places on a wall, (N, 2)."""
+    return np.floor(on_m / grid_m).astype(np.int64)
 
 
 def save_mirrors(path: Path, mirrors: Sequence[Mirror]) -> None:
@@ -102,6 +128,7 @@ def save_mirrors(path: Path, mirrors: Sequence[Mirror]) -> None:
             "area_m2": np.array([mirror.figures.area_m2 for mirror in mirrors], np.float64),
             "middle_m": np.array([mirror.figures.middle_m for mirror in mirrors]).reshape(-1, 2),
             "behind": np.array([mirror.figures.behind for mirror in mirrors], np.float64),
+            "grid_m": np.array([mirror.grid_m for mirror in mirrors], np.float64),
             "count": np.array([len(one) for one in cells], np.int64),
             "cells": np.concatenate([np.empty((0, 2), np.int64), *cells]),
         },
@@ -114,20 +141,20 @@ def load_mirrors(path: Path) -> list[Mirror]:
     Raises:
         StoreError: If the file is missing or damaged.
     """
-    columns = ["normal", "offset_m", "area_m2", "middle_m", "behind", "count"]
+    columns = ["normal", "offset_m", "area_m2", "middle_m", "behind", "grid_m", "count"]
     found = load_arrays(path, [*columns, "cells"])
     rows = {len(found[name]) for name in columns}
     if len(rows) != 1 or found["count"].sum() != len(found["cells"]):
         raise StoreError(f"{path.name}: expected as many rows of each column, got {rows}")
     ends = np.cumsum(found["count"])
     mirrors = []
-    for k, (normal, offset_m, area_m2, middle_m, behind, count) in enumerate(
+    for k, (normal, offset_m, area_m2, middle_m, behind, grid_m, count) in enumerate(
         zip(*(found[name] for name in columns), strict=True)
     ):
         x, y = middle_m.tolist()
         figures = MirrorFigures(area_m2=float(area_m2), middle_m=(x, y), behind=float(behind))
         cells = found["cells"][ends[k] - count : ends[k]]
-        mirrors.append(Mirror(Wall(normal, float(offset_m)), cells, figures))
+        mirrors.append(Mirror(Wall(normal, float(offset_m)), cells, figures, float(grid_m)))
     return mirrors
 
 
@@ -137,8 +164,15 @@ def find_mirrors(sight: Sight) -> list[Mirror]:
     Args:
         sight: A sample of the points of a leveled map.
     """
-    if len(sight.point_m) < MIRRORS.min_support:
-        return []
+    steep = steep_of(sight)
+    mirrors = [_mirror(wall, steep, sight) for wall in _walls(steep)]
+    return sorted((m for m in mirrors if m is not None), key=lambda m: -m.figures.area_m2)
+
+
+def steep_of(sight: Sight) -> Steep:
+    """The points of a sample that may face a wall."""
+    if not len(sight.point_m):
+        return Steep(sight, np.empty((0, 3)))
     center = sight.point_m.mean(axis=0)
     found = local_normals((sight.point_m - center).astype(np.float32), MIRRORS.cell_m)
     # What faces a wall is not level.
@@ -146,11 +180,7 @@ def find_mirrors(sight: Sight) -> list[Mirror]:
         np.abs(found.normal[:, 2]) < np.sqrt(1 - MIRRORS.facing**2)
     )
     kept = np.flatnonzero(rows)
-    if not len(kept):
-        return []
-    steep = _Steep(sight[kept], _to_sensor(sight[kept], found.normal[kept].astype(np.float64)))
-    mirrors = [_mirror(wall, steep, sight) for wall in _walls(steep)]
-    return sorted((m for m in mirrors if m is not None), key=lambda m: -m.figures.area_m2)
+    return Steep(sight[kept], _to_sensor(sight[kept], found.normal[kept].astype(np.float64)))
 
 
 def _to_sensor(sight: Sight, normal: Array) -> Array:
@@ -160,7 +190,7 @@ def _to_sensor(sight: Sight, normal: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
-class _Steep:
+class Steep:
     """Points on surfaces that are not level, with their normals, (N, 3)."""
 
     sight: Sight
@@ -173,7 +203,7 @@ class _Steep:
         return cKDTree(self.sight.point_m, balanced_tree=False, compact_nodes=False)
 
 
-def _walls(steep: _Steep) -> list[Wall]:
+def _walls(steep: Steep) -> list[Wall]:
     """The largest vertical planes, each once."""
     rows = np.flatnonzero(np.abs(steep.normal[:, 2]) < MIRRORS.vertical)
     rows = rows[:: 1 + len(rows) // MIRRORS.most_points]
@@ -189,7 +219,8 @@ def _walls(steep: _Steep) -> list[Wall]:
         place = steep.sight.point_m[rows]
         near = np.abs(wall.height(place)) < MIRRORS.offset_m
         near &= np.abs(steep.normal[rows] @ wall.normal) > np.cos(2.0 * MIRRORS.angle_rad)
-        if len(np.unique(wall.cells(place[near]), axis=0)) >= MIRRORS.wall_cells:
+        cells = cells_of(wall.on(place[near]), MIRRORS.grid_m)
+        if len(np.unique(cells, axis=0)) >= MIRRORS.wall_cells:
             found.append(wall)
         elif count[best] < MIRRORS.wall_cells:
             break
@@ -197,7 +228,7 @@ def _walls(steep: _Steep) -> list[Wall]:
     return found
 
 
-def _bins(steep: _Steep, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _bins(steep: Steep, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Bin of the direction of each normal, and of direction and offset together, (N,) each."""
     n, p = steep.normal[rows, :2], steep.sight.point_m[rows, :2]
     angle = np.mod(np.arctan2(n[:, 1], n[:, 0]), np.pi)
@@ -218,30 +249,31 @@ def _fitted(sight: Sight, normal: Array, angle_rad: float) -> Wall:
     return Wall(axis, offset_m) if before else Wall(-axis, -offset_m)
 
 
-def _mirror(wall: Wall, steep: _Steep, every: Sight) -> Mirror | None:
+def _mirror(wall: Wall, steep: Steep, every: Sight) -> Mirror | None:
     """The part of a wall that shows the room before it; None = less than counts."""
     beams = _through(wall, steep)
     if len(beams) * MIRRORS.grid_m**2 < MIRRORS.min_area_m2:
         return None
     wall = Wall(wall.normal, wall.offset_m + _hangs_before_m(wall, steep, beams))
-    sight = steep.sight
-    point, origin = sight.point_m[beams], sight.origin_m[beams]
-    before, behind = wall.height(origin), -wall.height(point)
-    met = np.abs(_match(wall, steep, beams).off_m) < MIRRORS.same_m
-    part = before / (before + behind)
-    at = origin + part[:, None] * (point - origin)
-    cells, which, count = np.unique(wall.cells(at), axis=0, return_inverse=True, return_counts=True)
+    sight = steep.sight[beams]
+    met = np.abs(match(wall, steep, beams).off_m) < MIRRORS.same_m
+    on_m = wall.crossed(sight)
+    cells, which, count = np.unique(
+        cells_of(on_m, MIRRORS.grid_m), axis=0, return_inverse=True, return_counts=True
+    )
     which = which.ravel()
     shown = np.bincount(which[met], minlength=len(count))
     mirrored = (count >= MIRRORS.min_beams) & (shown >= MIRRORS.min_ratio * count)
     mirrored &= _opening_ratio(cells, count, shown) >= MIRRORS.opening_ratio
     area_m2 = float(mirrored.sum()) * MIRRORS.grid_m**2
-    if area_m2 < MIRRORS.min_area_m2 or _is_entered(wall, steep, point[met & mirrored[which]]):
+    if area_m2 < MIRRORS.min_area_m2 or _is_entered(
+        wall, steep, sight.point_m[met & mirrored[which]]
+    ):
         return None
-    x, y, _ = at[mirrored[which]].mean(axis=0).tolist()
+    middle_m = wall.place(on_m[mirrored[which]].mean(axis=0))
     crossing = wall.height(every.origin_m) > MIRRORS.before_m
     crossing &= wall.height(every.point_m) < -MIRRORS.behind_m
-    figures = MirrorFigures(area_m2=area_m2, middle_m=(x, y), behind=float(crossing.mean()))
+    figures = MirrorFigures(area_m2=area_m2, middle_m=middle_m, behind=float(crossing.mean()))
     other = (count >= MIRRORS.min_beams) & (shown < (1.0 - MIRRORS.min_ratio) * count)
     return Mirror(
         wall,
@@ -250,7 +282,7 @@ def _mirror(wall: Wall, steep: _Steep, every: Sight) -> Mirror | None:
     )
 
 
-def _through(wall: Wall, steep: _Steep) -> NDArray[np.intp]:
+def _through(wall: Wall, steep: Steep) -> NDArray[np.intp]:
     """Rows of points that face a wall and whose beams cross it, (M,)."""
     crossing = wall.height(steep.sight.origin_m) > MIRRORS.before_m
     crossing &= wall.height(steep.sight.point_m) < -MIRRORS.behind_m
@@ -260,7 +292,7 @@ def _through(wall: Wall, steep: _Steep) -> NDArray[np.intp]:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Match:
+class MirrorMatch:
     """Surfaces near points that a wall reflects. M points."""
 
     off_m: Array
@@ -269,7 +301,7 @@ class _Match:
     """Cosine between the normals of surface and wall, (M,)."""
 
 
-def _match(wall: Wall, steep: _Steep, beams: NDArray[np.intp]) -> _Match:
+def match(wall: Wall, steep: Steep, beams: NDArray[np.intp]) -> MirrorMatch:
     """The surfaces that points (M,) would be on if the wall were a mirror."""
     normal, reflected = steep.normal[beams], wall.reflected(steep.sight.point_m[beams])
     reach, nearest = steep.tree.query(reflected, distance_upper_bound=MIRRORS.near_m)
@@ -281,28 +313,28 @@ def _match(wall: Wall, steep: _Steep, beams: NDArray[np.intp]) -> _Match:
     # of their fronts maps columns onto columns, but onto their other sides.
     met &= np.einsum("ni,ni->n", turned, surface) > MIRRORS.same_cosine
     off_m = np.einsum("ni,ni->n", reflected - steep.sight.point_m[nearest], surface)
-    return _Match(np.where(met, off_m, np.inf), surface @ wall.normal)
+    return MirrorMatch(np.where(met, off_m, np.inf), surface @ wall.normal)
 
 
-def _hangs_before_m(wall: Wall, steep: _Steep, beams: NDArray[np.intp]) -> float:
+def _hangs_before_m(wall: Wall, steep: Steep, beams: NDArray[np.intp]) -> float:
     """How far before its wall a mirror hangs [m]: half of what its reflections are off.
 
     No mirror is inside of a wall, nor far before it: two like flights of stairs on both sides of
     a wall or of a well mirror each other there. Then it is 0.
     """
     side = steep.normal[np.abs(wall.height(steep.sight.point_m)) < MIRRORS.offset_m] @ wall.normal
-    match = _match(wall, steep, beams)
-    met = np.isfinite(match.off_m)
+    found = match(wall, steep, beams)
+    met = np.isfinite(found.off_m)
     if not met.any() or np.median(side[np.abs(side) > np.cos(2.0 * MIRRORS.angle_rad)]) < 0.0:
         return 0.0
-    before_m = -0.5 * float(np.median(match.off_m[met] / match.facing[met]))
+    before_m = -0.5 * float(np.median(found.off_m[met] / found.facing[met]))
     return before_m if 0.0 < before_m < MIRRORS.hangs_m else 0.0
 
 
 def _whole(
     wall: Wall, through: Sight, mirrored: NDArray[np.int64], *, but: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """All cells of the openings that mirrored ones are in, (K, 2).
+    """All cells of the openings that mirrored ones are in, and their rims, (K, 2).
 
     Most beams end at a floor or a wall that says nothing; but no beam crosses a wall.
 
@@ -312,9 +344,7 @@ def _whole(
         mirrored: Cells that show the room before the wall, (M, 2).
         but: Cells that show something else, (L, 2).
     """
-    before, behind = wall.height(through.origin_m), -wall.height(through.point_m)
-    part = before / (before + behind)
-    at = wall.cells(through.origin_m + part[:, None] * (through.point_m - through.origin_m))
+    at = cells_of(wall.crossed(through), MIRRORS.grid_m)
     low = np.minimum(at.min(axis=0), mirrored.min(axis=0))
     crossed = np.zeros(np.maximum(at.max(axis=0), mirrored.max(axis=0)) - low + 1, np.bool_)
     crossed[tuple((at - low).T)] = True
@@ -323,7 +353,8 @@ def _whole(
     crossed[tuple((mirrored - low).T)] = True
     opening = label(crossed)[0]
     wanted = distinct(opening[tuple((mirrored - low).T)])
-    return np.argwhere(np.isin(opening, wanted)) + low
+    whole = np.pad(np.isin(opening, wanted), 1)
+    return np.argwhere(binary_dilation(whole, np.ones((3, 3)))) + low - 1
 
 
 def _opening_ratio(
@@ -347,7 +378,7 @@ def _opening_ratio(
     return np.asarray((shows / np.maximum(every, 1))[opening])
 
 
-def _is_entered(wall: Wall, steep: _Steep, reflected: Array) -> bool:
+def _is_entered(wall: Wall, steep: Steep, reflected: Array) -> bool:
     """Whether what looks like a reflection, (N, 3), was seen from behind the wall, too."""
     inside = np.flatnonzero(wall.height(steep.sight.origin_m) < -MIRRORS.before_m)
     if not len(inside):

@@ -83,6 +83,61 @@ class MirrorTuning(Struct, frozen=True, kw_only=True):
 MIRRORS = MirrorTuning()
 
 
+class SmallMirrorTuning(Struct, frozen=True, kw_only=True):
+    """Small mirrors: beams that seem to cross what stands show the room before them."""
+
+    cell_m: float = 0.2
+    """Edge of the cells in which beams end, or which they cross [m]."""
+    margin_m: float = 0.4
+    """The last part of a beam crosses nothing [m]: two copies of a wall."""
+    farthest_m: float = 30.0
+    """Longer beams are not followed [m]."""
+    least_ends: int = 5
+    crossed_ratio: float = 0.3
+    """What stands is a cell in which this many beams end, and which few cross: at most this many
+    for each that ends there."""
+    most_beams: int = 6000
+    """No more beams that cross what stands propose planes."""
+    surface_m: float = 0.3
+    """Of the surfaces in a cell of this edge [m], one is compared for each direction."""
+    aside_m: float = 0.25
+    """A plane maps a point to within this of a surface, along it [m]."""
+    lift_m: float = 0.15
+    """And no higher or lower than this [m]: mirrors are upright."""
+    angle_rad: float = float(np.deg2rad(5.0))
+    offset_m: float = 0.2
+    along_m: float = 1.0
+    """Bins in which planes are counted: direction, offset, and where on them beams cross [m]."""
+    least_votes: int = 6
+    most_planes: int = 30
+    """Planes with fewer beams are not examined, and no more than this many."""
+    reach_m: tuple[float, ...] = (0.2, 0.15, 0.1, 0.08)
+    """Reflected points that fit a plane are this near to a surface [m], closer every time."""
+    same_m: float = 0.05
+    """And this near those that show the room [m]."""
+    grid_m: float = 0.05
+    """Edge of the cells on a mirror [m]."""
+    around_m: float = 1.5
+    """A mirror reaches no farther from the place that proposed it, to each side [m]."""
+    other: float = 1.0 / 3.0
+    """A beam that shows something else is worth so much of one that shows the room."""
+    min_beams: int = 12
+    min_ratio: float = 0.6
+    """A mirror shows the room by at least this many beams, and this ratio of all: columns with
+    mirrors 0.67 to 0.79, the best other plane that beams cross 0.46."""
+    least_side_m: float = 0.3
+    """It is this wide and high: two cells of normals."""
+    most_seen: float = 0.35
+    """No larger part of what it shows is seen by beams past it, too: columns with mirrors 0.03 to
+    0.26, a house that a showroom's glass front shows 0.44."""
+    min_crossing: float = 0.15
+    """At least this ratio of its beams seem to cross what stands: columns with mirrors 0.21 to
+    0.69, like rows of columns and flights of stairs at most 0.07."""
+
+
+SMALL_MIRRORS = SmallMirrorTuning()
+
+
 class NormalTuning(Struct, frozen=True, kw_only=True):
     """Normals of many points at once."""
 

@@ -27,6 +27,7 @@ from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.mirrors import Mirror, Sight, find_mirrors, load_mirrors
+from recon4.mapping.small_mirrors import find_small_mirrors
 from recon4.mapping.undistort import place_with_origins
 from recon4.model.classes import PointClass
 from recon4.model.rig import Rig, load_rig
@@ -163,7 +164,9 @@ def mirrors_of(frames: FrameStore, truth: Trajectory) -> list[Mirror]:
         frame = frame.take(slice(None, None, 1 + len(frame) // 6000))
         placed.append(place_with_origins(frame, truth, frames.rig))
     points = np.concatenate([one.xyz_m for one in placed])
-    return find_mirrors(Sight(points, np.concatenate([one.origin_m for one in placed])))
+    sight = Sight(points, np.concatenate([one.origin_m for one in placed]))
+    large = find_mirrors(sight)
+    return [*large, *find_small_mirrors(sight, large)]
 
 
 def by_cause(

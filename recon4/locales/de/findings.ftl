@@ -509,10 +509,10 @@ GNSS-REJECTED = GNSS-Positionen verworfen
 ## Die Karte
 
 MIRROR = Spiegel
-    .text1 = Ein Spiegel oder eine Glaswand von etwa { DECIMAL($area_m2, digits: 0) } m² bei x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m verdoppelt den Raum: was dahinter kartiert ist ({ PERCENT($behind, digits: 0) } aller Punkte), ist der gespiegelte Raum davor.
+    .text1 = Ein Spiegel oder eine Glaswand von etwa { DECIMAL($area_m2, digits: 1) } m² bei x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m verdoppelt den Raum: was dahinter kartiert ist ({ PERCENT($behind, digits: 0) } aller Punkte), ist der gespiegelte Raum davor.
     .remedy = Diese Punkte auslassen.
     .meaning = Die Karte hat einen Raum, den es nicht gibt.
-    .detection = Strahlen, die eine Wand von mindestens 2,5 m² durchqueren, treffen, an ihr gespiegelt, Flächen des Raums davor.
+    .detection = Strahlen durch einen Teil einer Wand treffen, an ihr gespiegelt, Flächen des Raums davor. Ist er kleiner als 2,5 m²: sie scheinen auch etwas zu durchqueren, das steht.
 
 CLASSES-MOVED = Klassenkorrektur verschoben
     .text1 = Die Karte hat sich um { LENGTH($moved_m) } verschoben, wo { $who } Punkten die Klasse { $to } gab, nahe x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m, z { DECIMAL($z_m, digits: 1) } m; die Korrektur { $id } folgte ihren Punkten und ändert { COUNT($points) } davon (damals { COUNT($points_then) }).

@@ -492,10 +492,10 @@ GNSS-REJECTED = GNSS fixes rejected
 ## The map
 
 MIRROR = Mirror
-    .text1 = A mirror or a glass wall of about { DECIMAL($area_m2, digits: 0) } m² at x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m doubles the room: what is mapped behind it ({ PERCENT($behind, digits: 0) } of all points) is the room before it, reflected.
+    .text1 = A mirror or a glass wall of about { DECIMAL($area_m2, digits: 1) } m² at x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m doubles the room: what is mapped behind it ({ PERCENT($behind, digits: 0) } of all points) is the room before it, reflected.
     .remedy = Leave these points out.
     .meaning = The map has a room that does not exist.
-    .detection = Beams that cross a wall of at least 2.5 m² meet, reflected in it, surfaces of the room before it.
+    .detection = Beams through a part of a wall meet, reflected in it, surfaces of the room before it. If it is smaller than 2.5 m²: they also seem to cross what stands.
 
 CLASSES-MOVED = Correction of classes moved
     .text1 = The map has moved by { LENGTH($moved_m) } where { $who } made points { $to }, near x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m, z { DECIMAL($z_m, digits: 1) } m; the correction { $id } followed its points and changes { COUNT($points) } of them ({ COUNT($points_then) } then).

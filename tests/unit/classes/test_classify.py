@@ -160,7 +160,7 @@ def test_images_of_scans_stay_as_they_are_while_threads_read_them_across_a_gap()
     frames = type(walk)(whole, walk.rig, walk.trajectory)
     in_work = deque(maxlen=MAP_BUILD.workers)
 
-    for _, views in _compared_spans(frames, RegularViews(frames, walk.trajectory)):
+    for _, views in _compared_spans(frames, RegularViews(frames, walk.trajectory, mirrors=())):
         for images, rows, before in in_work:
             assert np.array_equal(images[rows], before)
         if views is not None:

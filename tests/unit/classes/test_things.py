@@ -7,7 +7,9 @@ from recon4.classes.tuning import SPREAD, THINGS, TOUCHING
 from recon4.kernels.free_space import VERDICT
 from recon4.kernels.seen_through import EVIDENCE
 from recon4.kernels.things import JudgedPoints, move_as_things, spread_to_neighbors
+from recon4.mapping.mirrors import Mirror, Wall
 from recon4.model.classes import PointClass
+from recon4.model.figures import MirrorFigures
 from tests.unit.classes.scanned_scenes import HEIGHT_M, ROOM, Thing, box, scanned
 
 
@@ -121,3 +123,20 @@ def test_beams_that_a_narrow_mirror_reflects_see_through_nothing():
 
     assert (names == "mirror").sum() > 3000
     assert (classes[names == "shelf"] != PointClass.MOVING).mean() > 0.97
+
+
+def test_beams_that_a_known_mirror_reflects_are_in_no_image():
+    before = mirror(4.0, 0.5, 2.5)
+    shelf = box("shelf", (6.0, 0.5, 0.0), (6.4, 2.9, 2.0))
+    walk, names = scanned(behind(before, box("room", *ROOM)), behind(before, shelf), before)
+    cells = np.argwhere(np.ones((40, 60), np.bool_)) + np.array([-50, 0])
+    figures = MirrorFigures(area_m2=6.0, middle_m=(4.0, 1.5), behind=0.1)
+    known = Mirror(Wall(np.array([-1.0, 0.0, 0.0]), -4.0), cells, figures, grid_m=0.05)
+
+    without = np.concatenate(list(classify(walk, walk.trajectory)))
+    classes = np.concatenate(list(classify(walk, walk.trajectory, mirrors=[known])))
+
+    of_shelf, reflected = (np.concatenate(names) == name for name in ("shelf", "mirror"))
+    assert (without[of_shelf] == PointClass.MOVING).mean() > 0.02
+    assert (classes[of_shelf] == PointClass.MOVING).mean() < 0.002
+    assert (classes[reflected] == PointClass.REFLECTION).mean() > 0.97

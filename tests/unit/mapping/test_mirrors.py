@@ -10,6 +10,7 @@ from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.placing import Mirrors
 from recon4.geometry.tuning import SURFACES
 from recon4.mapping.mirrors import Sight, find_mirrors, load_mirrors, save_mirrors
+from recon4.mapping.small_mirrors import find_small_mirrors
 from recon4.model.figures import LevelFigures
 from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.setup import SimulationSetup, prepare
@@ -105,8 +106,38 @@ def test_rooms_with_doors_and_windows_have_none(world: str, seed: int) -> None:
     assert find_mirrors(sights(prepare(world, seconds=20.0, seed=seed))) == []
 
 
+def test_columns_clad_with_mirrors_are_found_with_their_planes() -> None:
+    setup = prepare("mirrors", seconds=20.0, seed=1)
+    seen = sights(setup)
+    mesh = setup.world.mesh
+    faces = mesh.vertices_m[mesh.triangles[mesh.reflectivity <= SURFACES.mirror]]
+
+    small = find_small_mirrors(seen, find_mirrors(seen))
+
+    assert small
+    for mirror in small:
+        off_m = np.abs(faces @ mirror.wall.normal - mirror.wall.offset_m).max(axis=1)
+        face = faces[off_m < 0.04].reshape(-1, 3)
+        assert face[:, 1].min() > 3.0
+        on_m = mirror.wall.on(face)
+        edges = np.stack([mirror.cells.min(axis=0), mirror.cells.max(axis=0) + 1]) * mirror.grid_m
+        assert (edges[0] > on_m.min(axis=0) - 0.1).all()
+        assert (edges[1] < on_m.max(axis=0) + 0.1).all()
+        assert mirror.figures.behind > 0.002
+
+
+@pytest.mark.parametrize("world", ["mirrors", "office", "garage"])
+def test_rooms_without_mirrors_have_no_small_one(world: str) -> None:
+    room = without_mirrors(build_world(world))
+
+    assert find_small_mirrors(sights(prepare(room, seconds=20.0, seed=1)), []) == []
+
+
 def test_a_map_without_points_has_none() -> None:
-    assert find_mirrors(Sight(np.empty((0, 3)), np.empty((0, 3)))) == []
+    nothing = Sight(np.empty((0, 3)), np.empty((0, 3)))
+
+    assert find_mirrors(nothing) == []
+    assert find_small_mirrors(nothing, []) == []
 
 
 def test_evenly_spaced_boards_have_none() -> None:
@@ -168,3 +199,7 @@ def test_a_like_room_is_no_reflection_once_it_was_entered() -> None:
 
 def test_an_opening_of_which_a_part_shows_something_else_is_no_mirror():
     assert find_mirrors(like_rooms((-3.0, -2.0, -1.0), half_m=2.4, board_m=-1.5)) == []
+
+
+def test_an_opening_to_a_like_room_is_no_small_mirror():
+    assert find_small_mirrors(like_rooms((-3.0, -2.0, -1.0), half_m=0.5), []) == []
