@@ -229,7 +229,6 @@ CLOCK-JUMP = Uhr gesprungen
     .word-recorder = die Uhr des Aufzeichnungsrechners
     .word-points = die Uhr seiner Punkte, gegen die der Zeitstempel,
     .word-without-it = die Zeiten laufen ohne den Sprung weiter
-    .word-used = die Zeiten gelten, wie sie sind: Punkte und IMU passen dort nicht zusammen
     .word-by-stamps = die Zeiten laufen nach den Zeitstempeln weiter
     .word-by-arrival = seine Scans laufen nach ihrer Ankunft weiter
     .meaning = Eine Uhr wurde während der Aufzeichnung gestellt.

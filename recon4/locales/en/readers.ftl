@@ -230,7 +230,6 @@ CLOCK-JUMP = Clock jumped
     .word-recorder = the recorder's clock
     .word-points = the clock of its points, against that of the stamps,
     .word-without-it = times go on without it
-    .word-used = times are used as they are: points and IMU around it do not fit
     .word-by-stamps = times go on by the stamps
     .word-by-arrival = its scans are continued by their arrival
     .meaning = A clock was set while the recording ran.

@@ -18,7 +18,7 @@ from recon4.recording.bags.messages import stamp_ns
 from recon4.recording.bags.tuning import LIDAR_CHOICE
 from recon4.recording.clocks.compare import note_lidar_lag
 from recon4.recording.clocks.even_stamps import EvenStamps
-from recon4.recording.clocks.set_back import SetBack
+from recon4.recording.clocks.set_back import say_set_back
 from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.clouds.cloud_points import CloudDecoder
@@ -46,7 +46,8 @@ class CloudReader:
         self._recent: deque[tuple[int, Any]] = deque(maxlen=LIDAR_CHOICE.copies_within)
         self._order: StampOrder[tuple[BagMessage, Any]] = StampOrder()
         self._even, self._topic = EvenStamps(), ""
-        self._set_back = SetBack()
+        self._points_after_ns = 0
+        """First point of a cloud after its stamp, before the clock was set back [ns]."""
 
     def push(self, message: BagMessage, cloud: Any) -> Iterator[Shots]:
         t_ns = stamp_ns(cloud.header.stamp)
@@ -60,15 +61,18 @@ class CloudReader:
             self._order.shift_last(self._stamps.set_before, -self._stamps.set_ns)
             t_ns += self._stamps.shift_ns
             self._decoder.stamps_set_ns = -self._stamps.shift_ns
-        if self._stamps.was_set:
-            self._even.forget()
-        self._even.add(t_ns)
         self._topic = message.topic
-        yield from self._decoded(self._order.push(t_ns, (message, cloud)))
+        steps = len(self._order.steps)
+        certain = self._order.push(t_ns, (message, cloud))
+        if self._stamps.was_set or len(self._order.steps) > steps:
+            self._even.forget()
+        self._even.add(t_ns + self._order.shift_ns)
+        yield from self._decoded(certain)
 
     def flush(self) -> Iterator[Shots]:
         yield from self._decoded(self._order.flush())
         self._even.say(self._topic, self._report)
+        say_set_back(self._topic, self._order.steps, self._report)
         self._report.count("clouds_late", self._order.too_late)
 
     def _decoded(self, clouds: Iterable[tuple[int, tuple[BagMessage, Any]]]) -> Iterator[Shots]:
@@ -85,17 +89,25 @@ class CloudReader:
                 self._report.warn(FindingKind.MESSAGE_LEFT_OUT, where=message.topic, error=error)
                 continue
             if len(shots):
+                if self._decoder.absolute:
+                    shots = self._with_points_set(shots, t_ns)
                 shots = moved(shots, self._offset_ns - self._late_ns(shots, t_ns, message.t_ns))
                 note_lidar_lag(message.topic, message.t_ns - int(shots.t_ns[-1]), self._report)
-                self._say_set_back(message.topic, int(shots.t_ns[0]))
                 yield shots
 
-    def _say_set_back(self, topic: str, start_ns: int) -> None:
-        if back_ns := self._set_back.back_ns(start_ns):
-            jump_s = -1e-9 * back_ns
-            self._report.warn(
-                FindingKind.CLOCK_JUMP, sensor=topic, whose="sensor", jump_s=jump_s, times="used"
-            )
+    def _with_points_set(self, shots: Shots, stamp_ns: int) -> Shots:
+        """The points on the clock that goes on, if theirs is that of the stamps and was set back.
+
+        Args:
+            shots: With times of their own.
+            stamp_ns: Of their cloud, on the clock that goes on.
+        """
+        back_ns = sum(step.back_ns for step in self._order.steps if stamp_ns > step.t_ns)
+        after_ns = int(shots.t_ns[0]) - (stamp_ns - back_ns)
+        if not back_ns:
+            self._points_after_ns = after_ns
+        set_too = abs(after_ns - self._points_after_ns) < back_ns / 2
+        return moved(shots, back_ns) if set_too else shots
 
     def _late_ns(self, shots: Shots, stamp_ns: int, recorded_ns: int) -> int:
         """How much too late the points of a cloud are by its stamp [ns]."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from recon4.errors import CorruptFile
 from recon4.locales.coded import CodedText
-from recon4.recording.formats.bag_clock import chunks_going_on
+from recon4.recording.formats.bag_clock import chunks_going_on, say_steps
 from recon4.recording.formats.chunks import (
     BagIndex,
     ChunkMessages,
@@ -74,7 +75,8 @@ class Bag1:
     def go_on(self) -> None:
         """Continue the times where the recorder was set back."""
         self._file.restart_budget()
-        self.index = chunks_going_on(self.index, self._read)
+        say = partial(say_steps, self._file.name, report=self.report)
+        self.index = chunks_going_on(self.index, self._read, say)
 
     def _read(self, chunk: ChunkRef) -> ChunkMessages:
         return _load(self._file, chunk, self.index.topics)

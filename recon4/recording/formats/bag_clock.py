@@ -32,6 +32,7 @@ from recon4.units import SECOND_NS
 
 Topics = NDArray[np.int64]
 Load = Callable[[ChunkRef], ChunkMessages]
+Say = Callable[[Sequence[RecorderStep]], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +65,16 @@ def rows_going_on(t_ns: Times, topic: Topics) -> tuple[Times, tuple[RecorderStep
     return t_ns, tuple(steps)
 
 
-def chunks_going_on(index: BagIndex, load: Load) -> BagIndex:
+def chunks_going_on(index: BagIndex, load: Load, say: Say) -> BagIndex:
     """An index whose chunks go on where the recorder was set back.
 
-    Of a large file only chunks around a place where the times of chunks go back are read.
+    Of a large file only chunks around a place where the times of chunks go back are read; a step
+    within another chunk is found when that is read.
 
     Args:
         index: Of the file.
         load: Reads a chunk.
+        say: States steps that are found later.
     """
     chunks = sorted(index.chunks, key=lambda chunk: chunk.offset)
     whole = sum(chunk.size for chunk in chunks) <= RECORDER_STEPS.whole_bytes
@@ -84,11 +87,22 @@ def chunks_going_on(index: BagIndex, load: Load) -> BagIndex:
             chunks = [_moved(chunk, steps, load) for chunk in chunks]
         elif whole:
             break
-    if not steps:
-        return index
-    moved = BagIndex.of_chunks(index.topics, chunks)
-    moved.steps = tuple(steps)
-    return moved
+    if steps:
+        index = BagIndex.of_chunks(index.topics, chunks)
+        index.steps = tuple(steps)
+    index.find_step = None if whole else partial(_step_within, say)
+    return index
+
+
+def _step_within(say: Say, offset: int, messages: ChunkMessages) -> RecorderStep | None:
+    t_ns = np.array(messages.t_ns, np.int64)
+    found = _first_step(t_ns, np.array(messages.connection, np.int64))
+    if found is None:
+        return None
+    row, shift_ns = found
+    step = RecorderStep(offset, row, shift_ns, int(t_ns[row]) + shift_ns)
+    say([step])
+    return step
 
 
 def _going_on(load: Load, steps: Sequence[RecorderStep], chunk: ChunkRef) -> ChunkMessages:

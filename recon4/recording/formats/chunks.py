@@ -167,6 +167,8 @@ class BagIndex:
 
     steps: tuple[RecorderStep, ...] = ()
     """Where the recorder was set back; the times of the chunks go on."""
+    find_step: Callable[[int, ChunkMessages], RecorderStep | None] | None = None
+    """Finds a place within a chunk, by its offset, where it was; None = all are known."""
 
     @classmethod
     def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> BagIndex:
@@ -305,6 +307,7 @@ class ChunkStream:
             self._damaged(error)
             return None
         messages.go_on(chunk.offset, self._index.steps)
+        self._go_on_within(chunk.offset, messages)
         self._loaded += 1
         found = Counter(messages.connection)
         self._found += found
@@ -314,6 +317,16 @@ class ChunkStream:
             self._report.count("messages_corrupt", messages.rejected + unknown)
             self._report.warn(FindingKind.MESSAGES_DAMAGED, name=self._name)
         return messages
+
+    def _go_on_within(self, offset: int, messages: ChunkMessages) -> None:
+        """Find where the recorder was set back within a chunk: its times and all later go on."""
+        index = self._index
+        while index.find_step and not index.mirror_ns:
+            step = index.find_step(offset, messages)
+            if step is None:
+                return
+            messages.go_on(offset, (step,))
+            index.steps = tuple(sorted((*index.steps, step), key=lambda one: one.offset))
 
     def _damaged(self, error: CorruptFile) -> None:
         self._first_damage = self._first_damage or error

@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from recon4.errors import CorruptFile
 from recon4.locales.coded import CodedText
-from recon4.recording.formats.bag_clock import chunks_going_on
+from recon4.recording.formats.bag_clock import chunks_going_on, say_steps
 from recon4.recording.formats.chunks import (
     MAX_TIME_NS,
     BagIndex,
@@ -88,7 +88,8 @@ class Mcap:
     def go_on(self) -> None:
         """Continue the times where the recorder was set back."""
         self._file.restart_budget()
-        self.index = chunks_going_on(self.index, self._read)
+        say = partial(say_steps, self._file.name, report=self.report)
+        self.index = chunks_going_on(self.index, self._read, say)
 
     def _read(self, chunk: ChunkRef) -> ChunkMessages:
         known = _Topics()

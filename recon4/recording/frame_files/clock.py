@@ -13,25 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.clocks.set_back import ClockStep, going_on
 from recon4.recording.clocks.tuning import FRAME_TIMES, SET_BACK
 
 Rows = NDArray[np.intp]
-
-
-@dataclass(frozen=True, slots=True)
-class ClockStep:
-    """One time the clock was set back."""
-
-    t_ns: int
-    """Time of the last frame before it, on the clock that goes on [ns]."""
-    back_ns: int
-    """By how much it went back, if the next frame came after the usual step [ns]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,42 +39,15 @@ class FrameClock:
 def clock_by_order(t_ns: Times) -> FrameClock | None:
     """Times of frames whose order is known; None if they were not set back.
 
-    Times that only lack the right order fill the holes between each other once they are sorted.
-
     Args:
-        t_ns: In the order of recording [ns], (N,).
+        t_ns: In the order of recording [ns], negative where damaged, (N,).
     """
-    steps = np.diff(t_ns)
-    ahead = steps[steps > 0]
-    if not len(ahead) or t_ns.min() < 0:
+    there = np.flatnonzero(t_ns >= 0)
+    found = going_on(t_ns[there])
+    if found is None:
         return None
-    usual = float(np.median(ahead))
-    back = (steps <= 0) | _short_alone(steps, usual)
-    if not back.any():
-        return None
-    parts = np.split(np.arange(len(t_ns)), np.flatnonzero(back) + 1)
-    fewest = FRAME_TIMES.fewest_set_back
-    if min(len(part) for part in parts) < fewest or len(parts) > FRAME_TIMES.most_set_back:
-        return None
-    for before, after in pairwise(parts):
-        if steps[before[-1]] <= 0 and not _overlap(t_ns[: before[-1] + 1], t_ns[after], usual):
-            return None
-    return _joined(t_ns, parts, usual)
-
-
-def _short_alone(steps: Times, usual: float) -> NDArray[np.bool_]:
-    """Which steps are shorter than the even ones around: the clock was set back by less than one.
-
-    Args:
-        steps: From one time to the next [ns], (N,).
-        usual: The usual one [ns].
-    """
-    around = SET_BACK.around
-    if len(steps) <= 2 * around:
-        return np.zeros(len(steps), np.bool_)
-    off = np.pad(np.abs(steps - usual) > SET_BACK.even * usual, around, constant_values=True)
-    others = np.lib.stride_tricks.sliding_window_view(off, 2 * around + 1).sum(axis=1) - 1
-    return np.asarray((others == 0) & (steps < (1.0 - SET_BACK.least) * usual))
+    before = np.maximum(np.searchsorted(there, np.arange(len(t_ns)), side="right") - 1, 0)
+    return FrameClock(np.arange(len(t_ns)), found.shift_ns[before], found.steps)
 
 
 def clock_by_time(t_ns: Times, sizes: Callable[[], Sequence[int]]) -> FrameClock | None:
@@ -135,18 +98,6 @@ def _clocks(t_ns: Times, sizes: Callable[[], Sequence[int]], usual: float) -> li
             break
         parts, rest = [*parts, first], later
     return [*parts, rest]
-
-
-def _overlap(before: Times, after: Times, usual: float) -> bool:
-    """Whether times lie between earlier ones, or too far before them to be their begin."""
-    if after[-1] < before.min():
-        return bool(before.min() - after[-1] > FRAME_TIMES.joined_steps * usual)
-    ordered = np.sort(before)
-    place = np.searchsorted(ordered, after)
-    left = np.abs(after - ordered[np.maximum(place - 1, 0)])
-    right = np.abs(after - ordered[np.minimum(place, len(ordered) - 1)])
-    near = np.minimum(left, right) < FRAME_TIMES.between_ratio * usual
-    return bool(np.count_nonzero(near) >= FRAME_TIMES.fewest_between)
 
 
 def _two_clocks(t_ns: Times, usual: float) -> _Between | None:

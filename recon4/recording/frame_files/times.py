@@ -102,21 +102,32 @@ def _listed_times(beside: Path, files: Sequence[Path], found: list[Finding]) -> 
     if count != len(files):
         found.append(warning(FindingKind.TIMES_NUMBER, name=name, times=count, files=len(files)))
         return None
-    if len(first_words(files)) == 1 and (clock := clock_by_order(times)) is not None:
-        return _going_on(times, name, clock)
+    clock = clock_by_order(times) if len(first_words(files)) == 1 else None
+    if clock is None:
+        return _repaired(times, files, name, found=found)
+    gone_on = np.where(times < 0, times, times + clock.shift_ns)
+    listed = _repaired(gone_on, files, name, found=found)
+    return listed and _with_clock(listed, clock)
+
+
+def _repaired(
+    times: Times, files: Sequence[Path], name: str, *, found: list[Finding]
+) -> FrameTimes | None:
+    """Times of a text file in order, damaged ones from their neighbors; None = cannot be used."""
+    count = len(times)
     sound = _in_order(times)
     damaged = np.flatnonzero(~sound)
     if not len(damaged):
         return FrameTimes(times, name)
     values: dict[str, Value] = {"name": name, "first": int(damaged[0]) + 1}
     values |= {"damaged": len(damaged), "times": count}
-    if len(damaged) <= MAX_RATIO * count:
+    if len(damaged) - np.count_nonzero(_repeated(times)) <= MAX_RATIO * count:
         found.append(warning(FindingKind.TIMES_DAMAGED, **values))
         return FrameTimes(filled(times, sound), name)
     by_text = times_by_text(times, files)
     if np.all(np.diff(by_text) > 0):
         return FrameTimes(by_text, name, out_of_order=moved_back(times))
-    if (sorted_times := _in_any_order(times, name, files)) is None:
+    if (sorted_times := _sorted(times, name)) is None:
         found.append(warning(FindingKind.TIMES_UNSORTED, **values))
     return sorted_times
 
@@ -135,8 +146,14 @@ def _of_numbers(times: Times, files: Sequence[Path]) -> Times:
 
 def _in_any_order(t_ns: Times, source: str, files: Sequence[Path]) -> FrameTimes | None:
     """The times in their order, and the files with them; None if they are no times of a walk."""
-    if len(first_words(files)) == 1 and (clock := clock_by_order(t_ns)) is not None:
-        return _going_on(t_ns, source, clock)
+    clock = clock_by_order(t_ns) if len(first_words(files)) == 1 else None
+    if clock is not None:
+        listed = _sorted(t_ns + clock.shift_ns, source)
+        return listed and _with_clock(listed, clock)
+    return _sorted(t_ns, source)
+
+
+def _sorted(t_ns: Times, source: str) -> FrameTimes | None:
     if np.all(np.diff(t_ns) > 0):
         return FrameTimes(t_ns, source)
     order = order_of_times(t_ns)
@@ -162,6 +179,24 @@ def _on_one_clock(times: FrameTimes, files: Sequence[Path]) -> FrameTimes:
 def _going_on(t_ns: Times, source: str, clock: FrameClock) -> FrameTimes:
     """The times where the clock was set back, in the order of recording."""
     return FrameTimes(t_ns[clock.order] + clock.shift_ns, source, order=clock.order, clock=clock)
+
+
+def _with_clock(times: FrameTimes, clock: FrameClock) -> FrameTimes:
+    """The times with the clock of their files, which may be in another order by now."""
+    order = np.arange(len(times.t_ns)) if times.order is None else times.order
+    return replace(times, clock=FrameClock(order, clock.shift_ns[order], clock.steps))
+
+
+def _repeated(t_ns: Times) -> NDArray[np.bool_]:
+    """Which times are written twice where the next one would be, (N,): its place is free."""
+    again = np.zeros(len(t_ns), np.bool_)
+    steps = np.diff(t_ns)
+    if len(steps) < 2:
+        return again
+    usual = np.median(steps)
+    free = np.abs(steps[1:] - 2.0 * usual) < FRAME_TIMES.pair_ratio * usual
+    again[1:-1] = (steps[:-1] == 0) & free
+    return again
 
 
 def first_words(files: Sequence[Path]) -> list[str]:

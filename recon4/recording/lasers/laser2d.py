@@ -14,18 +14,16 @@ from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
-from recon4.model.finding import Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.bags.messages import SampleBatch, join_poses, pose_row, stamp_clock
 from recon4.recording.bags.topic_choice import LASER_KIND, ODOMETRY_KIND, Named, choose_topic
-from recon4.recording.clocks.names import looks_like
+from recon4.recording.clocks.set_back import going_on, say_set_back
 from recon4.recording.clocks.stamps import filled, strays
 from recon4.recording.formats.bags import LASER_SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
-from recon4.recording.frame_files.clock import clock_by_order
 from recon4.recording.kinds import RecordingKind, bag_paths, capture_files, recognize
 from recon4.recording.lasers.mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.lasers.range_units import in_meters
@@ -38,7 +36,6 @@ from recon4.recording.packets.streams import require_one_capture
 from recon4.recording.report import ImportReport
 from recon4.recording.rigs.profiler import profiler_rig
 from recon4.settings import IngestSettings
-from recon4.units import SECOND_NS
 
 Rows = NDArray[np.intp]
 
@@ -146,18 +143,12 @@ def _in_order(log: CarmenScans, name: str, report: ImportReport) -> tuple[Rows, 
     apart = strays(log.t_ns)
     report.count("scans_wrong_time", int(np.count_nonzero(apart)))
     log = replace(log, t_ns=filled(log.t_ns, ~apart))
-    clock = clock_by_order(log.t_ns)
-    if clock is None:
-        rows = _sorted_rows(log, name, report)
-        return rows, log.t_ns[rows]
-    report.count("clock_jumps_back", len(clock.steps))
-    for step in clock.steps:
-        values: dict[str, Value] = {"jump_s": -step.back_ns / SECOND_NS}
-        values |= {"looks": looks} if (looks := looks_like(-step.back_ns / SECOND_NS)) else {}
-        report.warn(
-            FindingKind.CLOCK_JUMP, sensor=name, whose="sensor", times="without-it", **values
-        )
-    return clock.order, log.t_ns[clock.order] + clock.shift_ns
+    clock = going_on(log.t_ns)
+    if clock is not None:
+        say_set_back(name, clock.steps, report)
+        log = replace(log, t_ns=log.t_ns + clock.shift_ns)
+    rows = _sorted_rows(log, name, report)
+    return rows, log.t_ns[rows]
 
 
 def _sorted_rows(log: CarmenScans, name: str, report: ImportReport) -> Rows:

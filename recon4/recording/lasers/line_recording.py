@@ -18,10 +18,12 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import ImuSamples
+from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bags.messages import stamp_clock, stamp_ns
 from recon4.recording.bags.topic_choice import choose_imu, imu_batches, named_imu
 from recon4.recording.clocks.compare import LIDAR
+from recon4.recording.clocks.set_back import say_set_back
 from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.clouds.cloud_points import CloudDecoder
@@ -31,11 +33,11 @@ from recon4.recording.formats.bags import (
     LASER_SCAN,
     Bag,
     BagMessage,
-    BagTopic,
 )
 from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.lasers.head_angles import Head, HeadAngles
 from recon4.recording.lasers.joint_head import JointHead
+from recon4.recording.lasers.line_topics import line_topic
 from recon4.recording.lasers.range_units import LaserUnit, line_factor
 from recon4.recording.lasers.scan_messages import ScanCollector, line_of_scan
 from recon4.recording.lasers.tuning import LINES
@@ -80,7 +82,7 @@ class LineRecording:
         row = rig.row_of("profiler")
         assert row is not None
         self._row, self._laser_row, sensor = row, rig.row_of("laser2d"), rig.sensors[row]
-        self._lines = _topic_of(sensor.topic, sensor.name, self.topics)
+        self._lines = line_topic(sensor.topic, sensor.name, self.topics)
         if not self._lines:
             names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[: LISTED.names])
             text = CodedText("lines-none", name=paths[0].name, sensor=sensor.name, topics=names)
@@ -243,7 +245,7 @@ class LineRecording:
             return ""
         sensor = rig.sensors[self._laser_row]
         topics = [t for t in self.topics if t.type == LASER_SCAN]
-        found = _topic_of(sensor.topic, sensor.name, topics)
+        found = line_topic(sensor.topic, sensor.name, topics)
         if not found:
             self._report.warn(FindingKind.SENSOR_NOT_RECORDED, sensor=sensor.name)
         return found
@@ -281,8 +283,8 @@ class LineAssembly:
             self._report.count("lines_empty")
             return
         self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
-        for _, ordered in self._order.push(int(shots.t_ns[0]), shots):
-            yield from self.push_shots(ordered)
+        for t_ns, ordered in self._order.push(int(shots.t_ns[0]), shots):
+            yield from self.push_shots(moved(ordered, t_ns - int(ordered.t_ns[0])))
 
     def push_shots(self, shots: Shots) -> Iterator[LineItem]:
         """Add the returns of a line, in the x-z plane of the head, in order of time."""
@@ -302,8 +304,9 @@ class LineAssembly:
 
     def flush(self) -> Iterator[LineItem]:
         """The remaining lines."""
-        for _, shots in self._order.flush():
-            yield from self.push_shots(shots)
+        for t_ns, shots in self._order.flush():
+            yield from self.push_shots(moved(shots, t_ns - int(shots.t_ns[0])))
+        say_set_back(self._sensor.name, self._order.steps, self._report)
         self._report.count("lines_out_of_order", self._order.too_late)
         self._turn(self._last_ns, final=True)
         yield from self.deliver()
@@ -389,12 +392,3 @@ class LineAssembly:
             np.concatenate([part.ring for part in parts]),
             np.concatenate([part.echo for part in parts]),
         )
-
-
-def _topic_of(wanted: str, name: str, topics: Sequence[BagTopic]) -> str:
-    """The topic a rig names, or the only one with the sensor's name in it; empty = none."""
-    usable = [t.name for t in topics if t.type in (LASER_SCAN, CLOUD) and t.messages]
-    if wanted in usable:
-        return wanted
-    alike = [topic for topic in usable if name.lower() in topic.lower()]
-    return alike[0] if len(alike) == 1 and not wanted else ""

@@ -18,7 +18,7 @@ from recon4.recording.formats.columns import TIME, Columns, column_names, read_c
 from recon4.recording.lasers.head_angles import HeadAngles
 from recon4.recording.lasers.line_recording import LineAssembly, LineItem
 from recon4.recording.lasers.range_units import LaserUnit
-from recon4.recording.lasers.sweeps import sweeps
+from recon4.recording.lasers.sweeps import in_order, sweeps
 from recon4.recording.lasers.tables import is_laser_table, laser_batches, returns_of
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_imu_csv
@@ -108,7 +108,8 @@ class LineTableRecording:
         offset_ns = round(1e9 * sensor.time_offset_s)
         first_ns = last_ns = 0
         blocks = read_columns(path, LINE_COLUMNS, _LINE_OPTIONAL, report=self._report)
-        for line in sweeps(blocks, "shot_deg", number="line", where=path.name):
+        found = sweeps(blocks, "shot_deg", number="line", where=path.name)
+        for line in in_order(found, path.name, late="lines_out_of_order", report=self._report):
             t_ns = line[TIME] + offset_ns
             if np.any(np.diff(t_ns) < 0):
                 self._report.count("lines_out_of_order")

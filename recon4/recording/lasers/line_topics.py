@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from recon4.locales.coded import CodedText
-from recon4.recording.formats.bags import JOINT_STATES, TEXT, Bag, BagTopic
+from recon4.recording.formats.bags import CLOUD, JOINT_STATES, LASER_SCAN, TEXT, Bag, BagTopic
 from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.report import ImportReport
 from recon4.recording.rigs.profiler import profiler_rig
@@ -52,3 +53,12 @@ def line_topics(bag: Bag) -> LineTopics | None:
             expected = {"topic": sensor.head_topic, "type": JOINT_STATES}
             missing.append(CodedText("missing-head-topic", **expected))
     return LineTopics(tuple(found), tuple(missing))
+
+
+def line_topic(wanted: str, name: str, topics: Sequence[BagTopic]) -> str:
+    """The topic a rig names, or the only one with the sensor's name in it; empty = none."""
+    usable = [t.name for t in topics if t.type in (LASER_SCAN, CLOUD) and t.messages]
+    if wanted in usable:
+        return wanted
+    alike = [topic for topic in usable if name.lower() in topic.lower()]
+    return alike[0] if len(alike) == 1 and not wanted else ""

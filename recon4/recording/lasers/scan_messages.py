@@ -15,6 +15,7 @@ from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.clocks.set_back import say_set_back
 from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.formats.bags import BagMessage
@@ -93,6 +94,7 @@ class ScanCollector:
         self._offset_ns, self._report = offset_ns, report
         self._exact = exact_angles
         self._order: StampOrder[tuple[str, Any]] = StampOrder()
+        self._topic = ""
         self._scans: list[_Collected] = []
         self._last_ns = -1
         self._last_ranges = np.zeros(0, np.float32)
@@ -107,6 +109,7 @@ class ScanCollector:
         else:
             self._order.shift_last(self._stamps.set_before, -self._stamps.set_ns)
             t_ns += self._stamps.shift_ns
+        self._topic = message.topic
         for stamp_ns, (topic, one) in self._order.push(t_ns, (message.topic, scan)):
             yield from self.add(one, stamp_ns, where=topic)
 
@@ -161,6 +164,7 @@ class ScanCollector:
         """The remaining scans, at the end."""
         for stamp_ns, (topic, scan) in self._order.flush():
             yield from self.add(scan, stamp_ns, where=topic)
+        say_set_back(self._topic, self._order.steps, self._report)
         self._report.count("scans_out_of_order", self._order.too_late)
         yield from self.deliver()
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from itertools import pairwise
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise, starmap
 from typing import Any
 
 import numpy as np
@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
+from recon4.recording.clocks.set_back import say_set_back
+from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.formats.columns import TIME, Columns
 from recon4.recording.lasers.tuning import LINES
 from recon4.recording.limits import LIMITS
+from recon4.recording.report import ImportReport
 
 
 def sweeps(blocks: Iterator[Columns], angle: str, *, number: str, where: str) -> Iterator[Columns]:
@@ -91,3 +94,27 @@ def _part(rows: Columns, part: slice) -> Mapping[str, NDArray[Any]]:
 
 def _joined(a: Columns, b: Columns) -> Mapping[str, NDArray[Any]]:
     return {name: np.concatenate([a[name], b[name]]) for name in a}
+
+
+def in_order(
+    scans: Iterable[Columns], where: str, *, late: str, report: ImportReport
+) -> Iterator[Columns]:
+    """Scans in the order of their times, which go on where their clock was set back.
+
+    Args:
+        scans: In the order of the file.
+        where: Name of the file.
+        late: Name of the count of those that are left out because they come too late.
+        report: Receives the count and where the clock was set back.
+    """
+    order: StampOrder[Columns] = StampOrder()
+    for scan in scans:
+        yield from starmap(_at, order.push(int(scan[TIME][0]), scan))
+    yield from starmap(_at, order.flush())
+    say_set_back(where, order.steps, report)
+    report.count(late, order.too_late)
+
+
+def _at(t_ns: int, scan: Columns) -> Columns:
+    """The scan with its first shot at a time [ns]."""
+    return {**scan, TIME: scan[TIME] + (t_ns - int(scan[TIME][0]))}

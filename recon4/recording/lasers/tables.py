@@ -16,7 +16,7 @@ from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.recording.formats.columns import TIME, Columns, column_names, read_columns
-from recon4.recording.lasers.sweeps import sweeps
+from recon4.recording.lasers.sweeps import in_order, sweeps
 from recon4.recording.lasers.tuning import SCAN_BEAMS
 from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
@@ -68,7 +68,8 @@ def laser_batches(path: Path, report: ImportReport, *, offset_ns: int = 0) -> It
     scans = sweeps(blocks, "beam_deg", number="scan", where=path.name)
     head = list(islice(scans, SCAN_BEAMS.grid_scans))
     collector = _ScanRows(_BeamGrid.usual(head, path.name), report)
-    for scan in chain(head, scans):
+    every = chain(head, scans)
+    for scan in in_order(every, path.name, late="scans_out_of_order", report=report):
         collector.push(scan, offset_ns)
         if len(collector) >= SCAN_BEAMS.scans_at_once:
             yield collector.take()

@@ -9,10 +9,28 @@ A constant may be left: the odometry finds the clock of an IMU.
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.tuning import BURSTS
+
+
+def first_of_bursts(t_ns: Times) -> NDArray[np.intp] | None:
+    """Rows of the first stamps of bursts; None = they do not come in bursts.
+
+    Args:
+        t_ns: Stamps in order, or in that of arrival, without copies [ns], (N,).
+    """
+    steps = np.diff(t_ns)
+    ahead = steps >= 0
+    going_on = steps[ahead & (steps < BURSTS.longest_ns)]
+    if len(going_on) < BURSTS.fewest or not going_on.any():
+        return None
+    short = ahead & (steps <= BURSTS.short * np.mean(going_on))
+    if np.count_nonzero(short) < BURSTS.least * len(steps):
+        return None
+    return np.flatnonzero(np.append(True, ~short))
 
 
 def without_bursts(t_ns: Times, report: ImportReport) -> Times:
@@ -22,14 +40,9 @@ def without_bursts(t_ns: Times, report: ImportReport) -> Times:
         t_ns: Stamps in order, without copies [ns], (N,).
         report: Receives the count ``imu_in_bursts``.
     """
-    steps = np.diff(t_ns)
-    going_on = steps[steps < BURSTS.longest_ns]
-    if len(going_on) < BURSTS.fewest or not going_on.any():
+    first = first_of_bursts(t_ns)
+    if first is None:
         return t_ns
-    short = steps <= BURSTS.short * np.mean(going_on)
-    if np.count_nonzero(short) < BURSTS.least * len(steps):
-        return t_ns
-    first = np.flatnonzero(np.append(True, ~short))
     counts = np.diff(np.append(first, len(t_ns)))
     between_ns = np.diff(t_ns[first])
     since_ns = between_ns / counts[1:]

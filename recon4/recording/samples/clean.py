@@ -14,9 +14,10 @@ from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.recording.clocks.set_back import going_on, say_set_back
 from recon4.recording.clocks.stamps import strays
 from recon4.recording.report import ImportReport
-from recon4.recording.samples.bursts import without_bursts
+from recon4.recording.samples.bursts import first_of_bursts, without_bursts
 from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
 from recon4.recording.samples.tuning import CARRIED_ON, REPEATED
 from recon4.recording.samples.units import GyroUnit, in_degrees, in_m_s2, in_rad_s
@@ -147,18 +148,30 @@ def _without_strays(samples: Samples, kind: str, report: ImportReport) -> Sample
 
 
 def _sorted(samples: Samples, offset_s: float, kind: str, *, report: ImportReport) -> Samples:
-    t_ns = samples.t_ns
-    report.count(f"{kind}_unsorted", int(np.count_nonzero(np.diff(t_ns) < 0)))
-    order = np.argsort(t_ns, kind="stable")
-    new = np.diff(t_ns[order], prepend=np.iinfo(np.int64).min) != 0 if len(order) else order > 0
-    copies = ~new & _equal_to_last(samples, order)
+    order = np.argsort(samples.t_ns, kind="stable")
+    new = np.diff(samples.t_ns[order], prepend=np.iinfo(np.int64).min) != 0 if len(order) else order
+    copies = (new == 0) & _equal_to_last(samples, order)
     report.count(f"{kind}_copies", int(np.count_nonzero(copies)))
-    samples = _take(samples, order[~copies])
+    samples = _going_on(_take(samples, np.sort(order[~copies])), kind, report)
+    report.count(f"{kind}_unsorted", int(np.count_nonzero(np.diff(samples.t_ns) < 0)))
+    samples = _take(samples, np.argsort(samples.t_ns, kind="stable"))
     found_ns = without_bursts(samples.t_ns, report) if kind == "imu" else samples.t_ns
     new = np.diff(found_ns, prepend=np.iinfo(np.int64).min) != 0
     report.count(f"{kind}_duplicate", int(np.count_nonzero(~new)))
     samples, shifted = _take(samples, new), found_ns[new] + round(offset_s * 1e9)
     return _build(samples, lambda n: shifted if n == "t_ns" else getattr(samples, n))
+
+
+def _going_on(samples: Samples, kind: str, report: ImportReport) -> Samples:
+    """Samples in order of arrival, on a clock that goes on where it was set back."""
+    first = first_of_bursts(samples.t_ns)
+    first = np.arange(len(samples)) if first is None else first
+    found = going_on(samples.t_ns[first])
+    if found is None:
+        return samples
+    say_set_back(kind.upper(), found.steps, report)
+    t_ns = samples.t_ns + np.repeat(found.shift_ns, np.diff(np.append(first, len(samples))))
+    return _build(samples, lambda name: t_ns if name == "t_ns" else getattr(samples, name))
 
 
 def _equal_to_last(samples: Samples, order: NDArray[np.int64]) -> NDArray[np.bool_]:

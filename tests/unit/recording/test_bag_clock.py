@@ -66,14 +66,18 @@ def test_a_bag_goes_on_where_its_recorder_was_set_back(
     assert found.seconds == pytest.approx(2.395, abs=0.02)
 
 
-def test_a_clock_that_went_back_within_a_chunk_of_a_large_file_is_said(tmp_path, monkeypatch):
+@pytest.mark.parametrize("stamps_too", [False, True], ids=["recorder", "both"])
+def test_a_large_file_goes_on_within_a_chunk(tmp_path, monkeypatch, stamps_too):
     small = structs.replace(bag_clock.RECORDER_STEPS, whole_bytes=0)
     monkeypatch.setattr(bag_clock, "RECORDER_STEPS", small)
-    path = write(tmp_path, "mcap", back_s=0.08, stamps_too=True, imu_hz=200)
+    path = write(tmp_path, "mcap", back_s=0.08, stamps_too=stamps_too, imu_hz=200)
 
-    _, _, report = read(path)
+    _, shots, report = read(path)
 
-    assert warned(report, K.CLOCK_JUMP, sensor="/points", jump_s=-0.08, times="used")
+    assert [int(np.median(one.intensity)) for one in shots] == list(range(FRAMES))
+    starts = np.array([one.t_ns[0] for one in shots])
+    assert np.allclose(np.diff(starts), STEP_NS, atol=1_000_000)
+    assert warned(report, K.CLOCK_JUMP, whose="recorder", jump_s=-0.08)
 
 
 def rows(*parts):
