@@ -41,16 +41,19 @@ class FrameView:
         """The same in the order in which the point map adds them fastest."""
         return frame_points(self.frame, self._rig, by_ring=True)
 
-    def scan(self) -> Array:
-        """All points, in the body [m], (N, 3)."""
-        return body_points(self.frame, self._rig)
+    def scan(self, motion: SE3) -> Array:
+        """All points, in the body [m], (N, 3); those of a rosette as of its middle.
+
+        Args:
+            motion: Of the body over the frame.
+        """
+        return body_points(self.frame, self._rig, motion)
 
     def locate_in(self, chain: ScanChain) -> SE3 | None:
         """Pose in the last good scan of a chain, or None; what was distorted is undistorted."""
         before = chain.motion
         for _ in range(times_located(self._rig)):
-            points = body_points(self.frame, self._rig, before)
-            found = chain.locate(points, self.frame.t_mid_ns)
+            found = chain.locate(self.scan(before), self.frame.t_mid_ns)
             if found is None or not (before.inverse() @ found).moves_more_than(
                 SCAN_CHAIN.settled_m
             ):

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.geometry.se3 import Array, so3_exp
+from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -22,12 +22,13 @@ from recon4.registration.lost import LostLimits
 from recon4.registration.met_fixes import MetFixes
 from recon4.registration.motion import FreeMotion, ImuMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
-from recon4.registration.scan_chain import ScanChain, body_points
+from recon4.registration.scan_chain import ScanChain, body_points, times_located
 from recon4.registration.state_vector import STATE, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import SCANS, OdometryTuning, ScanTuning, registration_tuning
 from recon4.registration.tuning_imu import IMU_MOTION
+from recon4.registration.tuning_matching import SCAN_CHAIN
 from recon4.registration.tuning_motion import MOVING_START
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.settings.reads import OdometryReads
@@ -181,12 +182,18 @@ def starting_velocity(
     span_ns = second.t_mid_ns - first.t_mid_ns
     if not 0 < span_ns <= MOVING_START.longest_ns:
         return None
-    chain = ScanChain(settings)
-    chain.locate(body_points(first, rig), first.t_mid_ns)
-    chain.keep(chain.located, first.t_mid_ns)
-    found = chain.locate(body_points(second, rig), second.t_mid_ns)
-    if found is None or not chain.is_sure:
-        return None
+    found = SE3.identity()
+    for _ in range(times_located(rig)):
+        motion = SE3.exp(found.log() * (first.duration_ns / span_ns))
+        chain = ScanChain(settings)
+        chain.locate(body_points(first, rig, motion), first.t_mid_ns)
+        chain.keep(chain.located, first.t_mid_ns)
+        before, located = found, chain.locate(body_points(second, rig, motion), second.t_mid_ns)
+        if located is None or not chain.is_sure:
+            return None
+        found = located
+        if not (before.inverse() @ found).moves_more_than(SCAN_CHAIN.settled_m):
+            break
     velocity = found.t / (1e-9 * span_ns)
     return velocity if float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s else None
 

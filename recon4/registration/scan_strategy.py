@@ -68,7 +68,7 @@ class ScanStrategy:
         """See `MotionStrategy.bridge`."""
         if view.start_ns - last_ns < SCAN_MOTION.unseen_ns:
             return None
-        found = self._chain.bridge(view.scan(), view.frame.t_mid_ns)
+        found = self._chain.bridge(view.scan(self._chain.motion), view.frame.t_mid_ns)
         if found is None:
             return None
         return self._through(self._chain.last[0] @ found, view)

@@ -1,5 +1,6 @@
 """Registration of two single scans: a room with known walls, turned and moved."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,6 +11,7 @@ from recon4.geometry.se3 import SE3
 from recon4.kernels.scans import accumulate_symmetric, neighbor_normals
 from recon4.model.multiframe import Multiframe
 from recon4.registration.frame_view import FrameView
+from recon4.registration.imu_strategy import starting_velocity
 from recon4.registration.result import StopReason
 from recon4.registration.scan_chain import ScanChain
 from recon4.registration.scan_registration import (
@@ -207,3 +209,38 @@ def test_scans_of_a_rosette_are_undistorted_by_the_turn_that_they_show():
 
     assert as_of_a_rosette == pytest.approx(1.275, abs=0.02)
     assert abs(as_measured - 1.275) > 0.3
+
+
+def walking(*, number, m_s=1.5):
+    """A multiframe of a body that walks along x, and sees what is in front first, then last."""
+    frame = turning(0.0, 0.0, number=number)
+    x_m = frame.xyz[:, 0]
+    ahead = (x_m - x_m.min()) / np.ptp(x_m)
+    fraction = ahead if number % 2 else 1.0 - ahead
+    moved_m = m_s * 0.1 * (number + fraction[:, None]) * [1.0, 0.0, 0.0]
+    dt_ns = (fraction * frame.duration_ns).astype(np.int32)
+    return replace(frame, xyz=(frame.xyz - moved_m).astype(np.float32), dt_ns=dt_ns)
+
+
+def off_at_the_start(model):
+    """By how much the velocity is wrong that is found between two multiframes [m/s]."""
+    found = starting_velocity(walking(number=0), walking(number=1), rig=one_sensor(model))
+    return float(np.linalg.norm(found - [1.5, 0.0, 0.0]))
+
+
+def test_the_first_velocity_by_a_rosette_is_that_of_undistorted_scans():
+    of_a_rosette, as_measured = (off_at_the_start(model) for model in ("Mid-360", "VLP-16"))
+
+    assert of_a_rosette < as_measured / 3
+
+
+def test_a_scan_across_a_gap_is_undistorted_by_the_last_motion():
+    frame, turn = turning(0.0, 0.4, number=0), SE3.from_rpy(0.0, 0.0, 0.4, t=np.zeros(3))
+    still = turning(0.2, 0.2, number=0).xyz
+
+    as_of_a_rosette, as_measured = (
+        FrameView(frame, one_sensor(model)).scan(turn) for model in ("Mid-360", "VLP-16")
+    )
+
+    np.testing.assert_allclose(as_of_a_rosette, still, atol=1e-4)
+    np.testing.assert_allclose(as_measured, frame.xyz, atol=1e-6)
