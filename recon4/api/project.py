@@ -16,6 +16,7 @@ from recon4.locales.coded import CodedText, unreadable
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.usability import MapVerdict, Usability
+from recon4.untrusted.typed import as_type
 
 if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
@@ -189,7 +190,7 @@ def open_project(folder: str | PathLike[str]) -> MapProject:
     if record is None:
         raise StoreError(CodedText("project-no-run", root=str(root)))
     try:
-        summary = msgspec.convert(record, ProjectSummary)
+        summary = as_type(record, ProjectSummary)
         if "findings" not in record:
             summary = replace(summary, findings=_earlier_findings(record.get("warnings", [])))
         return MapProject(root, summary)
@@ -200,7 +201,7 @@ def open_project(folder: str | PathLike[str]) -> MapProject:
 def _earlier_findings(warnings: object) -> tuple[MapFinding, ...]:
     """Findings of ``summary.json`` before format 3: its warnings, which were sentences."""
     kind, level = FindingKind.EARLIER_REMARK, Level.CHECK
-    texts = msgspec.convert(warnings, tuple[str, ...])
+    texts = as_type(warnings, tuple[str, ...])
     return tuple(
         MapFinding(kind=kind, level=level, values={"text": text}, text=text) for text in texts
     )

@@ -14,6 +14,7 @@ from recon4.store.formats import FORMATS
 from recon4.store.hashing import hash_json
 from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import as_type
 
 _LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
 
@@ -70,7 +71,7 @@ def read_list(path: Path) -> BackupListing:
     if record.get("format") != FORMATS.backup or record.get("sha256") != hash_json(body):
         raise StoreError(CodedText("backup-changed", file=str(path)))
     try:
-        listing = msgspec.convert(body, BackupListing)
+        listing = as_type(body, BackupListing)
     except msgspec.ValidationError as error:
         raise StoreError(CodedText("backup-no-listing", file=str(path), why=str(error))) from error
     for name, entry in listing.files.items():

@@ -20,6 +20,7 @@ from recon4.model.usability import verdict_in
 from recon4.store.atomic import write_json, write_text
 from recon4.store.json_files import read_object
 from recon4.store.project import SUMMARY
+from recon4.untrusted.typed import as_type
 
 FAILED, UNFINISHED = "failed", "unfinished"
 
@@ -70,7 +71,7 @@ def _row_of_map(task: WalkTask) -> BatchRow:
     summary = read_object(Path(task.out) / SUMMARY)
     verdict = verdict_in(summary)
     try:
-        figures = msgspec.convert(summary, _SummaryFigures)
+        figures = as_type(summary, _SummaryFigures)
     except msgspec.ValidationError as error:
         raise StoreError(
             CodedText("batch-summary", summary=SUMMARY, task=task.name, why=str(error))

@@ -26,6 +26,7 @@ from recon4.store.frame_folders import FrameFolders
 from recon4.store.unfinished import unfinished_file
 from recon4.untrusted.bounded import read_bytes_limited
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import decoded
 
 _WALK, _CARRIER = "walk.json", "carrier.npz"
 
@@ -58,7 +59,7 @@ class ClassedWalk(msgspec.Struct, frozen=True, kw_only=True):
         """
         data = read_bytes_limited(folder / _WALK, LIMITS.tile_list_bytes, failure=StoreError)
         try:
-            walk = msgspec.json.decode(data, type=ClassedWalk)
+            walk = decoded(data, ClassedWalk)
         except (msgspec.DecodeError, RecursionError) as error:
             raise StoreError(f"{_WALK}: {error}") from error
         arrays = load_arrays(folder / _CARRIER, ["inner", "around"])

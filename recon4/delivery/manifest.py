@@ -15,6 +15,7 @@ from recon4.review.signature import has_valid_signature, sign
 from recon4.store.formats import FORMATS
 from recon4.store.json_files import parse_object
 from recon4.untrusted.names import visible
+from recon4.untrusted.typed import as_type
 
 MANIFEST = "manifest.json"
 KIND = "recon4 delivery"
@@ -71,7 +72,7 @@ def read_manifest(data: bytes) -> DeliveryManifest:
             CodedText("manifest-format", manifest=MANIFEST, kind=KIND, delivery=FORMATS.delivery)
         )
     try:
-        found = msgspec.convert(record, DeliveryManifest)
+        found = as_type(record, DeliveryManifest)
     except msgspec.ValidationError as error:
         raise StoreError(at(MANIFEST, visible(str(error)))) from error
     if not found.files or len(found.files) > DELIVERIES.max_files:

@@ -15,6 +15,7 @@ from recon4.evaluation.tuning import ACCURACY_CLASSES
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts, texts
+from recon4.untrusted.typed import as_type
 
 Offset = tuple[float | None, float | None, float | None]
 _HEAD = "point de dn dh d2 d3 sd-h sd-v redundancy mde-h mde-v w"
@@ -86,7 +87,7 @@ def control_in(record: Mapping[str, object]) -> ControlOutcome | None:
     if "control" not in record:
         return None
     try:
-        return msgspec.convert(record["control"], ControlOutcome)
+        return as_type(record["control"], ControlOutcome)
     except msgspec.ValidationError as error:
         raise StoreError(CodedText("control-unreadable", why=str(error))) from error
 

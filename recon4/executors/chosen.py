@@ -17,6 +17,7 @@ from recon4.executors.tuning import CLUSTER
 from recon4.locales.coded import CodedText, at, text_of
 from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
+from recon4.untrusted.typed import as_type
 
 if TYPE_CHECKING:
     from recon4.executors.cluster import Certificates, Cluster
@@ -75,7 +76,7 @@ def read_choice(state: Path) -> ChosenWorkers:
     if not path.exists():
         return ChosenWorkers()
     try:
-        return checked_choice(msgspec.convert(read_object(path), ChosenWorkers))
+        return checked_choice(as_type(read_object(path), ChosenWorkers))
     except (msgspec.ValidationError, ConfigError) as error:
         raise StoreError(at(str(path), text_of(error))) from error
 

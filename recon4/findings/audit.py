@@ -22,6 +22,7 @@ from recon4.model.finding import Finding, Level, worst_first
 from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import as_type
 
 FINDINGS = "findings.json"
 
@@ -61,7 +62,7 @@ def load_findings(folder: Path) -> tuple[Finding, ...]:
     """
     record = read_object(folder / FINDINGS, max_bytes=LIMITS.findings_bytes)
     try:
-        return tuple(msgspec.convert(record.get("findings"), list[Finding]))
+        return tuple(as_type(record.get("findings"), list[Finding]))
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(FINDINGS, error)) from error
 

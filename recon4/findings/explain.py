@@ -23,6 +23,7 @@ from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
+from recon4.untrusted.typed import as_type
 
 _WIDTH = 88
 _INTRODUCTION = """\
@@ -176,7 +177,7 @@ class _Measured(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 def sources() -> tuple[MeasuredRuns, ...]:
     """All sources, the largest first."""
     text = resources.files("recon4.findings").joinpath("measured.toml").read_text("utf-8")
-    return msgspec.convert(tomllib.loads(text), _Measured).sources
+    return as_type(tomllib.loads(text), _Measured).sources
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ import msgspec
 from recon4.findings.wording import said
 from recon4.locales.languages import ENGLISH
 from recon4.model.finding import Finding
+from recon4.untrusted.typed import as_type
 
 
 def summary_in(language: str, summary: Mapping[str, object]) -> dict[str, object]:
@@ -34,7 +35,7 @@ def _said_again(record: object, language: str) -> object:
     if isinstance(values, dict):  # null in a file is what is not known
         known = {**known, "values": {key: one for key, one in values.items() if one is not None}}
     try:
-        return {**known, **said(msgspec.convert(known, Finding), language)}
+        return {**known, **said(as_type(known, Finding), language)}
     except (msgspec.ValidationError, KeyError):
         return record
 

@@ -10,6 +10,7 @@ import numpy as np
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.model.rejected_fixes import RejectedRun, rejected_runs
+from recon4.untrusted.typed import as_type
 
 
 class LevelFacts(msgspec.Struct, frozen=True):
@@ -67,6 +68,6 @@ def placement_in(record: Mapping[str, object]) -> Placement:
         StoreError: If a value has another type.
     """
     try:
-        return msgspec.convert(record, Placement)
+        return as_type(record, Placement)
     except msgspec.ValidationError as error:
         raise StoreError(CodedText("georeference-unreadable", why=str(error))) from error

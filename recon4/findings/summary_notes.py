@@ -10,6 +10,7 @@ import msgspec
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.model.finding import Level, Point
+from recon4.untrusted.typed import as_type
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -43,7 +44,7 @@ def findings_in(summary: Mapping[str, object]) -> list[SaidFinding] | None:
     if record is None:
         return None
     try:
-        return msgspec.convert(record, list[SaidFinding])
+        return as_type(record, list[SaidFinding])
     except msgspec.ValidationError as error:
         raise StoreError(CodedText("summary-findings-unreadable", why=str(error))) from error
 

@@ -35,6 +35,7 @@ from recon4.store.earlier_names import STEPS, current_names
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.json_files import read_object
 from recon4.store.stage import OfStage, read_figures, read_manifest
+from recon4.untrusted.typed import as_type
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -192,7 +193,7 @@ def _calibration(artifacts: Mapping[str, Path]) -> CalibrationFigures | None:
     if record is None:
         return None
     try:
-        return msgspec.convert(record, CalibrationFigures)
+        return as_type(record, CalibrationFigures)
     except msgspec.ValidationError as error:
         raise StoreError(f"calibration/calibration.json cannot be read: {error}") from error
 
@@ -235,7 +236,7 @@ def _earlier_warnings(artifacts: Mapping[str, Path]) -> tuple[tuple[str, bool], 
 def _sentences(artifacts: Mapping[str, Path], stage: str) -> _Sentences:
     if _file(artifacts, stage, "manifest.json") is None:
         return _Sentences()
-    return msgspec.convert(read_manifest(artifacts[stage])["figures"], _Sentences)
+    return as_type(read_manifest(artifacts[stage])["figures"], _Sentences)
 
 
 def _latest_trajectory(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> Trajectory | None:

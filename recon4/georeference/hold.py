@@ -32,6 +32,7 @@ from recon4.store.atomic import copy_file
 from recon4.store.json_files import read_object
 from recon4.store.stage import read_figures
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import as_type
 
 KEPT = ("trajectory.npz", "georeference.json", "mirrors.npz", "uncertainty.npz")
 """Files of the map without decisions that a held one has, too."""
@@ -122,7 +123,7 @@ def _has_same_place(leveled: LeveledMap, undecided: Path) -> bool:
     record = read_object(undecided / "georeference.json", max_bytes=LIMITS.findings_bytes)
     own = to_plain({"crs": leveled.crs or {}, "georeference": leveled.georeference.record()})
     try:
-        before, after = (msgspec.convert(one, _Georeference) for one in (record, own))
+        before, after = (as_type(one, _Georeference) for one in (record, own))
     except msgspec.ValidationError as error:
         raise StoreError(at("georeference.json", str(error))) from error
     return before.place == after.place

@@ -44,6 +44,7 @@ from recon4.store.arrays import (
 from recon4.store.atomic import atomic_file
 from recon4.untrusted.bounded import read_bytes_limited
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import decoded
 
 _ARRAYS, _FACTS, _TABLE, _PATHS = "recipe.npz", "recipe.json", "table.npz", "paths.npz"
 _INDICES = ("ground", "below", "cubes")
@@ -135,7 +136,7 @@ class TileMaker:
         """
         data = read_bytes_limited(folder / _FACTS, LIMITS.tile_list_bytes, failure=StoreError)
         try:
-            facts = msgspec.json.decode(data, type=_Facts)
+            facts = decoded(data, _Facts)
         except (msgspec.DecodeError, RecursionError) as error:
             raise StoreError(f"{_FACTS}: {error}") from error
         arrays, grid = load_arrays(folder / _ARRAYS), Grid.of(facts.settings)

@@ -12,6 +12,7 @@ from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
+from recon4.untrusted.typed import as_type
 
 HEIGHTS_UNSTATED, HEIGHTS_ORTHOMETRIC = "gnss_heights_unstated", "gnss_heights_orthometric"
 """Counts of fixes whose height is taken as ellipsoidal because nothing says what it is above, and
@@ -55,8 +56,8 @@ def import_notes(report: Mapping[str, object], mount_doubts: Sequence[str] = ())
         StoreError: If a value has another type.
     """
     try:
-        notes = msgspec.convert(report, ImportNotes)
-        sentences = msgspec.convert(report, _EarlierNotes).warnings
+        notes = as_type(report, ImportNotes)
+        sentences = as_type(report, _EarlierNotes).warnings
     except msgspec.ValidationError as error:
         raise StoreError(f"report.json of the frames cannot be read: {error}") from error
     others = (text for text in sentences if text not in mount_doubts)
@@ -74,7 +75,7 @@ def derived_in(report: Mapping[str, object]) -> tuple[Derived, ...]:
         StoreError: If a value has another type.
     """
     try:
-        found = msgspec.convert(report.get("derived", []), list[str | Derived])
+        found = as_type(report.get("derived", []), list[str | Derived])
     except msgspec.ValidationError as error:
         raise StoreError(f"report.json of the frames cannot be read: {error}") from error
     earlier = DerivedKind.EARLIER_SENTENCE

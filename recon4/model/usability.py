@@ -9,6 +9,7 @@ from enum import StrEnum
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.untrusted.typed import as_type
 
 
 class Usability(StrEnum):
@@ -57,6 +58,6 @@ def verdict_in(summary: Mapping[str, object]) -> MapVerdict | None:
     if record is None:
         return None
     try:
-        return msgspec.convert(record, MapVerdict)
+        return as_type(record, MapVerdict)
     except msgspec.ValidationError as error:
         raise StoreError(f"summary.json: its verdict cannot be read: {error}") from error

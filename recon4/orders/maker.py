@@ -26,6 +26,7 @@ from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
 from recon4.sandbox.tuning import CONFINEMENT
 from recon4.system.processes import die_with_parent
+from recon4.untrusted.typed import decoded
 
 Make = Callable[[tuple[int, ...]], None]
 """Makes a part with these numbers and leaves its file in the folder."""
@@ -70,7 +71,7 @@ def _lines() -> Iterator[bytes]:
 
 def _made(line: bytes, folder: Path) -> PartReply:
     try:
-        order = msgspec.json.decode(line, type=PartOrder)
+        order = decoded(line, PartOrder)
         _make(order.kind, folder)(order.numbers)
     except Exception as error:  # whatever it is, who ordered makes the part itself and meets it
         return PartReply(failure=f"{type(error).__name__}: {error}"[: ORDERS.failure])

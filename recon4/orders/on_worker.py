@@ -25,6 +25,7 @@ from recon4.orders.tuning import ORDERS
 from recon4.sandbox import ONE_THREAD, allowed_environment
 from recon4.sandbox.private_cache import is_compiled
 from recon4.store.package_versions import versions
+from recon4.untrusted.typed import decoded
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +137,7 @@ class _Maker:
         try:
             self._process.stdin.write(msgspec.json.encode(order) + b"\n")
             self._process.stdin.flush()
-            return msgspec.json.decode(self._reply(say), type=PartReply).failure[: ORDERS.failure]
+            return decoded(self._reply(say), PartReply).failure[: ORDERS.failure]
         except (BrokenPipeError, EOFError):
             return f"the process that made it ended with code {self._process.wait()}"
         except (TimeoutError, msgspec.DecodeError, RecursionError) as error:

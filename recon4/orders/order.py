@@ -17,6 +17,7 @@ import msgspec
 
 from recon4.errors import Recon4Error
 from recon4.orders.tuning import ORDERS
+from recon4.untrusted.typed import decoded
 
 _LENGTH = struct.Struct(">I")
 """Header of a message: number of bytes that follow."""
@@ -158,7 +159,7 @@ def receive(file: BinaryIO, kind: type[Message]) -> Message | None:
     if data is None:
         return None
     try:
-        return msgspec.json.decode(data, type=kind)
+        return decoded(data, kind)
     except (msgspec.DecodeError, ValueError, RecursionError) as error:
         raise OrderRefused(str(error)[: ORDERS.failure]) from error
 

@@ -22,6 +22,7 @@ from recon4.store.atomic import atomic_file, fsync
 from recon4.store.frame_folders import FrameFolders
 from recon4.untrusted.bounded import read_bytes_limited
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import decoded
 
 VIEWS = "views"
 _SEARCH = "search.json"
@@ -57,7 +58,7 @@ class SearchInputs(msgspec.Struct, frozen=True, kw_only=True):
         path = folder / _SEARCH
         data = read_bytes_limited(path, LIMITS.tile_list_bytes, failure=StoreError)
         try:
-            found = msgspec.json.decode(data, type=_Search)
+            found = decoded(data, _Search)
         except (msgspec.DecodeError, RecursionError) as error:
             raise StoreError(f"{_SEARCH}: {error}") from error
         views = folder / VIEWS

@@ -15,6 +15,7 @@ from recon4.report.tuning import PROJECT_FACTS
 from recon4.store.json_files import read_object
 from recon4.store.project import ProjectDescription, read_artifacts
 from recon4.store.stage_settings import settings_in
+from recon4.untrusted.typed import as_type
 
 
 class _Stage(msgspec.Struct):
@@ -56,7 +57,7 @@ def project_facts(root: Path, evaluation: Evaluation | None = None) -> ReportFac
     described = ProjectDescription.read(root)
     artifacts = read_artifacts(root)
     try:
-        summary = msgspec.convert(record, _Summary)
+        summary = as_type(record, _Summary)
         return ReportFacts(
             title=summary.name,
             created=summary.created,

@@ -20,6 +20,7 @@ from recon4.locales.coded import unreadable
 from recon4.review.tuning import ANNOTATION_FILES
 from recon4.store.json_files import read_object
 from recon4.store.seal import check_sealed
+from recon4.untrusted.typed import as_type
 
 Point = tuple[float, float, float]
 
@@ -87,7 +88,7 @@ def _entries(root: Path, name: str, kind: type[list[Entry]]) -> list[Entry]:
     try:
         if found.get("format") != ANNOTATION_FILES.format:
             raise ValueError(f"expected format {ANNOTATION_FILES.format}")
-        return msgspec.convert(found.get("items"), kind)
+        return as_type(found.get("items"), kind)
     except ValueError as error:
         raise StoreError(unreadable(name, error)) from error
 

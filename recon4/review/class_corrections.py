@@ -18,6 +18,7 @@ from recon4.model.class_corrections import ClassCorrection, Reclassified, titles
 from recon4.model.trajectory import Trajectory
 from recon4.review.decisions import Decided, StandingCorrection
 from recon4.store.arrays import load_trajectory
+from recon4.untrusted.typed import as_type
 
 
 class _InMap(msgspec.Struct, frozen=True):
@@ -59,7 +60,7 @@ def corrections_in_map(summary: Mapping[str, object] | None) -> tuple[str, ...]:
         StoreError: If it is damaged.
     """
     try:
-        found = msgspec.convert((summary or {}).get("corrections", ()), tuple[_InMap, ...])
+        found = as_type((summary or {}).get("corrections", ()), tuple[_InMap, ...])
     except msgspec.ValidationError as error:
         raise StoreError(CodedText("summary-corrections-unreadable", why=str(error))) from error
     return tuple(one.id for one in found)

@@ -21,6 +21,7 @@ from recon4.model.volumes import Box, Brush, Prism, Sphere, Volume
 from recon4.review.tuning import CORRECTION_FILES
 from recon4.untrusted.bounded import read_text_limited
 from recon4.untrusted.names import check_note
+from recon4.untrusted.typed import as_type
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,7 @@ def _of_json(text: str, name: str) -> Iterable[ListedCorrection]:
     for k, entry in enumerate(entries, start=1):
         where = f"{name}, correction {k}"
         try:
-            one = msgspec.convert(entry, _Entry)
+            one = as_type(entry, _Entry)
         except msgspec.ValidationError as error:
             raise ConfigError(at(where, str(error))) from error
         yield _listed(where, one.volume, one.to, only=one.only, why=one.why)

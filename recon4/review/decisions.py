@@ -21,6 +21,7 @@ from recon4.model.pose_graph import AUTOMATIC
 from recon4.model.site_control import SiteControl
 from recon4.review.row_contents import ApprovalFacts, Measurement, SeenFinding, measurement_in
 from recon4.store.hashing import hash_json
+from recon4.untrusted.typed import as_type
 
 Pair = tuple[int, int]
 """Ids of two multiframes, the earlier one first."""
@@ -197,10 +198,10 @@ class Decision:
                 pair=pair,
                 T_i_j=tuple(body["T_i_j"]),
                 measurement=measurement_in(record) if record else None,
-                facts=msgspec.convert(body["facts"], ApprovalFacts | None),
-                finding=msgspec.convert(body.get("finding"), SeenFinding | None),
-                control=msgspec.convert(body.get("control"), SiteControl | None),
-                correction=msgspec.convert(body.get("correction"), ClassCorrection | None),
+                facts=as_type(body["facts"], ApprovalFacts | None),
+                finding=as_type(body.get("finding"), SeenFinding | None),
+                control=as_type(body.get("control"), SiteControl | None),
+                correction=as_type(body.get("correction"), ClassCorrection | None),
                 withdraws=body.get("withdraws", ""),
                 assignee=body.get("assignee", ""),
             )

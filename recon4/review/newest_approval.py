@@ -24,6 +24,7 @@ from recon4.store.atomic import make_folders, write_json
 from recon4.store.checked import Altered
 from recon4.store.formats import FORMATS
 from recon4.store.json_files import read_object
+from recon4.untrusted.typed import as_type
 
 APPROVALS = "approvals"
 
@@ -151,7 +152,7 @@ def _read(path: Path) -> NewestApproval | None:
     try:
         if record.pop("format", None) != FORMATS.newest_approval:
             raise msgspec.ValidationError(f"expected format {FORMATS.newest_approval}")
-        return msgspec.convert(record, NewestApproval)
+        return as_type(record, NewestApproval)
     except msgspec.ValidationError as error:
         raise StoreError(
             CodedText("approved-list-damaged", folder=APPROVALS, file=path.name, why=text_of(error))

@@ -30,6 +30,7 @@ from recon4.store.checked import Altered
 from recon4.store.formats import FORMATS
 from recon4.store.json_files import read_object
 from recon4.untrusted.names import visible
+from recon4.untrusted.typed import as_type
 
 STATE = ".recon4"
 """Folder of a server's own files, in its folder of projects."""
@@ -271,7 +272,7 @@ def _read(path: Path) -> TrustedKey:
     if record.pop("format", None) != FORMATS.trusted_key:
         raise StoreError(CodedText("keys-format", trusted_key=FORMATS.trusted_key))
     try:
-        key = msgspec.convert(record, TrustedKey)
+        key = as_type(record, TrustedKey)
     except msgspec.ValidationError as error:
         raise StoreError(str(error)) from error
     if not _PUBLIC_KEY.fullmatch(key.public_key) or path.stem != key.fingerprint:

@@ -24,6 +24,7 @@ from recon4.slices.tuning_files import REFERENCES
 from recon4.store.arrays import load_arrays
 from recon4.store.json_files import read_object
 from recon4.untrusted.names import visible
+from recon4.untrusted.typed import as_type
 
 if TYPE_CHECKING:
     from recon4.geometry.raycast import Scene
@@ -241,7 +242,7 @@ def read_facts(folder: Path) -> ReferenceFacts:
     """
     record = read_object(folder / "reference.json", max_bytes=REFERENCES.max_facts_bytes)
     try:
-        facts = msgspec.convert(_with_statements(record), ReferenceFacts)
+        facts = as_type(_with_statements(record), ReferenceFacts)
     except msgspec.ValidationError as error:
         raise StoreError(at(f"{folder.name}/reference.json", str(error))) from error
     return replace(

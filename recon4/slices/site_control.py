@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import msgspec
 import numpy as np
 
 from recon4.errors import ConfigError, GeoreferenceError
@@ -45,6 +44,7 @@ from recon4.store.arrays import load_trajectory
 from recon4.store.frames import open_frames
 from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import as_type
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -196,7 +196,7 @@ def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
 
 def trial_outcome(trial: ControlTrial) -> ControlOutcome:
     """The same record as a finished map has."""
-    return msgspec.convert(to_plain(trial.record), ControlOutcome)
+    return as_type(to_plain(trial.record), ControlOutcome)
 
 
 def unseen_text(trial: ControlTrial, language: str = ENGLISH) -> tuple[str, ...]:

@@ -22,6 +22,7 @@ from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
 from recon4.store.seal import changing, check_sealed
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import as_type
 
 SEEN_PICKS = "slices/seen_picks.json"
 """Below the project: id -> `SeenPick`."""
@@ -84,7 +85,7 @@ def carried_picks(
     check_sealed(project, SEEN_PICKS)
     try:
         record = read_object(path, max_bytes=LIMITS.findings_bytes)
-        kept = msgspec.convert(record, dict[str, SeenPick])
+        kept = as_type(record, dict[str, SeenPick])
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error
     trajectory = load_trajectory(level / TRAJECTORY)
@@ -131,6 +132,6 @@ def as_stored(project: Path) -> StoredPicks:
     if not path.is_file():
         return StoredPicks()
     try:
-        return msgspec.convert(read_object(path, max_bytes=LIMITS.findings_bytes), StoredPicks)
+        return as_type(read_object(path, max_bytes=LIMITS.findings_bytes), StoredPicks)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error

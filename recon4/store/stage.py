@@ -30,6 +30,7 @@ from recon4.store.project import Project
 from recon4.store.resource_usage import Meter
 from recon4.store.seal import changing, check_sealed
 from recon4.store.unfinished import keeping
+from recon4.untrusted.typed import as_type
 
 SAVING = "save"
 """Name of the task in which an artifact is hashed and written to disk."""
@@ -319,11 +320,10 @@ def read_figures(folder: Path, kind: type[OfStage]) -> OfStage:
         StoreError: If they are missing or damaged.
     """
     try:
-        return msgspec.convert(read_manifest(folder)["figures"], kind)
+        return as_type(read_manifest(folder)["figures"], kind)
     except msgspec.ValidationError as error:
-        raise StoreError(
-            CodedText("stage-figures", folder=str(folder / "manifest.json"), why=str(error))
-        ) from error
+        manifest = str(folder / "manifest.json")
+        raise StoreError(CodedText("stage-figures", folder=manifest, why=str(error))) from error
 
 
 def figures_of(runs: Mapping[str, StageRun[Any]], stage: Stage[Any, OfStage]) -> OfStage:
@@ -359,7 +359,7 @@ def damage_of(folder: Path, *, hashes: bool) -> list[str]:
 def _finished_stage(artifact: Artifact) -> FinishedStage:
     """The record in a manifest, for a ledger that lost it."""
     try:
-        return msgspec.convert(artifact.manifest()["done"], FinishedStage)
+        return as_type(artifact.manifest()["done"], FinishedStage)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(str(artifact.folder / "manifest.json"), error)) from error
 

@@ -12,6 +12,7 @@ from recon4.locales.coded import CodedText
 from recon4.model.tried_hypotheses import TriedHypothesis
 from recon4.store.atomic import write_json
 from recon4.store.json_files import read_object
+from recon4.untrusted.typed import as_type
 
 TABLE_FILE = "hypotheses.json"
 """In the folder of the stage ``odometry``; earlier versions have none."""
@@ -32,6 +33,6 @@ def read_tried(folder: Path) -> tuple[TriedHypothesis, ...]:
     if not path.exists():
         return ()
     try:
-        return msgspec.convert(read_object(path).get("tried"), tuple[TriedHypothesis, ...])
+        return as_type(read_object(path).get("tried"), tuple[TriedHypothesis, ...])
     except msgspec.ValidationError as error:
         raise StoreError(CodedText("file-damaged", file=str(path), why=str(error))) from error

@@ -41,7 +41,7 @@ def compile_kernels(progress: Progress) -> bool:
         spawn = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(mp_context=spawn, initializer=die_with_parent) as pool:
             done = _compiled(pool, calls)
-            for _ in track(done, progress, what="Compile", unit="kernels", total=len(calls)):
+            for _ in track(done, progress, what="kernels", unit="kernels", total=len(calls)):
                 pass
         mark_compiled()
         return True

@@ -42,13 +42,13 @@ MAY_IMPORT = {
     "recon4/settings": {"recon4.errors", "recon4.locales", "recon4.settings"},
     "recon4/executors": {"recon4.errors", "recon4.executors", "recon4.locales"},
     "recon4/executors/chosen.py": {"recon4.errors", "recon4.executors", "recon4.locales"}
-    | {"recon4.store.atomic", "recon4.store.json_files"},
+    | {"recon4.store.atomic", "recon4.store.json_files", "recon4.untrusted.typed"},
     "recon4/orders": {"recon4.errors", "recon4.orders", "recon4.executors.executor"}
     | {"recon4.store.package_versions", "recon4.sandbox", "recon4.system.processes"}
-    | {"recon4.untrusted.names", "recon4.progress", "recon4.model.events"},
+    | {"recon4.untrusted", "recon4.progress", "recon4.model.events"},
     "recon4/orders/child.py": {"recon4"},
     "recon4/orders/maker.py": {"recon4.orders", "recon4.sandbox", "recon4.system.processes"}
-    | {"recon4.recording.formats.scratch", "recon4.mapping.tile_files"}
+    | {"recon4.recording.formats.scratch", "recon4.mapping.tile_files", "recon4.untrusted"}
     | {"recon4.classes.stage", "recon4.pose_graph.pair_maker"},
     "recon4/batch": MODEL
     | {"recon4.batch", "recon4.executors", "recon4.export.cells", "recon4.store"}

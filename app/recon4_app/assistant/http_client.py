@@ -19,6 +19,7 @@ from mcp.server.mcpserver.exceptions import ToolError
 from recon4.errors import ConfigError, Recon4Error
 from recon4.locales.coded import CodedText
 from recon4.store.atomic import atomic_file
+from recon4.untrusted.typed import decoded
 from recon4_app.assistant.records import Downloaded, SignedIn, WatchedJob
 from recon4_app.assistant.tuning import ASSISTANT
 
@@ -200,7 +201,7 @@ class _RefusalBody(msgspec.Struct):
 def _refusal(response: httpx2.Response) -> ToolError:
     """The server's own words about what it refused."""
     try:
-        problem = msgspec.json.decode(response.content, type=_RefusalBody)
+        problem = decoded(response.content, _RefusalBody)
     except msgspec.DecodeError:  # the length of a body is refused in plain text
         problem = _RefusalBody(response.text[:500])
     said = [problem.detail, *(f"{name}: {text}" for name, text in problem.problems.items())]
@@ -211,7 +212,7 @@ def _refusal(response: httpx2.Response) -> ToolError:
 
 def _read(text: bytes, kind: type[T]) -> T:
     try:
-        return msgspec.json.decode(text, type=kind)
+        return decoded(text, kind)
     except msgspec.DecodeError as error:
         raise ToolError(
             f"the server answered otherwise than this version of recon4 expects: {error}"

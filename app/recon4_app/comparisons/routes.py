@@ -15,6 +15,7 @@ from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.store.json_files import read_object
 from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.typed import as_type
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
 from recon4_app.comparisons.model import Comparisons, ComparisonView, NewComparison
@@ -159,6 +160,6 @@ def _figures(path: Path) -> MapDifferences | None:
     """What the worker wrote; None = it is damaged: a hostile map may have taken the worker over."""
     try:
         record = read_object(path, max_bytes=LIMITS.findings_bytes)
-        return msgspec.convert(record, MapDifferences)
+        return as_type(record, MapDifferences)
     except (StoreError, msgspec.ValidationError):
         return None

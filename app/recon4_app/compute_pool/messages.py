@@ -20,6 +20,7 @@ from pydantic import BaseModel, TypeAdapter
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
 from recon4.locales.coded import CodedText, StoredText, flat_values, stored_text
 from recon4.untrusted.names import is_unnameable
+from recon4.untrusted.typed import decoded
 from recon4_app.compute_pool.model import FileAccess
 from recon4_app.compute_pool.tuning import POOL_MESSAGES
 from recon4_app.errors import ComputeFailed
@@ -105,7 +106,7 @@ def decode_record(data: bytes, kind: type[R]) -> R:
         ComputeFailed: If it is not of this type.
     """
     try:
-        return msgspec.json.decode(data, type=kind)
+        return decoded(data, kind)
     except (msgspec.DecodeError, ValueError) as error:
         raise ComputeFailed(CodedText("helper-bad-result", detail=str(error)[:200])) from error
 

@@ -20,6 +20,7 @@ from recon4.locales.coded import CodedText
 from recon4.model.events import KINDS, Event, Remarked, RunStarted, WorkProgress
 from recon4.model.plain import to_plain
 from recon4.store.json_files import parse_object
+from recon4.untrusted.typed import as_type
 from recon4_app.jobs.folder import beat
 from recon4_app.jobs.tuning import EVENT_LIMITS
 
@@ -145,6 +146,6 @@ def event_of(fields: Mapping[str, object]) -> Event | None:
     if record is None:
         return None
     try:
-        return msgspec.convert(fields, record)
+        return as_type(fields, record)
     except msgspec.ValidationError:
         return None

@@ -35,6 +35,7 @@ from recon4.recording.info.files_near import files_near
 from recon4.store.atomic import make_folders, write_json, write_text
 from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock
+from recon4.untrusted.typed import as_type, decoded
 from recon4_app.jobs.model import Inputs
 from recon4_app.jobs.reason import JobReason, reason_of
 from recon4_app.jobs.tuning import JOB_FILES
@@ -145,8 +146,8 @@ class JobFolder:
         request = json.loads((self.path / "request.json").read_text("utf-8"))
         return WorkerRequest(
             project=Path(request["project"]),
-            inputs=msgspec.convert(request["inputs"], Inputs),
-            limits=msgspec.convert(request["limits"], Limits),
+            inputs=as_type(request["inputs"], Inputs),
+            limits=as_type(request["limits"], Limits),
             near=tuple(map(Path, request["near"])),
         )
 
@@ -225,14 +226,14 @@ class JobFolder:
     def outcome(self) -> Outcome | None:
         """The outcome; None if the worker runs, was killed, or wrote a malformed file."""
         try:
-            return msgspec.json.decode(_start(self.path / "outcome.json"), type=Outcome)
+            return decoded(_start(self.path / "outcome.json"), Outcome)
         except (OSError, msgspec.DecodeError, RecursionError):
             return None
 
     def workers(self) -> JobWorkers:
         """Who makes parts of it; nobody if the file is missing or malformed."""
         try:
-            return msgspec.json.decode(_start(self.path / "workers.json"), type=JobWorkers)
+            return decoded(_start(self.path / "workers.json"), JobWorkers)
         except (OSError, msgspec.DecodeError, RecursionError):
             return JobWorkers()
 

@@ -18,6 +18,7 @@ from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.store.json_files import parse_object
 from recon4.untrusted.names import visible
+from recon4.untrusted.typed import as_type
 from recon4_app.databases import migrate, open_engine
 from recon4_app.errors import Conflict, NotFound, project_page
 from recon4_app.jobs.model import Inputs, Job, JobKind, JobState
@@ -212,15 +213,10 @@ def _job(row: sa.Row[Any]) -> Job:
         )
 
 
-_CELLS = [msgspec.json.Decoder(kind) for kind in (Inputs, ExportedFile, JobReason)]
-"""Makes the types known before threads convert to them: msgspec 0.22 ends the process if two do so
-at the first use of a dataclass."""
-
-
 def _whole_job(row: sa.Row[Any]) -> Job:
-    inputs = msgspec.convert(parse_object(row.inputs, "inputs"), Inputs)
-    made = msgspec.convert(parse_object(row.made, "made"), ExportedFile) if row.made else None
-    reason = msgspec.convert(parse_object(row.reason, "reason"), JobReason) if row.reason else None
+    inputs = as_type(parse_object(row.inputs, "inputs"), Inputs)
+    made = as_type(parse_object(row.made, "made"), ExportedFile) if row.made else None
+    reason = as_type(parse_object(row.reason, "reason"), JobReason) if row.reason else None
     ours = ("number", "inputs", "state", "kind", "made", "reason")
     fields = {name: value for name, value in row._asdict().items() if name not in ours}
     return Job(**fields, inputs=inputs, made=made, reason=reason, state=JobState(row.state))

@@ -21,6 +21,7 @@ from recon4.executors.chosen import (
     store_choice,
 )
 from recon4.locales.coded import CodedText
+from recon4.untrusted.typed import decoded
 from recon4_app.access.audit import audit
 from recon4_app.access.login.routes import Text, Wire
 from recon4_app.access.people import Permission, needs, recent_login
@@ -127,7 +128,7 @@ def _tested(server: ServerParts) -> WorkerTestView:
             timeout=ORDERING.tested_within_s,
             check=False,
         )
-        lines = msgspec.json.decode(done.stdout, type=list[WorkerTest])
+        lines = decoded(done.stdout, list[WorkerTest])
     except (subprocess.TimeoutExpired, msgspec.DecodeError) as error:
         raise ConfigError(CodedText("workers-test-failed")) from error
     (line,) = [one for one in lines if one.what == "workers of jobs"]

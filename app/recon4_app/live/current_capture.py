@@ -18,6 +18,7 @@ from recon4.locales.coded import CodedText
 from recon4.model.rig import Rig, load_rig
 from recon4.store.json_files import parse_object
 from recon4.untrusted.bounded import read_text_limited
+from recon4.untrusted.typed import as_type
 from recon4_app.errors import CAPTURE, Conflict, NotFound
 from recon4_app.live.capture import Capture, unfinished
 from recon4_app.live.power import Power, read_battery
@@ -140,7 +141,7 @@ def marks_of(session: CaptureSession) -> list[Mark]:
     marks = []
     for line in lines:
         try:
-            marks.append(msgspec.convert(parse_object(line, "a mark") | {"kind": "mark"}, Mark))
+            marks.append(as_type(parse_object(line, "a mark") | {"kind": "mark"}, Mark))
         except (StoreError, msgspec.ValidationError):
             log.warning("%s: a line is damaged", session.marks)
     return marks

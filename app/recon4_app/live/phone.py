@@ -14,6 +14,7 @@ from recon4.live.findings import findings, rates
 from recon4.live.newest_messages import Newest
 from recon4.locales.coded import as_coded
 from recon4.locales.languages import ENGLISH
+from recon4.untrusted.typed import decoded
 from recon4_app.live.capture import Capture, State
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.health import lidars
@@ -76,7 +77,7 @@ class Phone:
         try:
             async with asyncio.timeout(PHONE_STREAM.stalled_s):
                 said = await self._socket.receive_text()
-            return msgspec.json.decode(said, type=Greeting)
+            return decoded(said, Greeting)
         except (
             KeyError,
             ValueError,

@@ -17,6 +17,7 @@ from recon4.model.usability import Usability
 from recon4.review.approval_state import NOT_APPROVED
 from recon4.store.atomic import atomic_file, make_folders
 from recon4.untrusted.names import visible
+from recon4.untrusted.typed import decoded
 from recon4_app.projects.described import (
     approval_in,
     object_of,
@@ -97,7 +98,7 @@ def _is_draft(card: ProjectCard) -> bool:
 def _read_index(path: Path, version: str) -> dict[str, _Kept]:
     """The kept cards; none if the file is missing, damaged or of another version."""
     try:
-        found = msgspec.json.decode(path.read_bytes(), type=_Index)
+        found = decoded(path.read_bytes(), _Index)
     except FileNotFoundError:
         return {}
     except (OSError, msgspec.DecodeError) as error:

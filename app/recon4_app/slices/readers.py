@@ -12,6 +12,7 @@ from recon4.locales.coded import at, unreadable
 from recon4.slices.double_places import DoubleReport
 from recon4.slices.targets.named import TargetList
 from recon4.store.json_files import read_object
+from recon4.untrusted.typed import as_type
 from recon4_app.slices.model import WindowSpec
 from recon4_app.slices.tuning import READERS
 
@@ -36,7 +37,7 @@ def read_double_walls(path: Path) -> DoubleReport:
     """
     try:
         record = read_object(path, max_bytes=READERS.max_bytes)
-        return msgspec.convert(record, DoubleReport)
+        return as_type(record, DoubleReport)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error
 
@@ -49,6 +50,6 @@ def read_targets(path: Path) -> TargetList:
     """
     try:
         record = read_object(path, max_bytes=READERS.max_bytes)
-        return msgspec.convert(record, TargetList)
+        return as_type(record, TargetList)
     except msgspec.ValidationError as error:
         raise StoreError(unreadable(path.name, error)) from error

@@ -83,6 +83,7 @@ step-learn-intensities = Intensitäten lernen
 step-map = Karte
 step-place-points = Punkte platzieren
 step-results = Ergebnisse
+step-kernels = Rechenkerne
 step-approvals = Freigaben
 step-artifacts = Artefakte
 step-back-up = sichern

@@ -83,6 +83,7 @@ step-learn-intensities = learn intensities
 step-map = map
 step-place-points = place points
 step-results = results
+step-kernels = kernels
 step-approvals = approvals
 step-artifacts = artifacts
 step-back-up = back up

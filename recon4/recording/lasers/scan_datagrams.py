@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.lasers.tuning import SCAN_DATAGRAMS
 from recon4.recording.limits import LIMITS
+from recon4.untrusted.typed import as_type
 
 
 class ScanMessage(msgspec.Struct, frozen=True, kw_only=True):
@@ -90,7 +91,7 @@ def _lenient(
         for name in ("ranges", "intensities"):
             if isinstance(record.get(name), list):
                 record[name] = [_finite(value) for value in record[name]]
-        found: ScanMessage | HeadMessage = msgspec.convert(record, decoder.type)
+        found: ScanMessage | HeadMessage = as_type(record, decoder.type)
     except (ValueError, TypeError, msgspec.MsgspecError, RecursionError):
         return None
     return found

@@ -20,6 +20,7 @@ from recon4.slam2d.grid_files import read_overview
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import open_frames
 from recon4.store.project import read_artifacts
+from recon4.untrusted.typed import decoded
 from recon4_app.viewer.cloud.multiframes import Multiframes
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.cloud.preview import JobPreview
@@ -211,6 +212,6 @@ class ProjectSource:
 def _read_georeference(folder: Path) -> Georeference | None:
     try:
         data = (folder / "georeference.json").read_bytes()
-        return msgspec.json.decode(data, type=Georeference)
+        return decoded(data, Georeference)
     except (OSError, msgspec.MsgspecError, RecursionError):
         return None
