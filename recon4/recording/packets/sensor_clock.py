@@ -220,11 +220,11 @@ class SensorClock:
 
     def _say_free_running(self, offset_ns: int) -> None:
         self._report.count(f"clock_runs_freely_{self._name}")
-        name, ahead_s, hours = self._name, offset_ns / SECOND_NS, not self.past_hour
+        name, ahead_s, past = self._name, offset_ns / SECOND_NS, self.past_hour
+        hours = not past
         if self._alone:
-            kind = DerivedKind.CLOCK_SHIFTED
             self._report.derive(
-                kind, sensor=name, ahead_s=ahead_s, hours=hours, past_hour=self.past_hour
+                DerivedKind.CLOCK_SHIFTED, sensor=name, ahead_s=ahead_s, hours=hours, past_hour=past
             )
         else:
             self._report.warn(FindingKind.CLOCK_FREE, sensor=name, ahead_s=ahead_s, hours=hours)
