@@ -107,7 +107,7 @@ class Mirrors(Witness):
             x, y = mirror.middle_m
             found = finding(
                 FindingKind.MIRROR,
-                Level.CHECK,
+                Level.NOTE,
                 {"area_m2": mirror.area_m2, "x_m": x, "y_m": y, "behind": mirror.behind},
             )
             yield replace(found, place_m=((x, y, 0.0), (x, y, 0.0)))

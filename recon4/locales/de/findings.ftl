@@ -509,9 +509,9 @@ GNSS-REJECTED = GNSS-Positionen verworfen
 ## Die Karte
 
 MIRROR = Spiegel
-    .text1 = Ein Spiegel oder eine Glaswand von etwa { DECIMAL($area_m2, digits: 1) } m² bei x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m verdoppelt den Raum: was dahinter kartiert ist ({ PERCENT($behind, digits: 0) } aller Punkte), ist der gespiegelte Raum davor.
-    .remedy = Diese Punkte auslassen.
-    .meaning = Die Karte hat einen Raum, den es nicht gibt.
+    .text1 = Ein Spiegel oder eine Glaswand von etwa { DECIMAL($area_m2, digits: 1) } m² bei x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m verdoppelt den Raum. Was dahinter zu liegen scheint ({ PERCENT($behind, digits: 0) } aller Punkte), ist der gespiegelte Raum davor. Diese Punkte haben die Klasse Spiegelung und werden nicht ausgeliefert.
+    .remedy = Liegt dahinter doch ein Raum, seinen Punkten eine andere Klasse geben.
+    .meaning = Ein Teil der Messung ist ein Raum, den es nicht gibt; die Karte lässt ihn aus.
     .detection = Strahlen durch einen Teil einer Wand treffen, an ihr gespiegelt, Flächen des Raums davor. Ist er kleiner als 2,5 m²: sie scheinen auch etwas zu durchqueren, das steht.
 
 CLASSES-MOVED = Klassenkorrektur verschoben

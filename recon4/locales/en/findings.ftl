@@ -492,9 +492,9 @@ GNSS-REJECTED = GNSS fixes rejected
 ## The map
 
 MIRROR = Mirror
-    .text1 = A mirror or a glass wall of about { DECIMAL($area_m2, digits: 1) } m² at x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m doubles the room: what is mapped behind it ({ PERCENT($behind, digits: 0) } of all points) is the room before it, reflected.
-    .remedy = Leave these points out.
-    .meaning = The map has a room that does not exist.
+    .text1 = A mirror or a glass wall of about { DECIMAL($area_m2, digits: 1) } m² at x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m doubles the room. What seems to lie behind it ({ PERCENT($behind, digits: 0) } of all points) is the room before it, reflected. These points have the class reflection, and deliverables leave them out.
+    .remedy = If there is a room behind it, give its points another class.
+    .meaning = Part of what was measured is a room that does not exist; the map leaves it out.
     .detection = Beams through a part of a wall meet, reflected in it, surfaces of the room before it. If it is smaller than 2.5 m²: they also seem to cross what stands.
 
 CLASSES-MOVED = Correction of classes moved
