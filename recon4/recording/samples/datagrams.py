@@ -86,8 +86,10 @@ class SampleDecoder:
                 self.report.count("samples_damaged")
             elif sample.t_ns <= (last_ns := self._last_ns.get(sample.kind, -1)):
                 same = sample.kind == "gnss" or sample.values == self._last_imu
-                twice = sample.t_ns == last_ns and same
-                self.report.count(f"{sample.kind}_copies" if twice else "samples_out_of_order")
+                if sample.t_ns == last_ns and same:
+                    self.report.count(f"{sample.kind}_copies")
+                else:
+                    self.report.count("samples_out_of_order")
             else:
                 self._last_ns[sample.kind] = sample.t_ns
                 if sample.kind == "imu":
