@@ -73,7 +73,7 @@ def copy_made(one: MadeFile, target: Path, *, progress: Progress) -> None:
         OSError: If it cannot be written.
         StoreError: If it was removed, or is another one than was exported.
     """
-    progress.start("copy", one.made.bytes, "bytes")
+    progress.start("copy", one.made.bytes, "B")
     digest = hashlib.sha256()
     try:
         source = one.path.open("rb")

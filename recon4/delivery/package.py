@@ -295,7 +295,7 @@ def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words,
 
 def _pack(folder: Path, names: Sequence[str], out: Path, *, progress: Progress) -> None:
     """Write the ZIP, streaming; compressed formats are stored as they are."""
-    progress.start("pack", sum((folder / name).stat().st_size for name in names), "bytes")
+    progress.start("pack", sum((folder / name).stat().st_size for name in names), "B")
     with zipfile.ZipFile(out, "w", allowZip64=True) as archive:
         for name in names:
             path = folder / name

@@ -1,15 +1,22 @@
 """Progress on the terminal while a run is in progress."""
 
 import io
+import re
 
 import pytest
 
 from recon4.cli.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
-from recon4.locales.languages import ENVIRONMENT
+from recon4.locales.languages import ENGLISH, ENVIRONMENT
+from recon4.locales.texts import Texts
 from recon4.model.events import ArtifactDamaged, NodesPlaced, Remarked, StageChanged, Warned
 from recon4.model.finding_kinds import FindingKind
 from recon4.progress import track
 from recon4.recording.report import warning
+from tests.source_trees import sources
+
+STEP = re.compile(r'\bprogress\.start\(\s*"([^"]+)"|\bwhat="([^"]+)",\s*unit=')
+UNIT = re.compile(r'\bwhat="[^"]+",\s*unit="([^"]+)"')
+"""Of `track`, or of `Progress.start`."""
 
 
 class Tty(io.StringIO):
@@ -78,6 +85,22 @@ def test_progress_and_events_are_in_the_language_of_the_terminal(monkeypatch):
         "Karte: fertig in 1,5 s"
     )
     assert describe_event(Remarked(finding=missing)).startswith("Warnung: Der Sensor vertical")
+
+
+def test_each_piece_of_work_and_its_unit_have_words():
+    code = "".join(path.read_text("utf-8") for path in sources("recon4", "app"))
+    words = Texts(ENGLISH, "projects", "shared")
+
+    steps = {one for pair in STEP.findall(code) for one in pair if one}
+    units = set(UNIT.findall(code)) - {"B", "s", "m"}
+
+    assert len(steps) > 30 and len(units) > 10
+    assert [one for one in steps if f"step-{slug(one)}" not in words] == []
+    assert [one for one in units if f"unit-{slug(one)}" not in words] == []
+
+
+def slug(name: str) -> str:
+    return name.lower().replace(" ", "-")
 
 
 def test_at_a_terminal_there_are_bars_with_the_same_figures():
