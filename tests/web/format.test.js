@@ -82,6 +82,11 @@ test("the time left is given once it is known", () => {
 test("progress names how far, how fast and how long", () => {
   const status = { done: 1200, unit: "pairs", rate_per_s: 8.26, eta_s: 30 };
   assert.equal(progressText({ status, fraction: 0.4 }), "This part 40 % · 8.3 pairs/s · 30 s left");
+  const ofBytes = { ...status, unit: "B", done: 3_400_000, rate_per_s: 12_345_678 };
+  assert.equal(
+    progressText({ status: ofBytes, fraction: null }),
+    "This part 3.4 MB · 12 MB/s · 30 s left",
+  );
   assert.equal(
     progressText({ status: { ...status, rate_per_s: 0, eta_s: null }, fraction: null }),
     `This part 1${NARROW}200 pairs`,

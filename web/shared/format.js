@@ -90,19 +90,25 @@ export function runProgressText(
   return [t("run-part", { part }), ...left].join(" · ");
 }
 
+/** A number of units of work; bytes as a size. */
+const amount = (
+  /** @type {number} */ n,
+  /** @type {string} */ written,
+  /** @type {string} */ unit,
+) => (unit === "B" ? bytes(n) : `${written} ${wordOf("unit", unit)}`);
+
 /** Progress of the current stage in one line: fraction, rate, remaining time. */
 export function progressText(
   /** @type {Pick<JobView, "fraction"> & {status: Progress}} */ { status, fraction },
 ) {
   const parts = [
     fraction === null
-      ? `${count(status.done)} ${wordOf("unit", status.unit)}`
+      ? amount(status.done, count(status.done), status.unit)
       : `${Math.round(fraction * 100)} %`,
   ];
   if (status.rate_per_s > 0) {
     const rate = status.rate_per_s;
-    const rounded = rate < 10 ? decimal(rate, 1) : count(rate);
-    parts.push(`${rounded} ${wordOf("unit", status.unit)}/s`);
+    parts.push(`${amount(rate, rate < 10 ? decimal(rate, 1) : count(rate), status.unit)}/s`);
   }
   if (status.eta_s !== null) parts.push(timeLeft(status.eta_s));
   return t("this-part", { progress: parts.join(" · ") });
