@@ -15,6 +15,7 @@ from recon4.findings.walk_record import WalkRecord, path_length_m
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.site_control import SITE_GRID
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
@@ -67,7 +68,7 @@ class Uncertainty(Witness):
             "limit_m": known.limit_m,
             "known_m": known_m,
             "at_s": found.at_s,
-            "frame": "earth" if found.on_earth else "start",
+            "frame": _frame(walk) if found.on_earth else "start",
             "limited": stated and known_m < LIMITS.anywhere_m,
             "unlimited": stated and known_m >= LIMITS.anywhere_m,
         }
@@ -77,6 +78,12 @@ class Uncertainty(Witness):
             values | (point if helps else {}),
             span_s=None if known.fine else (found.at_s, found.at_s),
         )
+
+
+def _frame(walk: WalkRecord) -> str:
+    """The word for where a map is placed that control points or fixes hold."""
+    in_grid = walk.level is not None and walk.level.crs == SITE_GRID
+    return "site" if in_grid else "earth"
 
 
 def is_known(walk: WalkRecord) -> bool:

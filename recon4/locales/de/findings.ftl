@@ -183,6 +183,7 @@ UNCERTAINTY = Unsicherheit der Positionen
     .text4-if-unlimited = Die Positionen sind { WORD($frame, of: "UNCERTAINTY") } im schlechtesten Fall auf ± mehr als 100 m bekannt (2σ), { DECIMAL($at_s, digits: 1) } s nach dem Start.
     .text5 = Ein Passpunkt zwischen { DECIMAL($point_from_s, digits: 0) } s und { DECIMAL($point_to_s, digits: 0) } s würde dies auf ± { LENGTH($point_m) } verringern.
     .word-earth = auf der Erde
+    .word-site = im Baustellennetz
     .word-start = relativ zum Start
     .meaning = Angegeben aus den Kovarianzen des endgültigen Graphen; bekannte Fehler (Rig, Fahrten, Drehungen) sind hinzugerechnet. Eine lokale Karte wird vor der Nutzung eingepasst, darum zählt ihre Form: alle Positionen nach der besten starren Einpassung auf die Wahrheit. Eine georeferenzierte Karte wird verwendet, wie sie ist, darum zählt auch ihre Lage auf der Erde.
     .detection = *Prüfen*, wenn das Doppelte des erwarteten RMS der Form 5 cm + 0,1 % der Weglänge übersteigt. Ebenso, wenn die 2σ einer einzelnen Position das Dreifache davon übersteigen, oder das Doppelte des erwarteten RMS auf der Erde 10 cm. *Nicht verwenden* ab dem Zehnfachen.

@@ -184,6 +184,7 @@ UNCERTAINTY = Uncertainty of the positions
     .text4-if-unlimited = The positions are known to ± more than 100 m (2σ) { WORD($frame, of: "UNCERTAINTY") } at worst, { DECIMAL($at_s, digits: 0) } s after the start.
     .text5 = A control point between { DECIMAL($point_from_s, digits: 0) } s and { DECIMAL($point_to_s, digits: 0) } s would reduce this to ± { LENGTH($point_m) }.
     .word-earth = on the earth
+    .word-site = in the grid of the site
     .word-start = relative to the start
     .meaning = Stated from the covariances of the final graph; what is known to be wrong (rig, rides, turns) is added. A local map is aligned before it is used, so its shape counts: all positions after the best rigid alignment with the truth. A georeferenced map is used as it is, so its place on the earth counts, too.
     .detection = *Check* if twice the expected RMS of the shape exceeds 5 cm + 0.1 % of the path length. The same if the 2σ of a single position exceeds three times that, or twice the expected RMS on the earth 10 cm. *Do not use* from ten times of that on.

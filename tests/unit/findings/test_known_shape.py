@@ -1,13 +1,18 @@
 """How well the shape of a map must be known, and its place on the earth."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from recon4.findings.audit import check_walk
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk_record import WalkRecord
+from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
+from recon4.model.figures import LevelFigures
 from recon4.model.finding_kinds import FindingKind
+from recon4.model.site_control import SITE_GRID
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
@@ -46,3 +51,15 @@ def test_a_local_map_needs_a_known_shape_and_a_georeferenced_one_a_known_place_t
 
     assert found.kind is FindingKind.UNCERTAINTY
     assert verdict_of([found]).usability is usability
+
+
+@pytest.mark.parametrize(
+    ("crs", "where"), [("EPSG:25832", "on the earth"), (SITE_GRID, "in the grid of the site")]
+)
+def test_a_place_is_known_in_the_system_of_the_map(crs, where):
+    level = LevelFigures(leveled_by="imu", tilt_deg=0.0, crs=crs, local="")
+    walk = replace(stated(FLAT, 0.04, on_earth=True), level=level)
+
+    found = next(one for one in check_walk(walk) if one.kind is FindingKind.UNCERTAINTY)
+
+    assert f"(2σ) {where} at worst" in text_of(found)
