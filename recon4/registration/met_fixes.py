@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -28,6 +29,7 @@ class MetFixes:
 
     def __init__(self, aiding: GnssAiding | None, settings: OdometrySettings) -> None:
         self._runs = [] if aiding is None else aiding.runs()
+        self._begin_ns = [int(run.t_ns[0]) for run in self._runs]
         self._run: GnssAiding | None = None
         self._start: MotionState
         self._least_m = tuned(OdometryTuning, settings).gnss_sd_m
@@ -71,9 +73,12 @@ class MetFixes:
         Velocity and gravity that the fixes contradict, or know better, are theirs: where nothing
         observes the motion both may be wrong by more than they state.
         """
-        run = next((run for run in self._runs if run.pose(state.t_ns) is not None), None)
-        T_enu_body = None if run is None else run.pose(state.t_ns)
-        if run is None or T_enu_body is None or run is self._run:
+        number = bisect_right(self._begin_ns, state.t_ns)
+        if not number or self._runs[number - 1] is self._run:
+            return state
+        run = self._runs[number - 1]
+        T_enu_body = run.pose(state.t_ns)
+        if T_enu_body is None:
             return state
         T_odom_enu = state.T_odom_body @ T_enu_body.inverse()
         if state.vector[VECTOR.gravity].any():
