@@ -149,8 +149,8 @@ def _without_strays(samples: Samples, kind: str, report: ImportReport) -> Sample
 
 def _sorted(samples: Samples, offset_s: float, kind: str, *, report: ImportReport) -> Samples:
     order = np.argsort(samples.t_ns, kind="stable")
-    new = np.diff(samples.t_ns[order], prepend=np.iinfo(np.int64).min) != 0 if len(order) else order
-    copies = (new == 0) & _equal_to_last(samples, order)
+    new = np.diff(samples.t_ns[order], prepend=np.iinfo(np.int64).min) != 0
+    copies = ~new & _equal_to_last(samples, order)
     report.count(f"{kind}_copies", int(np.count_nonzero(copies)))
     samples = _going_on(_take(samples, np.sort(order[~copies])), kind, report)
     report.count(f"{kind}_unsorted", int(np.count_nonzero(np.diff(samples.t_ns) < 0)))
