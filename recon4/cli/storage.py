@@ -10,8 +10,6 @@ import typer
 from recon4.cli.terminal import in_terminal, say, worded, write, write_json
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
-from recon4.locales.languages import of_terminal
-from recon4.locales.numbers import localized
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -83,5 +81,4 @@ def _show(parts: Sequence[StoredPart]) -> None:
 
 
 def _size(parts: Sequence[StoredPart]) -> str:
-    size_mb = f"{sum(part.bytes for part in parts) / 1e6:.1f}"
-    return f"{localized(size_mb, of_terminal())} MB"
+    return worded("stored-size", bytes=sum(part.bytes for part in parts))

@@ -258,13 +258,7 @@ def _figures_column() -> ProgressColumn:
 
 
 def _count(number: float, unit: str) -> str:
-    if unit != "B":
-        return f"{number:.0f}"
-    for prefix in ("", "k", "M"):
-        if number < 1000:
-            return f"{number:.0f} {prefix}B"
-        number /= 1000
-    return f"{_number(number)} GB"
+    return worded("stored-size", bytes=number) if unit == "B" else f"{number:.0f}"
 
 
 def _number(value: float) -> str:

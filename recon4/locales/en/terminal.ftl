@@ -2,6 +2,7 @@
 
 ## Progress
 
+stored-size = { SIZE($bytes) }
 progress-step = { NAMED($step, of: "step") }
 progress-unit = { NAMED($unit, of: "unit") }
 seconds-left = { DECIMAL($seconds, digits: 0) } s left
