@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.cell_table import CellIndex, find_row, key_at
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _row_at(cells: Any, at: Any) -> Any:
+    """Row of the cell in which a place [edges] lies, -1 = none."""
+    return find_row(
+        cells,
+        key_at(
+            np.int64(np.floor(at[0])),
+            np.int64(np.floor(at[1])),
+            np.int64(np.floor(at[2])),
+        ),
+    )
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -42,14 +57,9 @@ def count_passes(
         range_m = np.sqrt(range_m)
         if not edge < range_m <= farthest:
             continue
-        own = find_row(
-            cells,
-            key_at(
-                np.int64(np.floor(end[n, 0] / edge)),
-                np.int64(np.floor(end[n, 1] / edge)),
-                np.int64(np.floor(end[n, 2] / edge)),
-            ),
-        )
+        for d in range(3):
+            at[d] = end[n, d] / edge
+        own = _row_at(cells, at)
         mine = cluster_of[own] if own >= 0 else np.int32(-1)
         if mine >= 0:
             counts[mine, 1] += 1
@@ -57,14 +67,7 @@ def count_passes(
         for k in range(int(max(range_m - margin, 0.0) / edge)):
             for d in range(3):
                 at[d] = (origin[n, d] + step[d] * ((k + 0.5) * edge / range_m)) / edge
-            row = find_row(
-                cells,
-                key_at(
-                    np.int64(np.floor(at[0])),
-                    np.int64(np.floor(at[1])),
-                    np.int64(np.floor(at[2])),
-                ),
-            )
+            row = _row_at(cells, at)
             if row >= 0 and cluster_of[row] != mine and cluster_of[row] != last:
                 last = cluster_of[row]
                 counts[last, 0] += 1
@@ -103,14 +106,7 @@ def find_crossing(
             part = (k + 0.5) * edge / range_m
             for d in range(3):
                 at[d] = (origin[n, d] + part * (end[n, d] - origin[n, d])) / edge
-            row = find_row(
-                cells,
-                key_at(
-                    np.int64(np.floor(at[0])),
-                    np.int64(np.floor(at[1])),
-                    np.int64(np.floor(at[2])),
-                ),
-            )
+            row = _row_at(cells, at)
             if row >= 0 and stands[row]:
                 crosses[n] = True
                 break
