@@ -5,14 +5,14 @@ too large, and `ErrorModel` reduces it; along those that only the accelerometer 
 large as its error. Which part of it is which does not follow from its size: without an IMU a step
 through a door states 16 cm and is right to 6 mm.
 
-The multiframes before and after a lone one are registered to the local map, not to it: what it
-left unknown is an error of its own pose, and does not add up along the walk. With ``i`` and ``j``
-the nearest multiframes around ``k`` that observe the motion, a body that is accelerated by
-``a`` ~ N(0, σ_a²) between them is
+The multiframes before and after a short stretch that observes nothing are registered to the local
+map, not to it: what it left unknown is an error of its own poses, and does not add up along the
+walk. Those that observe the motion hold it, by the smoothest path of a carrier whose acceleration
+has the standard deviation ``σ_a`` and soon changes:
 
-    p_k = p̄_k + ½ a (t_k - t_i) (t_j - t_k),   p̄_k linear between p_i and p_j
+    E[a(t) a(s)] = σ_a² exp(-|t - s| / τ)   ->   p̄_k and σ_k², given the others
 
-so a reported position ``p̂_k`` is off by what it deviates from that line, and by the second term.
+so a reported position ``p̂_k`` is off by what it deviates from that path, and by ``σ_k``.
 """
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ _Mask = NDArray[np.bool_]
 
 
 def bounds_by_neighbors(observed: _Mask, followed: _Mask, *, t_ns: Times, p_odom: Array) -> Array:
-    """How wrong the position of each lone multiframe may be beside those around it.
+    """How wrong positions of short stretches that observe nothing may be beside those around.
 
     Args:
         observed: Whether the points of each observe its shift along all directions, (N,).
@@ -132,22 +132,53 @@ def bounds_by_neighbors(observed: _Mask, followed: _Mask, *, t_ns: Times, p_odom
         p_odom: Position at it [m], (N, 3).
 
     Returns:
-        ``(p̂ - p̄)(p̂ - p̄)ᵀ + (½ σ_a (t - t_i) (t_j - t))² I`` [m²], (N, 3, 3); NaN = not lone.
+        ``(p̂ - p̄)(p̂ - p̄)ᵀ + σ² I`` [m²], (N, 3, 3); NaN = not in a short stretch.
     """
     bounds = np.full((len(observed), 3, 3), np.nan)
-    first = np.searchsorted(t_ns, t_ns - LONE.around_ns)
-    last = np.searchsorted(t_ns, t_ns + LONE.around_ns, side="right")
-    for k in np.flatnonzero(~observed & followed).tolist():
-        before, after = observed[first[k] : k], observed[k + 1 : last[k]]
-        if not _mostly(before) or not _mostly(after):
+    change = np.diff(np.concatenate([[True], observed, [True]]).astype(np.int8))
+    for start, end in zip(np.flatnonzero(change < 0), np.flatnonzero(change > 0), strict=True):
+        if start == 0 or end == len(observed) or not followed[start : end + 1].all():
             continue
-        i, j = k - 1 - int(before[::-1].argmax()), k + 1 + int(after.argmax())
-        if followed[i + 1 : j + 1].all():
-            since_s, left_s = float(t_ns[k] - t_ns[i]) / 1e9, float(t_ns[j] - t_ns[k]) / 1e9
-            line = (left_s * p_odom[i] + since_s * p_odom[j]) / (since_s + left_s)
-            bent_m = 0.5 * LONE.speeds_up_m_s2 * since_s * left_s
-            bounds[k] = np.outer(p_odom[k] - line, p_odom[k] - line) + bent_m**2 * np.eye(3)
+        around = t_ns[start - 1] - LONE.around_ns, t_ns[end] + LONE.around_ns
+        first, last = np.searchsorted(t_ns, around[0]), np.searchsorted(t_ns, around[1], "right")
+        short = t_ns[end] - t_ns[start - 1] <= LONE.around_ns
+        if not (short and _mostly(observed[first:start]) and _mostly(observed[end:last])):
+            continue
+        cut = np.flatnonzero(~followed[first + 1 : last]) + first + 1
+        first = max(cut[cut < start], default=first)
+        last = min(cut[cut > end], default=last)
+        unseen = np.arange(start, end) - first
+        line, variance = by_others(
+            (t_ns[first:last] - t_ns[first]) / 1e9, p_odom[first:last], observed[first:last]
+        )
+        aside = p_odom[start:end] - line[unseen]
+        own = variance[unseen, None, None] * np.eye(3)
+        bounds[start:end] = aside[:, :, None] * aside[:, None, :] + own
     return bounds
+
+
+def by_others(t_s: Array, p_m: Array, known: _Mask) -> tuple[Array, Array]:
+    """Positions by those that are known, with an acceleration of the carrier that soon changes.
+
+    Args:
+        t_s: Times [s], (N,).
+        p_m: Positions [m], (N, 3).
+        known: Which of them to use, (N,).
+
+    Returns:
+        Positions (N, 3) and the variance of each along any axis [m²], (N,).
+    """
+    dt = np.diff(t_s)
+    middle, later = (t_s[1:] + t_s[:-1]) / 2, t_s[:, None] - t_s[1:]
+    # Of a place, a speed, and an acceleration between each two times.
+    moved = np.where(later > -1e-9, dt * (later + dt / 2), 0.0)
+    J = np.column_stack([np.ones_like(t_s), t_s, moved])
+    apart = np.abs(middle[:, None] - middle) / LONE.changes_s
+    information = J[known].T @ J[known] / LONE.known_m**2
+    information[2:, 2:] += np.linalg.inv(LONE.speeds_up_m_s2**2 * np.exp(-apart))
+    cov = np.linalg.inv(information)
+    state = cov @ J[known].T @ p_m[known] / LONE.known_m**2
+    return J @ state, np.einsum("ni,ij,nj->n", J, cov, J)
 
 
 def _mostly(observed: _Mask) -> bool:

@@ -6,10 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import TRANSLATION, Array
-from recon4.pose_graph.carried_motion import CarriedMotion, bounds_by_neighbors, load_carried_motion
+from recon4.pose_graph.carried_motion import (
+    CarriedMotion,
+    bounds_by_neighbors,
+    by_others,
+    load_carried_motion,
+)
 from recon4.pose_graph.known_errors import KnownErrors
+from recon4.pose_graph.tuning_solve import LONE
 from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from tests.unit.pose_graph.test_uncertainty import NOT_LONE, SURE, chain
 
@@ -30,15 +37,44 @@ def test_neighbors_bound_a_lone_multiframe_by_how_far_it_lies_aside(aside_m: flo
     found = bounds([20], aside_m=aside_m)
 
     assert np.flatnonzero(np.isfinite(found[:, 0, 0])).tolist() == [20]
-    expected = np.diag([0.0, aside_m**2, 0.0]) + (0.5 * 2.0 * 0.1**2) ** 2 * np.eye(3)
-    np.testing.assert_allclose(found[20], expected, atol=1e-12)
+    own_m = np.sqrt(found[20, 2, 2])
+    assert 0.004 < own_m < 0.012
+    expected = np.diag([0.0, aside_m**2, 0.0]) + own_m**2 * np.eye(3)
+    np.testing.assert_allclose(found[20], expected, atol=1e-9)
+
+
+def by_fine_steps(t_s: Array, p_m: Array, known: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """The same by covariances of positions, with accelerations of 5 ms in place of 0.1 s."""
+    fine_s = np.arange(t_s[0], t_s[-1], 0.005) + 0.0025
+    apart = np.abs(fine_s[:, None] - fine_s) / LONE.changes_s
+    moved = 0.005 * np.maximum(t_s[:, None] - fine_s, 0.0)
+    straight = np.stack([np.ones_like(t_s), t_s], axis=1)
+    K = straight @ straight.T + LONE.speeds_up_m_s2**2 * moved @ np.exp(-apart) @ moved.T
+    gain = K[:, known] @ np.linalg.inv(
+        K[np.ix_(known, known)] + LONE.known_m**2 * np.eye(int(known.sum()))
+    )
+    return gain @ p_m[known], np.diag(K - gain @ K[known])
+
+
+@pytest.mark.parametrize("unseen", [1, 2, 4, 8])
+def test_the_path_by_others_is_that_of_an_acceleration_that_soon_changes(unseen: int) -> None:
+    t_s = 0.1 * np.arange(30)
+    p_m = np.outer(np.where(t_s > 1.2, 0.65 * (t_s - 1.2) ** 2, 0.0), [1.0, 0.0, -0.5])
+    known = (t_s < 0.95) | (t_s > 0.95 + 0.1 * unseen)
+
+    path, variance = by_others(t_s, p_m, known)
+
+    expected, fine = by_fine_steps(t_s, p_m, known)
+    np.testing.assert_allclose(path[~known], expected[~known], atol=0.002)
+    np.testing.assert_allclose(np.sqrt(variance[~known]), np.sqrt(fine[~known]), rtol=0.15)
 
 
 @pytest.mark.parametrize(
     ("unseen", "lost", "lone"),
     [
         ([20, 21], [], [20, 21]),
-        (range(16, 24), [], []),  # a stretch that nothing observes
+        (range(16, 24), [], list(range(16, 24))),
+        (range(16, 26), [], []),  # too long: the local map no longer reaches across
         (range(1, COUNT, 2), [], []),  # now and then a tunnel seems to be observed
         ([0], [], []),
         ([COUNT - 1], [], []),
