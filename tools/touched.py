@@ -14,7 +14,10 @@ from pathlib import Path, PurePosixPath
 
 ROOT = Path(__file__).parents[1]
 UPSTREAM = "origin/main"
-RULES = ("contributing", "docs", "http_types", "language", "layers", "settings", "structure")
+RULES = (
+    *("contributing", "docs", "http_types", "language", "languages"),
+    *("layers", "settings", "structure"),
+)
 ALWAYS = tuple(f"tests/unit/test_{name}.py" for name in RULES)
 """What any change can break."""
 OF_TOP = {"app": "app", "web": "web", "examples": "api"}
