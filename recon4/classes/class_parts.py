@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from recon4.classes.carrier import CarrierCubes
 from recon4.errors import StoreError
-from recon4.locales.coded import CodedText, at
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.orders.order import OrderKind, Workers
 from recon4.orders.parts import Part, Parts
 from recon4.progress import Progress
@@ -61,7 +61,7 @@ class ClassedWalk(msgspec.Struct, frozen=True, kw_only=True):
         try:
             walk = decoded(data, ClassedWalk)
         except (msgspec.DecodeError, RecursionError) as error:
-            raise StoreError(f"{_WALK}: {error}") from error
+            raise StoreError(at(_WALK, text_of(error))) from error
         arrays = load_arrays(folder / _CARRIER, ["inner", "around"])
         return walk, CarrierCubes(arrays["inner"], arrays["around"])
 

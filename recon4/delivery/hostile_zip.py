@@ -120,11 +120,11 @@ def blocks_of(
 def unsafe_name(name: str) -> str:
     """Why a name is none of a file in a delivery; empty = it is one."""
     if not name or len(name) > LIMITS.name or visible(name, most=len(name)) != name:
-        return "its name is empty, too long or has invisible characters"
+        return CodedText("zip-name-invisible")
     if name.startswith("/") or any(part in ("", ".", "..") for part in name.split("/")):
-        return "its name leads outside"
+        return CodedText("zip-name-outside")
     if _RESERVED & set(name):
-        return "its name has characters that stand for something else on other systems"
+        return CodedText("zip-name-reserved")
     return ""
 
 
@@ -132,16 +132,16 @@ def _harm(entry: zipfile.ZipInfo) -> str:
     """Why an entry is refused; empty = it is a plain file."""
     kind = stat.S_IFMT(entry.external_attr >> 16)
     if entry.orig_filename != entry.filename:
-        return "its name holds a NUL or a separator of another system"
+        return CodedText("zip-name-separator")
     if entry.is_dir() or kind not in (0, stat.S_IFREG):
-        return "expected a file, got a folder, a link or a device"
+        return CodedText("zip-no-file")
     if entry.flag_bits & ZipFlag.ENCRYPTED:
-        return "it is encrypted"
+        return CodedText("zip-encrypted")
     if entry.compress_type not in _METHODS:
-        return f"its compression, number {entry.compress_type}, is not stored or deflated"
+        return CodedText("zip-compression", number=entry.compress_type)
     most = LIMITS.expansion * entry.compress_size + LIMITS.free_bytes
     if entry.file_size > most:
-        return f"it expands from {entry.compress_size} to {entry.file_size} bytes"
+        return CodedText("zip-expands", packed=entry.compress_size, size=entry.file_size)
     return unsafe_name(entry.filename)
 
 
@@ -163,11 +163,12 @@ def _refuse_hidden(path: Path, entries: list[zipfile.ZipInfo], archive: zipfile.
     ends = {0}
     for entry in sorted(entries, key=lambda one: one.header_offset):
         if wrong := _wrong_start(entry.header_offset, ends):
-            raise CorruptFile(f"{path.name}: {visible(entry.filename)!r} {wrong}")
+            name = visible(entry.filename)
+            raise CorruptFile(CodedText("zip-entry", file=path.name, name=name, wrong=wrong))
         size = _packed_size(path, file, entry)
         ends = {entry.header_offset + size + more for more in _trailers(entry)}
     if wrong := _wrong_start(archive.start_dir, ends):
-        raise CorruptFile(f"{path.name}: the list at its end {wrong}")
+        raise CorruptFile(CodedText("zip-list", file=path.name, wrong=wrong))
     file.seek(-_END.size, SEEK_END)
     signature, *disks, here, every, _, _, comment = _END.unpack(file.read(_END.size))
     counts = {here, every} - {ZipField.COUNT_IN_ZIP64}
@@ -178,8 +179,8 @@ def _refuse_hidden(path: Path, entries: list[zipfile.ZipInfo], archive: zipfile.
 def _wrong_start(start: int, ends: set[int]) -> str:
     """What is wrong of something that begins elsewhere than where the entry before it ends."""
     if start < min(ends):
-        return "overlaps with another entry"
-    return "" if start in ends else "has bytes of no entry before it"
+        return CodedText("zip-overlap")
+    return "" if start in ends else CodedText("zip-gap")
 
 
 def _packed_size(path: Path, file: BinaryIO, entry: zipfile.ZipInfo) -> int:

@@ -18,6 +18,7 @@ from recon4.errors import StoreError
 from recon4.findings.placement import Placement, placement_in
 from recon4.findings.tuning import AUDIT_LIST
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import unreadable
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import FrameFigures, LevelFigures, MapFigures, ReviewFigures
 from recon4.model.odometry_figures import OdometryFigures
@@ -174,7 +175,7 @@ def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, obj
     try:
         return read_object(path)
     except StoreError as error:
-        raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
+        raise StoreError(unreadable(f"{stage}/{name}", error)) from error
 
 
 def _arrays(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, NDArray[Any]]:
@@ -184,7 +185,7 @@ def _arrays(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, N
     try:
         return load_arrays(path)
     except StoreError as error:
-        raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
+        raise StoreError(unreadable(f"{stage}/{name}", error)) from error
 
 
 def _calibration(artifacts: Mapping[str, Path]) -> CalibrationFigures | None:
@@ -195,7 +196,7 @@ def _calibration(artifacts: Mapping[str, Path]) -> CalibrationFigures | None:
     try:
         return as_type(record, CalibrationFigures)
     except msgspec.ValidationError as error:
-        raise StoreError(f"calibration/calibration.json cannot be read: {error}") from error
+        raise StoreError(unreadable("calibration/calibration.json", error)) from error
 
 
 def _support(artifacts: Mapping[str, Path]) -> SurfaceSupport | None:

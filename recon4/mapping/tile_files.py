@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.kernels.cell_table import CellIndex
 from recon4.kernels.structure_points import Structure
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.class_corrections import ClassVolume, ClassVolumes
 from recon4.mapping.deviation import PoseCovariances
@@ -112,7 +112,7 @@ def read_made(folder: Path, tile: Part) -> Finished:
     try:
         made = made_of(data)
     except (msgspec.DecodeError, RecursionError) as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, text_of(error))) from error
     path.unlink()
     return made
 
@@ -138,7 +138,7 @@ class TileMaker:
         try:
             facts = decoded(data, _Facts)
         except (msgspec.DecodeError, RecursionError) as error:
-            raise StoreError(f"{_FACTS}: {error}") from error
+            raise StoreError(at(_FACTS, text_of(error))) from error
         arrays, grid = load_arrays(folder / _ARRAYS), Grid.of(facts.settings)
         recipe = _recipe_of(facts, arrays, folder)
         paths = SensorPaths.load(folder / _PATHS)

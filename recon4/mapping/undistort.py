@@ -9,6 +9,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.deskew import place_sensor_points
+from recon4.locales.coded import CodedText
 from recon4.mapping.tuning import POINT_PLACES
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -71,9 +72,15 @@ def _place(
     if len(frame) == 0:
         return
     if frame.sensor.max() >= len(rig.sensors):
+        sensor, count = int(frame.sensor.max()), len(rig.sensors)
         raise ConfigError(
-            f"multiframe {frame.frame_id} has points of sensor {frame.sensor.max()}, "
-            f"but rig {rig.name!r} has {len(rig.sensors)} sensors, numbered from 0"
+            CodedText(
+                "multiframe-sensor",
+                frame=frame.frame_id,
+                sensor=sensor,
+                rig=rig.name,
+                sensors=count,
+            )
         )
     knot_ns = _knots(frame, trajectory.t_ns)
     slack = frame.duration_ns if slack_ns is None else slack_ns

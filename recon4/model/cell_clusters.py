@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.coded import CodedText
 from recon4.model.tuning import CLUSTERS, VOLUMES
 
 Vector = tuple[float, float, float]
@@ -38,34 +39,39 @@ class Clusters(msgspec.Struct, frozen=True, kw_only=True, tag_field="shape", tag
         _check_counts(self)
         if not CLUSTERS.least_m <= self.edge_m <= CLUSTERS.most_m:
             raise ConfigError(
-                f"clusters: expected cubes of {CLUSTERS.least_m:g} to {CLUSTERS.most_m:g} m, "
-                f"got {self.edge_m:g} m"
+                CodedText(
+                    "clusters-edge",
+                    least_m=CLUSTERS.least_m,
+                    most_m=CLUSTERS.most_m,
+                    got_m=self.edge_m,
+                )
             )
         for one in self.clusters:
             axes = np.array([one.u, one.v])
             numbers = np.array([*one.origin_m, *one.u, *one.v])
             if not np.isfinite(numbers).all() or np.abs(numbers).max() > VOLUMES.farthest_m:
-                raise ConfigError(f"clusters: expected finite coordinates, got {numbers.tolist()}")
+                raise ConfigError(CodedText("clusters-finite", got=str(numbers.tolist())))
             if np.abs(axes @ axes.T - np.eye(2)).max() > VOLUMES.axes:
-                raise ConfigError(
-                    f"clusters: expected u and v of length 1 at a right angle, got {one.u}, {one.v}"
-                )
+                raise ConfigError(CodedText("clusters-axes", u=str(one.u), v=str(one.v)))
             cells = np.array(one.columns, np.int64)
             if np.abs(cells).max() >= CLUSTERS.most_number or np.any(cells[:, 3] < cells[:, 2]):
-                raise ConfigError(
-                    "clusters: expected columns i, j, first and last, near the origin"
-                )
+                raise ConfigError(CodedText("clusters-columns"))
 
 
 def _check_counts(volume: Clusters) -> None:
     columns = sum(len(one.columns) for one in volume.clusters)
     if not 1 <= len(volume.clusters) <= CLUSTERS.most or columns > CLUSTERS.most_columns:
         raise ConfigError(
-            f"clusters: expected 1 to {CLUSTERS.most} clusters of {CLUSTERS.most_columns} columns "
-            f"at most, got {len(volume.clusters)} of {columns}"
+            CodedText(
+                "clusters-many",
+                most=CLUSTERS.most,
+                most_columns=CLUSTERS.most_columns,
+                got=len(volume.clusters),
+                columns=columns,
+            )
         )
     if not all(one.columns for one in volume.clusters):
-        raise ConfigError("clusters: expected a cube in each cluster")
+        raise ConfigError(CodedText("clusters-empty"))
 
 
 def cluster_of(volume: Clusters, p_map: Array) -> NDArray[np.int64]:

@@ -8,6 +8,7 @@ import msgspec
 from msgspec.structs import replace
 
 from recon4.errors import StoreError
+from recon4.locales.coded import unreadable
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding, Level
@@ -59,7 +60,7 @@ def import_notes(report: Mapping[str, object], mount_doubts: Sequence[str] = ())
         notes = as_type(report, ImportNotes)
         sentences = as_type(report, _EarlierNotes).warnings
     except msgspec.ValidationError as error:
-        raise StoreError(f"report.json of the frames cannot be read: {error}") from error
+        raise StoreError(unreadable("frames/report.json", error)) from error
     others = (text for text in sentences if text not in mount_doubts)
     earlier = [_quoted(FindingKind.LASER_MOUNT, text) for text in mount_doubts]
     earlier += [_quoted(FindingKind.IMPORT_REMARK, text) for text in others]
@@ -77,7 +78,7 @@ def derived_in(report: Mapping[str, object]) -> tuple[Derived, ...]:
     try:
         found = as_type(report.get("derived", []), list[str | Derived])
     except msgspec.ValidationError as error:
-        raise StoreError(f"report.json of the frames cannot be read: {error}") from error
+        raise StoreError(unreadable("frames/report.json", error)) from error
     earlier = DerivedKind.EARLIER_SENTENCE
     return tuple(
         Derived(kind=earlier, values={"text": one}) if isinstance(one, str) else one

@@ -9,6 +9,7 @@ from enum import StrEnum
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.locales.coded import unreadable
 from recon4.untrusted.typed import as_type
 
 
@@ -60,4 +61,4 @@ def verdict_in(summary: Mapping[str, object]) -> MapVerdict | None:
     try:
         return as_type(record, MapVerdict)
     except msgspec.ValidationError as error:
-        raise StoreError(f"summary.json: its verdict cannot be read: {error}") from error
+        raise StoreError(unreadable("summary.json: its verdict", error)) from error

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText, at, text_of
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.model.trajectory import Trajectory
@@ -65,7 +66,9 @@ def load_graph(folder: Path) -> PoseGraph:
     names = [*_NODES, *_EDGES, *_NUMBERS, *_COUNTS]
     columns = load_arrays(folder / "graph.npz")
     if missing := [name for name in names if name not in columns]:
-        raise StoreError(f"graph.npz: expected arrays {names}, got none of {missing}")
+        raise StoreError(
+            CodedText("arrays-missing", file="graph.npz", names=str(names), missing=str(missing))
+        )
     for name in names:
         expected = len(columns["frame_ids"] if name in _NODES else columns["i"])
         if len(columns[name]) != expected:
@@ -76,7 +79,7 @@ def load_graph(folder: Path) -> PoseGraph:
         histories = zip(range(len(columns["i"])), judgments_in(columns), strict=True)
         edges = tuple(_edge(columns, row, judgments) for row, judgments in histories)
     except ValueError as error:
-        raise StoreError(f"graph.npz: {error}") from error
+        raise StoreError(at("graph.npz", text_of(error))) from error
     T_map_body = SE3(columns["node_R"], columns["node_t"])
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
 
@@ -114,7 +117,7 @@ def load_history(folder: Path, frames: tuple[int, int]) -> tuple[Judgment, ...]:
         rows = np.flatnonzero(is_pair & (columns["kind"] != EdgeKind.ODOMETRY.value))
         return judgments_of(columns, int(rows[-1])) if len(rows) else ()
     except (KeyError, IndexError, ValueError) as error:
-        raise StoreError(f"graph.npz: {error}") from error
+        raise StoreError(at("graph.npz", text_of(error))) from error
 
 
 def _edge(columns: Mapping[str, NDArray[Any]], row: int, judgments: tuple[Judgment, ...]) -> Edge:

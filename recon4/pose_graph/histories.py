@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
+from recon4.locales.coded import CodedText
 from recon4.model.pose_graph import (
     Edge,
     EdgeKind,
@@ -144,7 +145,11 @@ def _known_alone(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
 
 def _check(columns: Columns, names: Sequence[str]) -> None:
     if missing := [name for name in names if name not in columns]:
-        raise StoreError(f"graph.npz: expected arrays {list(names)}, got none of {missing}")
+        raise StoreError(
+            CodedText(
+                "arrays-missing", file="graph.npz", names=str(list(names)), missing=str(missing)
+            )
+        )
     for name in names:
         found, expected = columns[name], _KINDS.get(name, "U")
         if found.ndim != 1 or found.dtype.kind not in expected:

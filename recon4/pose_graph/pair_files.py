@@ -14,6 +14,7 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import at, text_of
 from recon4.model.pose_graph import Edge, EdgeKind
 from recon4.pose_graph.pair import Pair
 from recon4.pose_graph.tried_pairs import tried_bytes, tried_edge
@@ -60,7 +61,7 @@ class SearchInputs(msgspec.Struct, frozen=True, kw_only=True):
         try:
             found = decoded(data, _Search)
         except (msgspec.DecodeError, RecursionError) as error:
-            raise StoreError(f"{_SEARCH}: {error}") from error
+            raise StoreError(at(_SEARCH, text_of(error))) from error
         views = folder / VIEWS
         size = views.stat().st_size if views.is_file() else -1
         if size != found.views_bytes:
@@ -114,7 +115,7 @@ def load_part(path: Path) -> tuple[Groups, dict[int, Pair]]:
         plain = msgspec.msgpack.decode(data, type=list[list[_Pair]])
         pairs = {one.row: _pair(one) for group in plain for one in group}
     except (msgspec.DecodeError, RecursionError, ValueError) as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, text_of(error))) from error
     return [[one.row for one in group] for group in plain], pairs
 
 
@@ -149,7 +150,7 @@ def take_tried(path: Path, pairs: Mapping[int, Pair]) -> dict[int, Edge]:
         records = msgspec.msgpack.decode(data, type=dict[int, bytes])
         edges = {row: tried_edge(pairs[row], record) for row, record in records.items()}
     except (msgspec.DecodeError, RecursionError, KeyError, ValueError) as error:
-        raise StoreError(f"{path.name}: {error}") from error
+        raise StoreError(at(path.name, text_of(error))) from error
     found = {row: edge for row, edge in edges.items() if edge is not None}
     if len(found) != len(pairs):
         raise StoreError(f"{path.name}: expected {len(pairs)} pairs, got {len(found)} of them")

@@ -8,6 +8,7 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import TRANSLATION
+from recon4.locales.coded import CodedText
 from recon4.model.figures import UncertaintyFigures
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
@@ -49,7 +50,9 @@ def load_uncertainty(folder: Path) -> PoseUncertainty | None:
     found = load_arrays(folder / _FILE)
     missing = [name for name in _ARRAYS if name not in found]
     if missing:
-        raise StoreError(f"{_FILE}: expected arrays {list(_ARRAYS)}, got none of {missing}")
+        raise StoreError(
+            CodedText("arrays-missing", file=_FILE, names=str(list(_ARRAYS)), missing=str(missing))
+        )
     start_ns, end_ns = found["point_ns"].tolist()
     return PoseUncertainty(
         found["t_ns"],

@@ -16,6 +16,7 @@ from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log
 from recon4.kernels.imu import samples_at
 from recon4.kernels.imu_chain import SIZE, level_by_gravity, linearize_chain
+from recon4.locales.coded import CodedText
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -242,7 +243,7 @@ class LinearizedChain:
         try:
             step = solveh_banded(_lower_band(diagonal, lower), gradient.ravel(), lower=True)
         except LinAlgError as error:
-            raise GraphError(f"the chain of {knots} states cannot be solved: {error}") from error
+            raise GraphError(CodedText("imu-chain", states=knots, why=str(error))) from error
         return -np.asarray(step, dtype=np.float64).reshape(knots, SIZE)
 
     def _priors(self) -> tuple[Array, Array, Array]:

@@ -236,11 +236,11 @@ def _no_name_in_common(
     points: Sequence[ControlPoint], measured: Mapping[str, MeasuredPosition]
 ) -> GeoreferenceError:
     def some(names: Sequence[str]) -> str:
-        return ", ".join(names[:5]) + (" …" if len(names) > 5 else "") if names else "none"
+        return ", ".join(names[:5]) + (" …" if len(names) > 5 else "") if names else "–"
 
+    surveyed = some([point.id for point in points])
     return GeoreferenceError(
-        f"no surveyed point was measured in the map: the survey has {some([p.id for p in points])},"
-        f" measured are {some([*measured])}; expected the same names"
+        CodedText("control-names", surveyed=surveyed, measured=some([*measured]))
     )
 
 

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
+from recon4.locales.coded import CodedText
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.untrusted.bounded import check_file_size, open_regular
@@ -141,7 +142,9 @@ def _members(
         names = [name.removesuffix(".npy") for name in found if name.endswith(".npy")]
     missing = [name for name in names if f"{name}.npy" not in found]
     if missing:
-        raise StoreError(f"{where}: expected arrays {names}, got none of {missing}")
+        raise StoreError(
+            CodedText("arrays-missing", file=where, names=str(names), missing=str(missing))
+        )
     chosen = {name: found[f"{name}.npy"] for name in names}
     size = sum(info.file_size for info in chosen.values())
     packed = sum(info.compress_size for info in chosen.values())

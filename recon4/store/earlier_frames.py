@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
+from recon4.locales.coded import unreadable
 from recon4.model.multiframe import COLUMNS
 
 EARLIER_INDEX = np.dtype(
@@ -39,7 +40,7 @@ def _rows(folder: Path, name: str, start: int, *, stop: int) -> NDArray[Any]:
     try:
         column = np.load(folder / f"{name}.npy", mmap_mode="r", allow_pickle=False)
     except (OSError, ValueError, EOFError, SyntaxError, TypeError) as error:
-        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
+        raise StoreError(unreadable(f"{folder.name}/{name}.npy", error)) from error
     rows = np.array(column[start:stop], subok=False)
     expected = (stop - start, width) if width > 1 else (stop - start,)
     if rows.dtype != dtype or rows.shape != expected:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import unreadable
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.store.arrays import load_arrays, load_record, save_arrays, save_record
@@ -117,7 +118,7 @@ def load_laser_scans(folder: Path) -> LaserScans | None:
     try:
         ranges = np.load(folder / RANGES, mmap_mode="c").view(np.ndarray)
     except (OSError, ValueError, EOFError) as error:
-        raise StoreError(f"{folder.name}/{RANGES} cannot be read: {error}") from error
+        raise StoreError(unreadable(f"{folder.name}/{RANGES}", error)) from error
     if ranges.ndim == 2:
         ranges = _of_earlier_version(arrays, ranges)
     missing = set(_FIELDS) - arrays.keys()

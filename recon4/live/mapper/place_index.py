@@ -16,6 +16,7 @@ from scipy import ndimage
 from recon4.errors import NoSpace
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.live.mapper.tuning import PLACE_INDEX, PLAN_MATCH
+from recon4.locales.coded import CodedText
 from recon4.pose_graph.tuning import graph_tuning
 from recon4.registration.overlap import make_range_image, seen_through
 from recon4.registration.plane_map import PlaneMap
@@ -298,7 +299,7 @@ class SpillFile:
         """
         data = np.ascontiguousarray(points).tobytes()
         if os.pwrite(self._file, data, self._end) < len(data):
-            raise NoSpace("no space for the place index")
+            raise NoSpace(CodedText("disk-full"))
         where = slice(self._end, self._end + len(data))
         self._end = where.stop
         return where

@@ -23,6 +23,8 @@ bag-yaml-reference = { $metadata }, Zeile { $line }: erwartet wird kein Verweis,
 bag-yaml-deep = { $metadata }, Zeile { $line }: mehr als { $max_depth } Ebenen tief oder mehr als { $max_events } Werte
 bag-description = { $metadata }: keine Beschreibung eines rosbag2: { $why }
 bag-nothing-left = { $name }: beschädigt oder abgeschnitten, keine einzige Nachricht ist übrig
+bag-files-absent = keine Datei aus { $metadata } ist da: { $names }
+bag-files-unlisted = { $metadata } nennt { $names } nicht
 bag-empty = { $names }: ein Bag ohne Nachrichten
 mcap-checksum = { $where }: erwartet wird die Prüfsumme { $crc }, erhalten: { $raw }: die Daten wurden verändert
 chunk-records-end = { $where }: erwartet werden Datensätze bis zum Ende bei { $count }, erhalten: { $at } Byte
@@ -241,6 +243,13 @@ text-large = { $file }: erwartet werden höchstens { $most } Byte Text, es sind 
 text-lines-many = { $file }: erwartet werden höchstens { $max_log_lines } Zeilen, es sind mehr
 three-dtk-pose = { $file }: erwartet werden eine Position und drei Winkel, erhalten: { $words }
 three-dtk-line = { $where }: erwartet werden drei bis sechs Zahlen, erhalten: { QUOTED($line) }
+three-dtk-row = { $where }: erwartet werden { $width } Zahlen, erhalten: { QUOTED($line) }
+pose-times = { $where }: die Zeiten müssen zunehmen
+time-line = { $name }, Zeile { $line }: erwartet werden Sekunden oder ein Datum, erhalten: { QUOTED($text) }
+npz-cut = { $name }: erwartet wird ein Archiv mit Verzeichnis, erhalten: keines, die Datei ist abgeschnitten
+npz-directory = { $name }: erwartet wird ein Archiv mit einem Verzeichnis von höchstens { $most } Byte, erhalten: { $got }
+cloud-types = eine Punktwolke mit Feldern unbekannter Typen: { $fields }: erwartet wird 1 bis { $most }
+e57-unsound = { $name }: keine einwandfreie E57-Datei: { $why }
 zstd-unreadable = { $file }: keine lesbare zstd-Datei: { $why }
 
 ## Tabellen von Personen
@@ -257,6 +266,12 @@ dxf-no-points = { $name }: erwartet werden Punkte oder Blöcke mit Attributen, d
 dxf-unreadable = { $name }: nicht als DXF lesbar: { $said }
 table-rows = { $name }: erwartet werden Zeilen mit drei Zahlen oder mehr, erhalten: { QUOTED($seen) }
 table-row-wrong = { $name }: Zeile { $line }: { QUOTED($cells) }: { $why }
+line-wrong = { $name }: Zeile { $line }: { $why }: { QUOTED($row) }
+table-no-point = { $name }: hinter Zeile { $line }: erwartet werden x, y, z als Zahlen
+cell-number = erwartet wird eine Zahl, erhalten: { QUOTED($cell) }
+cell-degrees = erwartet werden Grad mit Dezimalstellen, wie 49.0203, erhalten: { QUOTED($cell) }
+cell-grouped = erwartet werden Zahlen ohne Tausendertrennzeichen, erhalten: { QUOTED($cell) }
+cells-few = erwartet werden { $least } oder mehr Zahlen
 
 ## IMU und GNSS
 
@@ -294,6 +309,10 @@ laser-no-range = die Scans haben keine einzige Entfernung über 0
 carmen-one = erwartet wird ein CARMEN-Protokoll, erhalten: { $count } Dateien
 laser-table-one = erwartet wird eine Tabelle eines 2-D-Lasers, erhalten: { $count } Dateien
 lines-none = { $name }: keine Linienscans von { $sensor }; Topics: { $topics }
+head-joint-none = { $sensor }: erwartet wird in { $topic } ein Gelenk, das den Rahmen { $frame } bewegt, erhalten: keines
+head-angles-none = { $sensor }: die Winkel des Kopfes fehlen: erwartet wird das Topic { $topic } vom Typ { $type }, erhalten: { $there }; ein Kopf kann sich auch mit einem Gelenk von /tf oder der Beschreibung des Roboters bewegen, oder gleichmäßig: head_rate_deg_s in der Rig-Datei
+head-joints = { $topic }: erwartet wird der Winkel eines Gelenks, erhalten: { $count } ({ $names }); mit der Beschreibung des Roboters in der Bag nennt die Rig-Datei dieses als head_topic
+mandeye-no-lidar = { $folder }: kein LiDAR des Rigs { QUOTED($rig) } ist darin; da sind, mit Nummer und Seriennummer, die LiDARs { $there }
 line-tables-count = erwartet wird eine Tabelle mit Linienscans und höchstens eine eines 2-D-Lasers, erhalten: { $lines } und { $lasers }
 line-tables-rig = { $name }: Linienscans brauchen ein Rig mit einem Sensor der Art profiler (Seite: Feld Rig; Kommando: --rig): Tabellen sagen nicht, wo die Sensoren montiert sind
 head-column-missing = { $sensor }: die Winkel des Kopfes fehlen: erwartet wird eine Spalte head_deg in { $name }; bei einem Kopf mit konstanter Drehrate head_rate_deg_s in der Rig-Datei

@@ -51,6 +51,7 @@ laser-unused = { $recordings } ist eine Aufzeichnung eines 2-D-Lasers: sie wird 
 control-too-close = die Passpunkte { $targets } liegen übereinander oder zu nah beieinander: sie sagen nicht, wo Norden ist
 control-unit = die Passpunkte liegen in der Vermessung bis zu { SIGNIFICANT($site_m, digits: 3) } auseinander und in der Karte { SIGNIFICANT($map_m, digits: 3) } m: erwartet werden Meter, weder Grad noch eine andere Einheit
 control-one-line = die Passpunkte { $targets } liegen auf einer Linie: eine Karte, die nicht horizontiert ist, braucht drei, die es nicht tun
+control-names = kein vermessener Punkt wurde in der Karte gemessen: die Vermessung hat { $surveyed }, gemessen sind { $measured }; erwartet werden dieselben Namen
 control-same-place = { $name } und { $other } liegen { $where } an derselben Stelle: erwartet werden Punkte mit mindestens { SIGNIFICANT($apart_m, digits: 6) } cm Abstand
 crs-coordinates = Ost { DECIMAL($east_m, digits: 3) }, Nord { DECIMAL($north_m, digits: 3) } liegt nicht in { $crs }: erwartet werden Koordinaten dieses Systems
 crs-no-projection = { $name } ist keine Kartenprojektion in Metern: { $system }
@@ -200,6 +201,18 @@ zip-twice = { $file }: { QUOTED($filename) } ist zweimal enthalten
 zip-expected = { $file }: erwartet wird eine ZIP-Datei: { $why }
 zip-many = { $file }: erwartet werden höchstens { $max_files } Dateien, erhalten: { $count }
 zip-refused = { $file }: { QUOTED($name) } wird abgelehnt: { $wrong }
+zip-list = { $file }: das Verzeichnis am Ende { $wrong }
+zip-entry = { $file }: { QUOTED($name) } { $wrong }
+zip-name-invisible = der Name ist leer, zu lang oder hat unsichtbare Zeichen
+zip-name-outside = der Name führt nach außen
+zip-name-reserved = der Name hat Zeichen, die auf anderen Systemen etwas anderes bedeuten
+zip-name-separator = der Name enthält ein NUL oder das Trennzeichen eines anderen Systems
+zip-no-file = erwartet wird eine Datei, erhalten: ein Ordner, ein Verweis oder ein Gerät
+zip-encrypted = der Eintrag ist verschlüsselt
+zip-compression = die Kompression Nummer { $number } ist weder „stored“ noch „deflated“
+zip-expands = der Eintrag wächst beim Entpacken von { $packed } auf { $size } Byte
+zip-overlap = überlappt mit einem anderen Eintrag
+zip-gap = hat davor Byte, die zu keinem Eintrag gehören
 zip-large = { $where }: { $filename }: erwartet werden höchstens { $most } Byte, es sind mehr
 deliver-kind = erwartet wird eine Art von Datei: { $kinds }; erhalten: { QUOTED($name) }
 deliver-option = { $title } kennt { $option } nicht: weglassen
@@ -319,6 +332,12 @@ prism-crosses = Prisma: erwartet wird ein Polygon, dessen Kanten sich nicht kreu
 brush-places = Pinsel: erwartet werden 1 bis { $most_places } Stellen, erhalten: { $count }
 brush-thickness = Pinsel: nur ein Strich auf einem Schnitt hat eine Dicke
 brush-normal = Pinsel: erwartet wird eine Normale der Länge 1, erhalten: { $across }
+clusters-edge = clusters: erwartet werden Würfel von { SIGNIFICANT($least_m, digits: 6) } bis { SIGNIFICANT($most_m, digits: 6) } m, erhalten: { SIGNIFICANT($got_m, digits: 6) } m
+clusters-finite = clusters: erwartet werden endliche Koordinaten, erhalten: { $got }
+clusters-axes = clusters: erwartet werden u und v der Länge 1 im rechten Winkel, erhalten: { $u }, { $v }
+clusters-columns = clusters: erwartet werden Spalten i, j, erste und letzte, nahe am Ursprung
+clusters-many = clusters: erwartet werden 1 bis { $most } Gruppen mit höchstens { $most_columns } Spalten, erhalten: { $got } mit { $columns }
+clusters-empty = clusters: erwartet wird ein Würfel in jeder Gruppe
 
 ## Karten und Trajektorien
 
@@ -335,6 +354,7 @@ map-list = { $file } ist nicht die Liste der Kacheln einer Karte: { $why }
 place-expected = erwartet wird eine Stelle in der Karte, erhalten: { $place_m }
 trajectory-empty = die Trajektorie ist leer
 trajectory-outside = die Zeit { DECIMAL($from_s, digits: 3) } … { DECIMAL($to_s, digits: 3) } s liegt außerhalb der Trajektorie, die { DECIMAL($begin_s, digits: 3) } … { DECIMAL($end_s, digits: 3) } s abdeckt
+multiframe-sensor = Multiframe { $frame } hat Punkte von Sensor { $sensor }, das Rig { QUOTED($rig) } hat aber { $sensors } Sensoren, ab 0 nummeriert
 map-2d-unreadable = { $folder }: die 2-D-Karte ist nicht lesbar: { $why }
 grid-large = das Belegungsgitter wäre { DECIMAL($width_m, digits: 0) } x { DECIMAL($height_m, digits: 0) } m in Zellen von { SIGNIFICANT($cell_m, digits: 6) } m: erwartet werden höchstens { $max_cells } Zellen. Ist eine Position falsch? Größere Zellen brauchen weniger
 laser-no-scans = { $folder } hat keine Scans eines 2-D-Lasers
@@ -352,6 +372,7 @@ graph-prior-finite = ein Prior ist nicht endlich
 graph-gauge = die Lage des Netzes ist frei: erwartet wird ein fester Knoten oder ein Prior, es ist keiner da
 graph-not-finite = die Ausgleichung traf auf eine Zahl, die nicht endlich ist
 graph-prior-deviation = ein Prior hat eine Standardabweichung, die nicht positiv ist
+imu-chain = die Kette aus { $states } Zuständen ist nicht lösbar: { $why }
 
 ## Simulation
 
@@ -505,6 +526,7 @@ scheduler-silent = kein Scheduler antwortet auf { $scheduler }: { $why }
 
 ## Gespeicherte Dateien
 
+arrays-missing = { $file }: erwartet werden die Arrays { $names }, erhalten: keines von { $missing }
 name-no-utf8 = { $wrong }: der Name ist kein Text in UTF-8: umbenennen
 cannot-read = { $file } ist nicht lesbar: { $why }
 json-not-object = { $what } ist nicht lesbar: erwartet wird ein Objekt, erhalten: { $kind }

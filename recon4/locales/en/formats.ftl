@@ -23,6 +23,8 @@ bag-yaml-reference = { $metadata }, line { $line }: expected no reference, got *
 bag-yaml-deep = { $metadata }, line { $line }: nested deeper than { $max_depth } levels or more than { $max_events } values
 bag-description = { $metadata }: no description of a rosbag2: { $why }
 bag-nothing-left = { $name }: damaged or cut off, not one message is left
+bag-files-absent = no file of { $metadata } is there: { $names }
+bag-files-unlisted = { $metadata } does not list { $names }
 bag-empty = { $names }: a bag without messages
 mcap-checksum = { $where }: expected checksum { $crc }, got { $raw }: its bytes changed
 chunk-records-end = { $where }: expected records up to its end at { $count }, got { $at } bytes
@@ -241,6 +243,13 @@ text-large = { $file }: expected at most { $most } bytes of text, got more
 text-lines-many = { $file }: expected at most { $max_log_lines } lines, got more
 three-dtk-pose = { $file }: expected a position and three angles, got { $words }
 three-dtk-line = { $where }: expected three to six numbers, got { QUOTED($line) }
+three-dtk-row = { $where }: expected { $width } numbers, got { QUOTED($line) }
+pose-times = { $where }: times must increase
+time-line = { $name }, line { $line }: expected seconds or a date, got { QUOTED($text) }
+npz-cut = { $name }: expected an archive with a directory, got none: the file is cut off
+npz-directory = { $name }: expected an archive with a directory of at most { $most } bytes, got { $got }
+cloud-types = a cloud with fields of unknown types: { $fields }: expected 1 to { $most }
+e57-unsound = { $name }: not a sound E57 file: { $why }
 zstd-unreadable = { $file }: no readable zstd file: { $why }
 
 ## Tables of people
@@ -257,6 +266,12 @@ dxf-no-points = { $name }: expected points, or blocks with attributes, got a DXF
 dxf-unreadable = { $name }: cannot be read as DXF: { $said }
 table-rows = { $name }: expected rows with three numbers or more, got { QUOTED($seen) }
 table-row-wrong = { $name }: line { $line }: { QUOTED($cells) }: { $why }
+line-wrong = { $name }: line { $line }: { $why }: { QUOTED($row) }
+table-no-point = { $name }: behind line { $line }: expected x, y, z as numbers
+cell-number = expected a number, got { QUOTED($cell) }
+cell-degrees = expected degrees with decimals, as 49.0203, got { QUOTED($cell) }
+cell-grouped = expected numbers without thousands separators, got { QUOTED($cell) }
+cells-few = expected { $least } or more numbers
 
 ## IMU and GNSS
 
@@ -294,6 +309,10 @@ laser-no-range = the scans have not one range above 0
 carmen-one = one CARMEN log expected, got { $count } files
 laser-table-one = one table of a 2-D laser expected, got { $count } files
 lines-none = { $name }: no line scans of { $sensor }; topics: { $topics }
+head-joint-none = { $sensor }: expected a joint in { $topic } that moves its frame { $frame }, got none
+head-angles-none = { $sensor }: the angles of its head are missing: expected topic { $topic } of type { $type }, got { $there }; a head may also move by a joint of /tf or of the robot description, or at a constant rate: head_rate_deg_s in the rig file
+head-joints = { $topic }: expected the angle of one joint, got { $count } ({ $names }): with the robot description in the bag, the rig file names that as head_topic
+mandeye-no-lidar = { $folder }: no LiDAR of the rig { QUOTED($rig) } is in it; it has the LiDARs { $there }, by number and serial number
 line-tables-count = expected one table of line scans and at most one of a 2-D laser, got { $lines } and { $lasers }
 line-tables-rig = { $name }: line scans need a rig with a sensor of kind profiler (page: field Rig; command: --rig): tables do not say where the sensors are mounted
 head-column-missing = { $sensor }: the angles of its head are missing: expected a column head_deg in { $name }; with a head of constant rate, head_rate_deg_s in the rig file

@@ -51,6 +51,7 @@ laser-unused = { $recordings } is a recording of a 2-D laser: it is processed wi
 control-too-close = control points { $targets } lie above each other or too close together: they do not say where north is
 control-unit = control points are up to { SIGNIFICANT($site_m, digits: 3) } apart in the survey and { SIGNIFICANT($map_m, digits: 3) } m in the map: expected meters, neither degrees nor another unit
 control-one-line = control points { $targets } lie on one line: a map that is not leveled needs three that do not
+control-names = no surveyed point was measured in the map: the survey has { $surveyed }, measured are { $measured }; expected the same names
 control-same-place = { $name } and { $other } are in one place { $where }: expected points at least { SIGNIFICANT($apart_m, digits: 6) } cm apart
 crs-coordinates = easting { DECIMAL($east_m, digits: 3) }, northing { DECIMAL($north_m, digits: 3) } is not in { $crs }: expected coordinates of that system
 crs-no-projection = { $name } is not a map projection in meters: { $system }
@@ -200,6 +201,18 @@ zip-twice = { $file }: { QUOTED($filename) } is in it twice
 zip-expected = { $file }: expected a ZIP file: { $why }
 zip-many = { $file }: expected at most { $max_files } files, got { $count }
 zip-refused = { $file }: { QUOTED($name) } is refused: { $wrong }
+zip-list = { $file }: the list at its end { $wrong }
+zip-entry = { $file }: { QUOTED($name) } { $wrong }
+zip-name-invisible = its name is empty, too long or has invisible characters
+zip-name-outside = its name leads outside
+zip-name-reserved = its name has characters that stand for something else on other systems
+zip-name-separator = its name holds a NUL or a separator of another system
+zip-no-file = expected a file, got a folder, a link or a device
+zip-encrypted = it is encrypted
+zip-compression = its compression, number { $number }, is not stored or deflated
+zip-expands = it expands from { $packed } to { $size } bytes
+zip-overlap = overlaps with another entry
+zip-gap = has bytes of no entry before it
 zip-large = { $where }: { $filename }: expected at most { $most } bytes, got more
 deliver-kind = expected a kind of file: { $kinds }; got { QUOTED($name) }
 deliver-option = { $title } takes no { $option }: leave it out
@@ -319,6 +332,12 @@ prism-crosses = prism: expected a polygon whose edges do not cross: { $polygon }
 brush-places = brush: expected 1 to { $most_places } places, got { $count }
 brush-thickness = brush: only a stroke on a slice has a thickness
 brush-normal = brush: expected a normal of length 1, got { $across }
+clusters-edge = clusters: expected cubes of { SIGNIFICANT($least_m, digits: 6) } to { SIGNIFICANT($most_m, digits: 6) } m, got { SIGNIFICANT($got_m, digits: 6) } m
+clusters-finite = clusters: expected finite coordinates, got { $got }
+clusters-axes = clusters: expected u and v of length 1 at a right angle, got { $u }, { $v }
+clusters-columns = clusters: expected columns i, j, first and last, near the origin
+clusters-many = clusters: expected 1 to { $most } clusters of { $most_columns } columns at most, got { $got } of { $columns }
+clusters-empty = clusters: expected a cube in each cluster
 
 ## Maps and trajectories
 
@@ -335,6 +354,7 @@ map-list = { $file } is not the list of a map's tiles: { $why }
 place-expected = expected a place in the map, got { $place_m }
 trajectory-empty = the trajectory is empty
 trajectory-outside = time { DECIMAL($from_s, digits: 3) } … { DECIMAL($to_s, digits: 3) } s is outside the trajectory, which covers { DECIMAL($begin_s, digits: 3) } … { DECIMAL($end_s, digits: 3) } s
+multiframe-sensor = multiframe { $frame } has points of sensor { $sensor }, but rig { QUOTED($rig) } has { $sensors } sensors, numbered from 0
 map-2d-unreadable = { $folder }: the 2-D map cannot be read: { $why }
 grid-large = the occupancy grid would be { DECIMAL($width_m, digits: 0) } x { DECIMAL($height_m, digits: 0) } m in cells of { SIGNIFICANT($cell_m, digits: 6) } m: expected at most { $max_cells } cells. Is a position wrong? Larger cells need less
 laser-no-scans = { $folder } has no scans of a 2-D laser
@@ -352,6 +372,7 @@ graph-prior-finite = a prior is not finite
 graph-gauge = the gauge is free: expected a fixed node or a prior, got none
 graph-not-finite = the optimizer met a number that is not finite
 graph-prior-deviation = a prior has a standard deviation that is not positive
+imu-chain = the chain of { $states } states cannot be solved: { $why }
 
 ## Simulation
 
@@ -505,6 +526,7 @@ scheduler-silent = no scheduler answers at { $scheduler }: { $why }
 
 ## Stored files
 
+arrays-missing = { $file }: expected arrays { $names }, got none of { $missing }
 name-no-utf8 = { $wrong }: the name is no UTF-8 text: rename it
 cannot-read = cannot read { $file }: { $why }
 json-not-object = { $what } cannot be read: expected an object, got { $kind }

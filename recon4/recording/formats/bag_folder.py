@@ -100,12 +100,12 @@ def with_files_there(folder: Path, metadata: BagMetadata, report: ImportReport) 
         values: dict[str, Value] = {"files": len(missing), "missing": names}
         report.warn(FindingKind.FILES_MISSING, name=folder.name, **values)
     if not there:
-        absent = CorruptFile(f"no file of {METADATA} is there: {names}")
+        absent = CorruptFile(CodedText("bag-files-absent", metadata=METADATA, names=names))
         return replace(metadata, files=storage_files(folder, absent))
     more = _unlisted(folder, metadata)
     if more:
         listed = ", ".join(file.name for file in more[: LISTED.few])
-        error = CorruptFile(f"{METADATA} does not list {listed}")
+        error = CorruptFile(CodedText("bag-files-unlisted", metadata=METADATA, names=listed))
         report.warn(FindingKind.FOLDER_DESCRIPTION, name=folder.name, error=error)
     return replace(metadata, files=(*there, *more))
 

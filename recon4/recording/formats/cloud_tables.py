@@ -51,9 +51,7 @@ def cloud_table(cloud: Any) -> Table:
     known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
     if {f.name.lower() for f in cloud.fields if f not in known} & {"x", "y", "z"}:
         fields = ", ".join(unread_fields(cloud)[: LISTED.few])
-        raise CorruptFile(
-            f"a cloud with fields of unknown types: {fields}: expected 1 to {max(_FIELD_TYPES)}"
-        )
+        raise CorruptFile(CodedText("cloud-types", fields=fields, most=max(_FIELD_TYPES)))
     step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)
     data: NDArray[np.uint8] = np.asarray(cloud.data, np.uint8)
     # Some drivers leave the length of a row as it was: their data have no room for any other.

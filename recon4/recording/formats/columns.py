@@ -151,11 +151,11 @@ def _archive(file: BinaryIO, name: str) -> zipfile.ZipFile:
     tail = file.read()
     at = tail.rfind(b"PK\x05\x06")
     directory = int.from_bytes(tail[at + 12 : at + 16], "little") if at >= 0 else -1
-    if not 0 <= directory <= _MAX_DIRECTORY_BYTES:
-        raise CorruptFile(
-            f"{name}: expected an archive with a directory of at most {_MAX_DIRECTORY_BYTES} "
-            f"bytes, got {directory if at >= 0 else 'none: the file is cut off'}"
-        )
+    if directory < 0:
+        raise CorruptFile(CodedText("npz-cut", name=name))
+    if directory > _MAX_DIRECTORY_BYTES:
+        most = _MAX_DIRECTORY_BYTES
+        raise CorruptFile(CodedText("npz-directory", name=name, most=most, got=directory))
     file.seek(0)
     return zipfile.ZipFile(file)
 

@@ -12,6 +12,12 @@ MAX_RATIO = 0.05
 """A file with more damaged lines than this is something else than it seems, and is refused."""
 
 
+def wrong_row(name: str, number: int, row: str, *, why: Exception | str) -> CodedText:
+    """What is wrong with a row of a file, and what it is."""
+    reason = text_of(why) if isinstance(why, Exception) else why
+    return CodedText("line-wrong", name=name, line=number, row=row.strip()[:80], why=reason)
+
+
 @dataclass(slots=True)
 class DamagedLines:
     """The damaged lines of one file."""

@@ -97,4 +97,4 @@ class E57Points:
 
     def _unsound(self, error: Exception) -> CorruptFile:
         said = (str(error) or repr(error)).splitlines()[0]  # below it: places in the library
-        return CorruptFile(f"{self._name}: not a sound E57 file: {said}")
+        return CorruptFile(CodedText("e57-unsound", name=self._name, why=said))

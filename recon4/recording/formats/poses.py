@@ -74,7 +74,7 @@ def read_tum(path: Path, report: ImportReport | None = None) -> Trajectory:
     t_ns = np.array(times, np.int64)
     kept = _in_order(t_ns)
     for k in np.flatnonzero(~kept):
-        damaged.add(CorruptFile(f"{table.where(rows[k])}: times must increase"))
+        damaged.add(CorruptFile(CodedText("pose-times", where=table.where(rows[k]))))
     damaged.finish(int(np.count_nonzero(kept)))
     report.count("poses", int(np.count_nonzero(kept)))
     values = table.values[np.array(rows, np.intp)[kept]][:, order]

@@ -119,8 +119,9 @@ def _rows(lines: list[str], width: int, where: str, *, first: int) -> Array:
         try:
             values[row] = [float(word) for word in text.split()]
         except ValueError:
-            found = f"expected {width} numbers, got {text[:60]!r}"
-            raise CorruptFile(f"{where} {first + row}: {found}") from None
+            place = f"{where} {first + row}"
+            wrong = CodedText("three-dtk-row", where=place, width=width, line=text[:60])
+            raise CorruptFile(wrong) from None
     return values
 
 

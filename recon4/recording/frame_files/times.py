@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.locales.coded import CodedText
 from recon4.model.finding import Finding, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
@@ -228,8 +229,8 @@ def read_times(path: Path) -> Times:
             t_ns = _time_ns(text)
             found.append(-1 if t_ns is None else t_ns)
             if t_ns is None:
-                what = f"expected seconds or a date, got {text!r:.60}"
-                damage.add(CorruptFile(f"{path.name}, line {number}: {what}"))
+                wrong = CodedText("time-line", name=path.name, line=number, text=text[:60])
+                damage.add(CorruptFile(wrong))
         unreadable = damage.number
     damage.check(len(found) - damage.number)
     return np.array(found, np.int64)

@@ -21,7 +21,7 @@ from recon4.model.gps_time import utc_of_gps_ns
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC
 from recon4.model.samples import GnssQuality
 from recon4.model.trajectory import Times
-from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.formats.damaged_lines import DamagedLines, wrong_row
 from recon4.recording.gnss.records import (
     Dating,
     FixRows,
@@ -119,8 +119,7 @@ def read_exported_text(path: Path, report: ImportReport) -> GnssFile:
             try:
                 table.add(line, rows)
             except (ValueError, OverflowError) as error:
-                where = f"{path.name}: line {number}"
-                damaged.add(CorruptFile(f"{where}: {error}: {line.strip()[:80]!r}"))
+                damaged.add(CorruptFile(wrong_row(path.name, number, line, why=error)))
     damaged.finish(len(rows))
     if table is None or not len(rows):
         raise EmptyRecording(CodedText("gnss-no-position", file=path.name))

@@ -15,7 +15,7 @@ from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
 from recon4.model.samples import GnssQuality
-from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.formats.damaged_lines import DamagedLines, wrong_row
 from recon4.recording.gnss.records import FixRows, GnssFile, gnss_samples, seconds_ns, week_ns
 from recon4.recording.gnss.tuning import GNSS_FILES
 from recon4.recording.report import ImportReport
@@ -94,8 +94,7 @@ def read_rtklib(path: Path, report: ImportReport) -> GnssFile:
                 try:
                     _add(line, header, rows)
                 except (ValueError, OverflowError) as error:
-                    where = f"{path.name}: line {number}"
-                    damaged.add(CorruptFile(f"{where}: {error}: {line.strip()[:80]!r}"))
+                    damaged.add(CorruptFile(wrong_row(path.name, number, line, why=error)))
     damaged.finish(len(rows))
     if not len(rows):
         raise EmptyRecording(CodedText("rtklib-none", file=path.name))

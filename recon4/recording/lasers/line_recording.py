@@ -205,8 +205,12 @@ class LineRecording:
             joint = moving_mount(bag, mounts.graph, frame, report=self._report)
         if joint is None and is_named:
             raise ConfigError(
-                f"{sensor.name}: expected a joint in {sensor.head_topic} that moves its frame "
-                f"{frame or '(no name)'}, got none"
+                CodedText(
+                    "head-joint-none",
+                    sensor=sensor.name,
+                    topic=sensor.head_topic,
+                    frame=frame or "–",
+                )
             )
         if joint is not None:
             self._report.derive(DerivedKind.MOUNT_MOVES, sensor=sensor.name, **joint.values)
@@ -231,12 +235,14 @@ class LineRecording:
         if len(joints) == 1 and not sensor.head_topic:
             self._report.derive(DerivedKind.HEAD_ANGLES, sensor=sensor.name, topic=joints[0].name)
             return joints[0].name
-        there = ", ".join(t.name for t in joints) or "none"
         raise ConfigError(
-            f"{sensor.name}: the angles of its head are missing: expected topic "
-            f"{sensor.head_topic or '(one)'} of type {JOINT_STATES}, got {there}; a head may also "
-            "move by a joint of /tf or of the robot description, or at a constant rate: "
-            "head_rate_deg_s in the rig file"
+            CodedText(
+                "head-angles-none",
+                sensor=sensor.name,
+                topic=sensor.head_topic or "–",
+                type=JOINT_STATES,
+                there=", ".join(t.name for t in joints) or "–",
+            )
         )
 
     def _find_scans(self, rig: Rig) -> str:

@@ -16,7 +16,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.model.samples import GnssQuality, GnssSamples
-from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.formats.damaged_lines import DamagedLines, wrong_row
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.packets.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.report import ImportReport
@@ -49,10 +49,7 @@ def read_positions(path: Path, report: ImportReport) -> GnssSamples:
         try:
             row = of_line(line, report)
         except (ValueError, IndexError) as error:
-            found = f"{line.strip()[:60]!r} ({error})"
-            damaged.add(
-                CorruptFile(f"{path.name}: line {number}: expected a position, got {found}")
-            )
+            damaged.add(CorruptFile(wrong_row(path.name, number, line, why=error)))
             continue
         sound += 1
         if row is not None:

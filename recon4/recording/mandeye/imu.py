@@ -18,7 +18,7 @@ from recon4.errors import CorruptFile
 from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.samples import ImuSamples
-from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.formats.damaged_lines import DamagedLines, wrong_row
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.report import ImportReport
 from recon4.units import STANDARD_GRAVITY_M_S2
@@ -74,8 +74,8 @@ def read_imu(path: Path, report: ImportReport) -> ImuFile:
         try:
             rows.append(_row(cells, places))
         except (ValueError, IndexError):
-            what = f"expected {len(NEEDED)} or more numbers, got {line.strip()[:60]!r}"
-            damaged.add(CorruptFile(f"{path.name}: line {number}: {what}"))
+            what = CodedText("cells-few", least=len(NEEDED))
+            damaged.add(CorruptFile(wrong_row(path.name, number, line, why=what)))
     damaged.finish(len(rows))
     return _joined(rows, path.name, report, has_ids="imuid" in places)
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.locales.coded import CodedText
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.lidars import lidar_model
@@ -80,11 +81,9 @@ def assigned(rig: Rig, walk: MandeyeWalk, report: ImportReport) -> dict[int, int
         if len(rows) > 1:
             report.derive(DerivedKind.SENSOR_NUMBER, sensor=rig.sensors[k].name, number=lidar)
     if not found:
+        there = ", ".join(f"{k} ({walk.serials.get(k, '–')})" for k in walk.ids)
         raise EmptyRecording(
-            f"{walk.folder.name}: no LiDAR of the rig {rig.name!r} is in it; it has "
-            + ", ".join(
-                f"LiDAR {k} {walk.serials.get(k, 'without serial number')}" for k in walk.ids
-            )
+            CodedText("mandeye-no-lidar", folder=walk.folder.name, rig=rig.name, there=there)
         )
     return found
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.locales.coded import CodedText
 from recon4.recording.formats.urdf import UrdfJoint
 from recon4.recording.mounts.tuning import JOINTS
 from recon4.recording.report import ImportReport
@@ -123,7 +124,4 @@ def stated_positions(
 def several_joints(topic: str, names: Sequence[str]) -> ConfigError:
     """Why the angle of a head is not taken from positions of several joints."""
     few = ", ".join(map(str, names[: LISTED.few]))
-    return ConfigError(
-        f"{topic}: expected the angle of one joint, got {len(names)} ({few}): with the robot "
-        "description in the bag, the rig file names that as head_topic"
-    )
+    return ConfigError(CodedText("head-joints", topic=topic, count=len(names), names=few))

@@ -14,6 +14,7 @@ import numpy as np
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
+from recon4.recording.formats.damaged_lines import wrong_row
 from recon4.recording.limits import LIMITS
 from recon4.recording.tables.coordinates import (
     AS_THE_TABLE_SAYS,
@@ -138,10 +139,8 @@ class TextCloud:
             found = [cells[k] if k < len(cells) else "" for k in self.columns.at]
             bad = next((cell for cell in found if not is_number(cell)), None)
             if bad is not None:
-                return CorruptFile(
-                    f"{name}: line {number}: {wrong_number(bad)} in {row.strip()[:80]!r}"
-                )
-        return CorruptFile(f"{name}: behind line {line}: expected x, y, z as numbers")
+                return CorruptFile(wrong_row(name, number, row, why=wrong_number(bad)))
+        return CorruptFile(CodedText("table-no-point", name=name, line=line))
 
 
 def read_layout(path: Path) -> TableLayout:

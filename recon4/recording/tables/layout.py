@@ -143,13 +143,13 @@ def without_groups(cell: str) -> str:
     return f"{whole.replace(signs[0], '')}.{part}"
 
 
-def wrong_number(cell: str) -> str:
+def wrong_number(cell: str) -> CodedText:
     """What is wrong with a cell that is expected to be a number."""
     if "°" in cell:
-        return f"expected degrees with decimals, as 49.0203, got {cell[:40]!r}"
+        return CodedText("cell-degrees", cell=cell[:40])
     if _GROUPED.fullmatch(cell):
-        return f"expected numbers without thousands separators, got {cell[:40]!r}"
-    return f"expected a number, got {cell[:40]!r}"
+        return CodedText("cell-grouped", cell=cell[:40])
+    return CodedText("cell-number", cell=cell[:40])
 
 
 def is_content(line: str) -> bool:
