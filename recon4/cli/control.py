@@ -57,7 +57,7 @@ def control_points(
     """
     confine_command(write=[project])
     from recon4.slices.site_control import require_agreement, trial_text
-    from recon4.slices.stored_picks import as_stored, keep_seen_picks
+    from recon4.slices.stored_picks import add_seen_picks, as_stored
 
     if not survey:
         _take_off(project, asked=apply and not (picks or crs))
@@ -72,7 +72,8 @@ def control_points(
     require_agreement(trial)
     if apply:
         if picks is None:
-            keep_seen_picks(project, trial.control, as_stored(project).picks)
+            seen = {one.id: one for one in trial.control.targets}
+            add_seen_picks(project, seen, as_stored(project).picks)
         _make_again(project, trial.control)
 
 

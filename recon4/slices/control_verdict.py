@@ -41,6 +41,24 @@ class Requirement:
 
 
 @dataclass(frozen=True, slots=True)
+class UnusedPoints:
+    """Surveyed points that are in no figure."""
+
+    unmeasured: int
+    absent: tuple[str, ...]
+    """Picked where the map has no points."""
+
+    def text(self, say: Texts) -> str:
+        """Both in words; empty = all points are used."""
+        left = {"left": self.unmeasured}
+        absent = {"names": ", ".join(self.absent[: CONTROL_VERDICT.named])}
+        absent["more"] = "" if len(self.absent) <= CONTROL_VERDICT.named else " …"
+        return (say.part("control-verdict", "absent", absent) if self.absent else "") + (
+            say.part("control-verdict", "left", left) if self.unmeasured else ""
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class ControlVerdict:
     """The verdict as one line: the same on the page, on the sheet and in files."""
 
@@ -128,7 +146,7 @@ def control_verdict(
     lines: Sequence[Requirement],
     *,
     rows: Sequence[Residual],
-    left: int,
+    unused: UnusedPoints,
     say: Texts,
 ) -> ControlVerdict:
     """The verdict of the deciding points.
@@ -137,12 +155,12 @@ def control_verdict(
         role: Of these points; None = no point was measured.
         lines: Their limits.
         rows: Residuals of all points, of both roles.
-        left: Points that were not measured in this map.
+        unused: The others; a point that is not in the map is no good measurement.
         say: `control_texts` of a language.
     """
-    more = say.part("control-verdict", "left", {"left": left}) if left else ""
+    left = unused.text(say)
     if role is None:
-        return ControlVerdict("note", say.part("control-verdict", "none", {}) + more)
+        return ControlVerdict("note", say.part("control-verdict", "none", {}) + left)
     holds = [line.holds for line in lines]
     level: Level = "good"
     name = "within"
@@ -154,14 +172,14 @@ def control_verdict(
     words = say.part("control-verdict", name, {"role": at})
     if level == "good" and role == "control":
         level, words = "note", say.part("control-verdict", "unchecked", {"words": words})
-    if level != "bad" and any(row.outlier for row in rows):
+    if level != "bad" and (unused.absent or any(row.outlier for row in rows)):
         level = "warning"
     values = {
         "sign": {"good": "✓", "warning": "⚠", "bad": "✕", "note": "–"}[level],
         "words": words,
         "parts": "; ".join(_components(lines, say)) or say.part("control-verdict", "no-limit", {}),
         "outliers": _outliers(rows, say),
-        "left": more,
+        "left": left,
     }
     return ControlVerdict(level, say.part("control-verdict", "whole", values))
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.georeference.tuning_control import SIGHTINGS
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import TileSet
 from recon4.slices.points import SliceWindow, points_in
@@ -98,6 +100,24 @@ def measured_directions(tiles: TileSet, plane: SlicePlane, p_map: Array) -> Arra
 def points_near(tiles: TileSet, p_map: Array, radius_m: float) -> Array:
     """Points of the map in a ball [m], (N, 3)."""
     return columns_near(tiles, p_map, radius_m)["xyz"]
+
+
+def absent_picks(
+    tiles: TileSet, picks: Mapping[str, Array], radii_m: Mapping[str, float]
+) -> set[str]:
+    """Ids of the places that the map does not have: too few points around them.
+
+    Args:
+        tiles: The map.
+        picks: Id -> place [m], (3,).
+        radii_m: Id -> radius of a sphere, whose middle is the place.
+    """
+    return {
+        name
+        for name, at in picks.items()
+        if len(points_near(tiles, at, SIGHTINGS.around_m + radii_m.get(name, 0.0)))
+        < SIGHTINGS.points
+    }
 
 
 def columns_near(tiles: TileSet, p_map: Array, radius_m: float, *names: str) -> Columns:

@@ -32,6 +32,8 @@ def residual_csv(report: ControlReport, *, comment: str = "") -> str:
         rows.writerow([safe_cell(row.id), row.role, *_cells(row)])
     for name in report.missing:
         rows.writerow([safe_cell(name), "not found in the map"])
+    for name in report.absent:
+        rows.writerow([safe_cell(name), "picked where the map has no points"])
     for name in report.outdated:
         rows.writerow([safe_cell(name), "found in an earlier map only"])
     for f in report.figures:

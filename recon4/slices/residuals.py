@@ -25,6 +25,7 @@ from recon4.slices.control_points import ControlPoint
 from recon4.slices.control_verdict import (
     ControlVerdict,
     Requirement,
+    UnusedPoints,
     control_verdict,
     requirements_of,
 )
@@ -108,6 +109,8 @@ class ControlReport:
     outdated: tuple[str, ...]
     """Points found in an earlier map, or by an earlier version that did not record what it
     measured; they are not used."""
+    absent: tuple[str, ...]
+    """Points picked where the map has none; they are not used."""
     figures: tuple[ResidualStatistics, ...]
     """Statistics of check points, then of control points; a role without points is omitted."""
     judged_by: Role | None
@@ -129,6 +132,8 @@ class ControlContext:
     """Id -> covariance of the map there, east, north, up [m²], (3, 3)."""
     outdated: Collection[str] = ()
     """Ids of points found in an earlier map."""
+    absent: Collection[str] = ()
+    """Ids of points that were picked where the map has none."""
     map_bounds_m: Array | None = None
     """Lowest and highest corner of the map in the survey's coordinates [m], (2, 3); None = it has
     no points, or the survey is in coordinates that it does not have."""
@@ -154,7 +159,7 @@ def residuals(
         measured: Id -> position in the coordinates of the survey.
         context: Stated covariances, limits, heights of the map.
     """
-    found = [point for point in points if point.id in measured]
+    found = [one for one in points if one.id in measured and one.id not in context.absent]
     rows = tuple(
         _residual(
             p,
@@ -171,11 +176,13 @@ def residuals(
     figures = tuple(one for one in figures if one.points)
     missing = tuple(p.id for p in points if p.id not in measured and p.id not in context.outdated)
     outdated = tuple(p.id for p in points if p.id not in measured and p.id in context.outdated)
+    absent = tuple(p.id for p in points if p.id in context.absent)
     judge = figures[0] if figures else None
     return ControlReport(
         rows=rows,
         missing=missing,
         outdated=outdated,
+        absent=absent,
         figures=figures,
         judged_by=judge.role if judge else None,
         passed=_all_hold(judge.requirements) if judge else None,
@@ -184,7 +191,7 @@ def residuals(
             judge.role if judge else None,
             judge.requirements if judge else (),
             rows=rows,
-            left=len(missing) + len(outdated),
+            unused=UnusedPoints(len(missing) + len(outdated), absent),
             say=context.say,
         ),
         limits=context.limits.text(context.say),

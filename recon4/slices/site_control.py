@@ -33,7 +33,7 @@ from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
 from recon4.model.plain import to_plain
-from recon4.model.site_control import SeenTarget, SiteControl
+from recon4.model.site_control import SeenPlace, SeenTarget, SiteControl
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.uncertainty_files import load_uncertainty
@@ -211,16 +211,26 @@ def unseen_text(trial: ControlTrial, language: str = ENGLISH) -> tuple[str, ...]
     return (say.part("control-table", "unseen-exchange", {"pairs": ", ".join(pairs)}),)
 
 
+def seen_place(found: Sighting) -> SeenPlace:
+    """Who saw a place, as it is stored."""
+    return SeenPlace(
+        t_ns=tuple(found.t_ns.tolist()),
+        p_body_m=_tuples(found.p_body),
+        directions_body=tuple(map(_tuples, found.directions_body)),
+    )
+
+
 def _seen(point: ControlPoint, found: Sighting, accuracy: ControlAccuracy) -> SeenTarget:
+    place = seen_place(found)
     return SeenTarget(
         id=point.id,
         xyz_m=point.xyz_m,
         role=point.role,
         sd_m=_deviations(point, accuracy),
         covariance_m2=point.covariance_m2,
-        t_ns=tuple(found.t_ns.tolist()),
-        p_body_m=_tuples(found.p_body),
-        directions_body=tuple(map(_tuples, found.directions_body)),
+        t_ns=place.t_ns,
+        p_body_m=place.p_body_m,
+        directions_body=place.directions_body,
     )
 
 

@@ -1,7 +1,7 @@
 """Places of surveyed points that were picked on the page of slices, in any map of the walk.
 
-A pick is a place in one map. When the map is put on its control points, it is kept who saw the
-picked places: every map that is made of the walk afterwards has them, too.
+A pick is a place in one map. Before another map of the walk takes its place, or when it is put on
+its control points, it is kept who saw the picked places: every later map has them, too.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from recon4.errors import OutOfRange, StoreError
 from recon4.locales.coded import unreadable
 from recon4.model.plain import to_plain
-from recon4.model.site_control import SeenPlace, SiteControl, Xyz
+from recon4.model.site_control import SeenPlace, Xyz
 from recon4.slices.measured_points import MeasuredPosition, orthonormal
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import write_json
@@ -30,12 +30,27 @@ TRAJECTORY = "trajectory.npz"
 """Of the stage ``level``."""
 
 
+class MeasuredPoint(msgspec.Struct, frozen=True):
+    """What is measured."""
+
+    id: str
+    radius_m: float = 0.0
+    """Of a sphere, whose middle is picked [m]."""
+
+
 class StoredPicks(msgspec.Struct, frozen=True):
     """The fields of ``slices/control.json`` that say where points are."""
 
+    points: list[MeasuredPoint] = []
     picks: dict[str, Xyz] = {}
     along: dict[str, list[Xyz]] = {}
     found_in: dict[str, str] = {}
+    """Id -> key of the map it was picked in."""
+
+    def of_map(self, key: str) -> StoredPicks:
+        """The same with the picks of one map alone."""
+        mine = {name: at for name, at in self.picks.items() if self.found_in.get(name) == key}
+        return msgspec.structs.replace(self, picks=mine)
 
 
 class SeenPick(msgspec.Struct, frozen=True, kw_only=True):
@@ -46,28 +61,48 @@ class SeenPick(msgspec.Struct, frozen=True, kw_only=True):
     seen: SeenPlace
 
 
-def keep_seen_picks(project: Path, control: SiteControl, picks: Mapping[str, Xyz]) -> None:
-    """Keep who saw the picks that the map is put on.
+def add_seen_picks(project: Path, seen: Mapping[str, SeenPlace], picks: Mapping[str, Xyz]) -> None:
+    """Keep who saw picks, beside those for which it is known already.
 
     Args:
         project: Its folder.
-        control: Made of the picks.
+        seen: Id -> who saw it.
         picks: Id -> pick, as it is stored.
     """
-    kept = {
-        one.id: SeenPick(
-            picked_m=picks[one.id],
-            seen=SeenPlace(
-                t_ns=one.t_ns, p_body_m=one.p_body_m, directions_body=one.directions_body
-            ),
-        )
-        for one in control.targets
-        if one.id in picks
-    }
     path = project / SEEN_PICKS
     path.parent.mkdir(exist_ok=True)
-    with changing(project, SEEN_PICKS, compared=False):
-        write_json(path, to_plain(kept))
+    with changing(project, SEEN_PICKS):
+        added = {
+            name: SeenPick(
+                picked_m=picks[name],
+                seen=SeenPlace(
+                    t_ns=one.t_ns, p_body_m=one.p_body_m, directions_body=one.directions_body
+                ),
+            )
+            for name, one in seen.items()
+            if name in picks
+        }
+        write_json(path, to_plain(_seen_picks(path) | added))
+
+
+def unseen_picks(project: Path, key: str) -> StoredPicks:
+    """The picks of other maps than the one of this key for which it is not known who saw them.
+
+    Raises:
+        Altered: If a file was changed.
+        StoreError: If a file cannot be read.
+    """
+    stored = as_stored(project)
+    check_sealed(project, SEEN_PICKS)
+    known = _seen_picks(project / SEEN_PICKS)
+    unseen = {
+        name: at
+        for name, at in stored.picks.items()
+        if stored.found_in.get(name, key) != key
+        and name in stored.along
+        and (name not in known or known[name].picked_m != at)
+    }
+    return msgspec.structs.replace(stored, picks=unseen)
 
 
 def carried_picks(
@@ -79,15 +114,10 @@ def carried_picks(
         Altered: If the file of who saw them was changed.
         StoreError: If a file cannot be read.
     """
-    path = project / SEEN_PICKS
-    if not picks or not path.is_file():
+    if not picks:
         return {}
     check_sealed(project, SEEN_PICKS)
-    try:
-        record = read_object(path, max_bytes=LIMITS.findings_bytes)
-        kept = as_type(record, dict[str, SeenPick])
-    except msgspec.ValidationError as error:
-        raise StoreError(unreadable(path.name, error)) from error
+    kept = _seen_picks(project / SEEN_PICKS)
     trajectory = load_trajectory(level / TRAJECTORY)
     found = {}
     for name, one in kept.items():
@@ -99,6 +129,16 @@ def carried_picks(
             along = orthonormal(one.seen.directions_in(trajectory))
             found[name] = MeasuredPosition(p_map, along)
     return found
+
+
+def _seen_picks(path: Path) -> dict[str, SeenPick]:
+    if not path.is_file():
+        return {}
+    try:
+        record = read_object(path, max_bytes=LIMITS.findings_bytes)
+        return as_type(record, dict[str, SeenPick])
+    except msgspec.ValidationError as error:
+        raise StoreError(unreadable(path.name, error)) from error
 
 
 def stored_picks(project: Path, artifacts: Mapping[str, Path]) -> dict[str, MeasuredPosition]:

@@ -20,6 +20,7 @@ from recon4.store.package_versions import versions
 from recon4.store.project import SUMMARY
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun
+from recon4.workflows.earlier_picks import keep_earlier_picks
 from recon4.workflows.summary import About, RunSummary, StageSummary, peak_bytes_of, seconds_of
 
 Gathered = TypeVar("Gathered")
@@ -75,10 +76,11 @@ def publish(
     Raises:
         StoreError: If an artifact is damaged or the folder cannot be written.
     """
-    created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+    run = FinishedRun(runs, about, time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()))
+    keep_earlier_picks(root, run.folder, progress)
     with changing(root, SUMMARY, compared=False):
         (root / SUMMARY).unlink(missing_ok=True)
-        gathered = results.gather(FinishedRun(runs, about, created))
+        gathered = results.gather(run)
         files = list(results.files.items())
         for name, write in track(files, progress, what="results", unit="files"):
             write(gathered, root / name)

@@ -163,3 +163,21 @@ def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):
     assert kept["found_in"]["A"] == server.get(BASE).json()["key"] == moved["found_in"]["A"]
     assert (earlier["outdated"], earlier["rows"], earlier["passed"]) == (["A"], [], None)
     assert again["outdated"] == [] and again["rows"][0]["east_m"] == pytest.approx(-0.01)
+
+
+def test_a_pick_beside_all_points_of_the_map_is_no_measurement(server):
+    points = [
+        {"id": n, "xyz_m": [0.0, y, 1.5]} for n, y in (("A", 3), ("B", 5), ("C", 7), ("D", 4))
+    ]
+    picks = {one["id"]: one["xyz_m"] for one in points} | {"D": [4.0, 4.0, 1.2]}
+    put_control(server, {"points": points, "picks": picks})
+
+    report = server.get(f"{BASE}/control/report").json()
+    table = server.get(f"{BASE}/control/report.csv").text
+
+    assert [row["id"] for row in report["rows"]] == ["A", "B", "C"]
+    assert (report["absent"], report["missing"], report["passed"]) == (["D"], [], True)
+    assert report["verdict"]["level"] == "warning"
+    assert "⚠ Within the limits" in report["verdict"]["text"]
+    assert "has no points: D. Pick" in report["verdict"]["text"]
+    assert "D,picked where the map has no points" in table

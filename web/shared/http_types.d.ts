@@ -341,6 +341,7 @@ export interface ControlReport {
   rows: Array<Residual>;
   missing: Array<string>;
   outdated: Array<string>;
+  absent: Array<string>;
   figures: Array<ResidualStatistics>;
   judged_by: "control" | "check" | null;
   passed: boolean | null;

@@ -293,7 +293,10 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
   function pointsOf({ points }, found) {
     const { searching } = state;
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
-    const earlier = new Set(found.outdated);
+    const unused = new Map([
+      ...found.outdated.map((name) => /** @type {const} */ ([name, t("found-earlier")])),
+      ...found.absent.map((name) => /** @type {const} */ ([name, t("found-absent")])),
+    ]);
     return html`<div class="scroll points" tabindex="0" role="region" aria-label=${t("points")}>
         <table>
           <thead>
@@ -308,7 +311,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
               points.slice(0, MAX_ROWS),
               (one) => one.id,
               (one) =>
-                pointRow(one, residuals.get(one.id), earlier.has(one.id), {
+                pointRow(one, residuals.get(one.id), unused.get(one.id) ?? "", {
                   attempt: (action) => attempt(message(), action),
                   ...{ setRole, go, pick, target, surface, drop },
                 }),

@@ -22,10 +22,10 @@ const ROLES = ["check", "control"];
 /**
  * @param {ControlSpec} one
  * @param {Residual | undefined} residual
- * @param {boolean} earlier measured in an earlier map only
+ * @param {string} unused why what was measured does not count; empty = it does
  * @param {PointActions} actions
  */
-export function pointRow(one, residual, earlier, actions) {
+export function pointRow(one, residual, unused, actions) {
   const name = one.id;
   const act = (
     /** @type {string} */ text,
@@ -54,7 +54,7 @@ export function pointRow(one, residual, earlier, actions) {
           )}
         </select>
       </td>
-      ${residualCells(residual, earlier)}
+      ${residualCells(residual, unused)}
     </tr>
     <tr>
       <td colspan=${HEADS.length}>
@@ -65,9 +65,7 @@ export function pointRow(one, residual, earlier, actions) {
           ${act(t("target"), t("is-target", { name }), actions.target)}
           ${act(t("surface"), t("on-surface", { name }), actions.surface)}
           ${
-            residual || earlier
-              ? act(t("clear"), t("clear-point", { name }), actions.drop)
-              : nothing
+            residual || unused ? act(t("clear"), t("clear-point", { name }), actions.drop) : nothing
           }</span
         >
       </td>

@@ -51,10 +51,10 @@ export function statedText(/** @type {Residual | undefined} */ residual) {
 /**
  * The cells of one point; empty if it was not measured in this map.
  * @param {Residual | undefined} residual
- * @param {boolean} earlier
+ * @param {string} unused why what was measured does not count; empty = it does
  */
-export function residualCells(residual, earlier) {
-  if (earlier) return [html`<td colspan=${COLUMNS} class="quiet">${t("found-earlier")}</td>`];
+export function residualCells(residual, unused) {
+  if (unused) return [html`<td colspan=${COLUMNS} class="quiet">${unused}</td>`];
   if (!residual) return Array.from({ length: COLUMNS }, () => cell(""));
   const { east_m, north_m, up_m, d2_m, d3_m } = residual;
   return [

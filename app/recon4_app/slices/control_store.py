@@ -8,7 +8,7 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText, unreadable
 from recon4.model.site_control import SiteControl
-from recon4.slices.stored_picks import carried_picks, keep_seen_picks
+from recon4.slices.stored_picks import add_seen_picks, carried_picks
 from recon4.store.atomic import write_json
 from recon4.store.seal import changing, check_sealed
 from recon4.untrusted.bounded import read_text_limited
@@ -58,7 +58,8 @@ class ControlStore:
     def keep_seen(self, project_id: str, control: SiteControl) -> None:
         """Keep who saw the picks that the map is put on: its next versions have them, too."""
         stored = self._stored(project_id)
-        keep_seen_picks(self._projects.folder(project_id), control, stored.picks)
+        seen = {one.id: one for one in control.targets}
+        add_seen_picks(self._projects.folder(project_id), seen, stored.picks)
 
     def _stored(self, project_id: str) -> ControlState:
         """The points as they are on disk, each pick in its own map."""

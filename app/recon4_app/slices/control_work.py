@@ -18,6 +18,7 @@ from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import ControlPoint, ControlPreview, Lies, read_control
 from recon4.slices.error_ellipses import place_covariance
 from recon4.slices.measured_points import MeasuredPosition
+from recon4.slices.pick import absent_picks
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, ControlReport, lies_in, residuals
 from recon4.slices.sheet import source_text
@@ -95,6 +96,9 @@ def _residuals(artifacts: Artifacts, state: ControlState, language: str = ENGLIS
     own = map_frame(artifacts)
     measured = state.measured_in(Path(artifacts["map"]).name)
     covariances = _covariances(artifacts, measured)
+    picks = {name: found.xyz_m for name, found in measured.items()}
+    radii_m = {one.id: one.radius_m for one in state.points}
+    absent = absent_picks(tiles_of(artifacts["map"]), picks, radii_m)
     if state.frame == "crs" and own.to_crs is not None:  # else `residuals` says it
         for name, found in measured.items():
             steps = own.to_crs(found.xyz_m + np.vstack([np.zeros(3), np.eye(3)]))
@@ -108,6 +112,7 @@ def _residuals(artifacts: Artifacts, state: ControlState, language: str = ENGLIS
         ControlContext(
             covariances=covariances,
             outdated=state.picks.keys() - measured.keys(),
+            absent=absent,
             map_bounds_m=_bounds(artifacts, in_crs=state.frame == "crs"),
             limits=ControlLimits(**state.limits.model_dump()),
             language=language,

@@ -28,6 +28,7 @@ limit-result =
 control-verdict =
     .none = – Kein Urteil: in dieser Karte ist kein Punkt gemessen.
     .left = { " " }{ $left } weitere nicht gemessen.
+    .absent = { " " }⚠ Gemessen, wo die Karte keine Punkte hat: { $names }{ $more }. Neu messen.
     .role-control = Passpunkten
     .role-check = Kontrollpunkten
     .outside = Außerhalb der Grenzen an den { $role }

@@ -313,6 +313,7 @@ sheet-to-sign = Blatt zum Drucken und Unterschreiben
 of-survey = Vermessung { $ellipse } cm
 ellipse = { $major } × { $minor } bei { $azimuth }°, { $up }
 found-earlier = in einer früheren Karte gefunden
+found-absent = gemessen, wo die Karte keine Punkte hat
 points-of-role = { $points ->
     [one] { $points } { $role }
    *[other] { $points } { $role }e

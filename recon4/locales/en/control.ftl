@@ -28,6 +28,7 @@ limit-result =
 control-verdict =
     .none = – No verdict: no point is measured in this map.
     .left = { " " }{ $left } more not measured.
+    .absent = { " " }⚠ Picked where the map has no points: { $names }{ $more }. Pick them again.
     .role-control = control
     .role-check = check
     .outside = Outside the limits at the { $role } points

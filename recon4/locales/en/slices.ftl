@@ -313,6 +313,7 @@ sheet-to-sign = Sheet to print and sign
 of-survey = survey { $ellipse } cm
 ellipse = { $major } × { $minor } at { $azimuth }°, { $up }
 found-earlier = found in an earlier map
+found-absent = picked where the map has no points
 points-of-role = { $points } { $role } { $points ->
     [one] point
    *[other] points

@@ -11,9 +11,11 @@ import pytest
 from recon4.geometry.se3 import so3_exp
 from recon4.mapping.tiles import TileSet
 from recon4.review.journal import read_decided
+from recon4.store.arrays import load_trajectory
 from recon4.store.project import read_artifacts
 from tests.deadlines import HANG_S
 from tests.review_project import make
+from tests.service.review.reviewing import WRONG, decide
 
 R_site_map = so3_exp(np.array([0.0, 0.0, 0.5]))
 T_SITE_M = np.array([4_321.0, 8_765.0, 210.0])
@@ -78,6 +80,22 @@ def test_the_map_is_put_on_control_points_and_taken_off_them(server, root):
     assert np.abs(np.array([*again["picks"].values()]) - p_map).max() < 0.001
     assert read_decided(root).key == before
     assert surface.json()["surface"] is not None  # the survey is where the map is now
+
+
+def test_picks_that_were_never_put_are_in_the_map_of_a_later_decision(server, root):
+    p_map = seen_places(root)
+    before = load_trajectory(read_artifacts(root)["level"] / "trajectory.npz")
+    store(server, root, p_map, surveyed(p_map))
+
+    decide(server, "accept", WRONG)
+    make(root)
+    stored = httpx.get(url(server, root, "control"), timeout=HANG_S).json()
+    after = load_trajectory(read_artifacts(root)["level"] / "trajectory.npz")
+
+    assert stored["found_in"] == dict.fromkeys(stored["picks"], read_artifacts(root)["map"].name)
+    moved_m = np.linalg.norm(np.array([*stored["picks"].values()]) - p_map, axis=1)
+    most_m = np.linalg.norm(after.T_a_b.t - before.T_a_b.t, axis=1).max()
+    assert 0.003 < moved_m.max() < 2.0 * most_m
 
 
 @pytest.mark.study

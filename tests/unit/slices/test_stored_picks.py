@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.site_control import SeenTarget, SiteControl
+from recon4.model.site_control import SeenTarget
 from recon4.model.trajectory import Trajectory
-from recon4.slices.stored_picks import SEEN_PICKS, carried_picks, keep_seen_picks, stored_picks
+from recon4.slices.stored_picks import SEEN_PICKS, add_seen_picks, carried_picks, stored_picks
 from recon4.store.arrays import save_trajectory
 from recon4.store.checked import Altered
 
@@ -41,7 +41,7 @@ def put(tmp_path, *, pick=PICK):
         p_body_m=bodies,
         directions_body=(((0.0, 1.0, 0.0),),) * 3,
     )
-    keep_seen_picks(tmp_path, SiteControl(targets=(target,), crs=""), {"A": PICK})
+    add_seen_picks(tmp_path, {"A": target}, {"A": PICK})
 
 
 def test_a_pick_is_where_those_who_saw_it_are_in_the_new_map(tmp_path):
