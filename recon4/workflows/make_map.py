@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from recon4.model.figures import ClassFigures, Figures, MapFigures
 from recon4.review.decisions import StandingCorrection
 from recon4.settings.reads import IntensityReads, MapReads, ReadsNothing
-from recon4.store.contents import files_of
+from recon4.store.input_contents import files_of
 from recon4.store.stage import Stage, StageContext
 from recon4.workflows.workflow import Run
 

@@ -12,8 +12,8 @@ from recon4.pose_graph.files import load_nodes
 from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.sandbox.freed_memory import return_freed_memory
 from recon4.semi_rigid.graph_nodes import GraphNodes, Undecided
-from recon4.store.contents import arrays_of, files_of
 from recon4.store.hashing import hash_json
+from recon4.store.input_contents import arrays_of, files_of
 from recon4.store.stage import Artifact, Input, Stage, StageRunner
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
 

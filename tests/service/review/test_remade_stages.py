@@ -16,7 +16,7 @@ from recon4.pose_graph.files import load_graph
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.review.row_contents import Measurement, numbers_of
-from recon4.store.contents import files_of
+from recon4.store.input_contents import files_of
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Artifact, read_figures, read_manifest
 from recon4.workflows.make_map import PLACE, POSES, SIGHT

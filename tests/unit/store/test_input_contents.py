@@ -6,7 +6,7 @@ import pytest
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.settings.reads import ReadsNothing
-from recon4.store.contents import arrays_of, files_of
+from recon4.store.input_contents import arrays_of, files_of
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageRunner
 
