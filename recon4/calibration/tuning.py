@@ -11,7 +11,7 @@ from recon4.settings import CalibrationSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationTuning(CalibrationSettings):
-    """Windows that are compared (docs/calibration.md)."""
+    """Windows that are compared (docs/explanation/calibration.md)."""
 
     audit_windows: int = 4
     """Largest number of windows of the walk that are compared in an audit."""

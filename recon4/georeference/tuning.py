@@ -12,7 +12,7 @@ from recon4.settings import GnssSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GnssTuning(GnssSettings):
-    """Georeferencing by GNSS/INS (docs/georeference.md; requirements A10)."""
+    """Georeferencing by GNSS/INS (docs/explanation/georeference.md; requirements A10)."""
 
     correlation_s: float = 5.0
     """Correlation time of the errors of fixes [s]: fixes within it count as one. A larger value

@@ -12,7 +12,7 @@ from recon4.settings import IntensitySettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntensityTuning(IntensitySettings):
-    """Bins and sampled points of the table (docs/intensity.md; requirements A9)."""
+    """Bins and sampled points of the table (docs/explanation/intensity.md; requirements A9)."""
 
     surface_cell_m: float = 0.25
     """Points in a cube of this edge lie on one surface [m] (``surfaces``)."""

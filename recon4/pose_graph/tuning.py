@@ -9,7 +9,7 @@ from recon4.settings import GraphSettings, RecognitionSettings, VerificationSett
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GraphTuning(GraphSettings):
-    """Progressive pose graph (docs/search.md; V §2.7, requirements A6)."""
+    """Progressive pose graph (docs/explanation/search.md; V §2.7, requirements A6)."""
 
     neighbors: int = 4
     """Number of preceding nodes that each node is paired with."""
@@ -57,7 +57,9 @@ class GraphTuning(GraphSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecognitionTuning(RecognitionSettings):
-    """Place recognition: loop closures beyond the search radius of revisits (docs/search.md)."""
+    """Place recognition: loop closures beyond the search radius of revisits
+    (docs/explanation/search.md).
+    """
 
     passes: int = 4
     """Largest number of searches; each begins with the poses that the one before has corrected."""
@@ -94,7 +96,9 @@ class RecognitionTuning(RecognitionSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VerificationTuning(VerificationSettings):
-    """Verification by alternative paths (docs/pose-graph.md; V §2.8, requirements A7)."""
+    """Verification by alternative paths
+    (docs/explanation/pose-graph.md; V §2.8, requirements A7).
+    """
 
     max_path_edges: int = 3
     """Longest alternative path, 2 or 3 edges."""

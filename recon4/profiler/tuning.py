@@ -9,7 +9,7 @@ from recon4.settings import LineSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineTuning(LineSettings):
-    """Line scans of a profiler (docs/wuerzburg.md; requirements A12)."""
+    """Line scans of a profiler (docs/explanation/wuerzburg.md; requirements A12)."""
 
     knot_s: float = 0.02
     """Time between two knots of the trajectory, which the IMU joins [s]."""

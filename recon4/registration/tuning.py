@@ -11,7 +11,7 @@ from recon4.settings import OdometrySettings, RegistrationSettings
 
 
 class SegmentTuning(Struct, frozen=True, kw_only=True):
-    """Collar line segments (V §2.4, requirements A3.1; docs/registration.md)."""
+    """Collar line segments (V §2.4, requirements A3.1; docs/explanation/registration.md)."""
 
     azimuth_bins: int = 36
     """Cells around the spin axis."""
@@ -30,7 +30,9 @@ class SegmentTuning(Struct, frozen=True, kw_only=True):
 
 
 class OverlapTuning(Struct, frozen=True, kw_only=True):
-    """Overlap by a spherical z-buffer (V §2.5, requirements A4; docs/registration.md)."""
+    """Overlap by a spherical z-buffer
+    (V §2.5, requirements A4; docs/explanation/registration.md).
+    """
 
     azimuth_bins: int = 180
     """Bins of a view volume around the vertical axis."""
@@ -74,7 +76,7 @@ class RegistrationTuning(RegistrationSettings):
 
 
 class PlaneTuning(Struct, frozen=True, kw_only=True):
-    """Map of small planes to which segments are registered (docs/registration.md)."""
+    """Map of small planes to which segments are registered (docs/explanation/registration.md)."""
 
     finest_m: float = 0.2
     """Edge of the smallest cubes [m]."""
@@ -91,7 +93,7 @@ class PlaneTuning(Struct, frozen=True, kw_only=True):
 
 
 class ScanTuning(Struct, frozen=True, kw_only=True):
-    """Registration of two single scans without an IMU (docs/registration.md)."""
+    """Registration of two single scans without an IMU (docs/explanation/registration.md)."""
 
     voxel_m: float = 0.25
     """Edge of the voxels to which scans are thinned [m]."""
@@ -128,7 +130,9 @@ SCANS = ScanTuning()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OdometryTuning(OdometrySettings):
-    """Pose of each multiframe from the ones before (docs/odometry.md; requirements A3, A5)."""
+    """Pose of each multiframe from the ones before
+    (docs/explanation/odometry.md; requirements A3, A5).
+    """
 
     scans: ScanTuning = SCANS
     """Without an IMU."""

@@ -11,7 +11,9 @@ from recon4.settings import RefineSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RefineTuning(RefineSettings):
-    """Semi-rigid refinement of every multiframe (docs/refine.md; requirements A12 L-4)."""
+    """Semi-rigid refinement of every multiframe
+    (docs/explanation/refine.md; requirements A12 L-4).
+    """
 
     map_stride: int = 2
     """Every n-th multiframe is built into the map; all of them are corrected."""

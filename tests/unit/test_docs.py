@@ -57,6 +57,7 @@ SUFFIXES = {
 }
 CODE = re.compile(r"^```\w*\n(.*?)^```|`([^`\n]+)`|^ {4}(\S[^\n]*)$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^recon4 ([a-z][^\n#]*)", re.MULTILINE)
+PAGE_OF_DOCS = re.compile(r"\bdocs/[\w/-]+\.md\b")
 BENCHMARK = re.compile(
     r"python -m ((?:tests\.benchmarks|tools)\.\w+)|python (tests/\S+\.py|examples/\S+\.py)"
 )
@@ -93,6 +94,15 @@ def test_paths_a_page_names_exist(page):
     paths = [path for text in REPOSITORY_PATH.findall(code) for path in expanded(text)]
 
     assert [path for path in paths if not any(ROOT.glob(path))] == []
+
+
+def test_pages_that_the_code_names_exist():
+    trees = (*("recon4", "app", "tools", "tests", "web"),)
+    files = [f for tree in trees for f in (ROOT / tree).rglob("*") if f.suffix in {".py", ".js"}]
+    named = [(f, one) for f in files for one in PAGE_OF_DOCS.findall(f.read_text("utf-8"))]
+
+    assert len(named) > 30
+    assert [(f.name, one) for f, one in named if not (ROOT / one).exists()] == []
 
 
 def expanded(path):
