@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
@@ -101,16 +101,28 @@ def write_table(out: Path, rows: Iterable[BatchRow]) -> None:
     write_text(out / "batch.csv", text.getvalue())
 
 
-def table_lines(rows: Sequence[BatchRow]) -> list[str]:
-    """The table for a terminal."""
+def table_lines(rows: Sequence[BatchRow], say: Callable[[str], str]) -> list[str]:
+    """The table for a terminal.
+
+    Args:
+        rows: Of the walks.
+        say: Says a coded text in the language of the terminal.
+    """
     width = max((len(row.walk) for row in rows), default=4)
-    head = f"{'walk':<{width}}  {'result':<10}  {'duration':>8}  {'path':>7}  {'took':>7}  why"
-    return [head, *(_line(row, width) for row in rows)]
+    names = ("walk", "result", "duration", "path", "took", "why")
+    head = _cells([say(CodedText(f"batch-{name}")) for name in names], width)
+    return [head, *(_line(row, width, say) for row in rows)]
 
 
-def _line(row: BatchRow, width: int) -> str:
+def _line(row: BatchRow, width: int, say: Callable[[str], str]) -> str:
     duration = "" if row.duration_s is None else f"{row.duration_s:.0f} s"
     path = "" if row.path_length_m is None else f"{row.path_length_m:.0f} m"
     took = "" if row.seconds is None else f"{row.seconds:.0f} s"
-    cells = f"{row.walk:<{width}}  {row.result:<10}  {duration:>8}  {path:>7}  {took:>7}"
-    return f"{cells}  {row.why}".rstrip()
+    result = say(CodedText("batch-ended", result=row.result))
+    return _cells([row.walk, result, duration, path, took, row.why], width)
+
+
+def _cells(cells: Sequence[str], width: int) -> str:
+    walk, result, duration, path, took, why = cells
+    line = f"{walk:<{width}}  {result:<16}  {duration:>8}  {path:>7}  {took:>7}  {why}"
+    return line.rstrip()

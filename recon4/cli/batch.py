@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.terminal import is_progress, write, write_json
+from recon4.cli.terminal import in_terminal, is_progress, worded, write, write_json
 from recon4.cli.workers import SchedulerOption, TlsOption, certificates_of
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def batch(  # noqa: PLR0913 - an argument for each option
     options += [word for one in assignments or () for word in ("--set", one)]
     tasks = walk_tasks(folder, found.recordings, out=out, options=tuple(options))
     if found.left_out:
-        _say("", f"no walks, left out: {', '.join(found.left_out)}")
+        _say("", worded("batch-left-out", names=", ".join(found.left_out)))
     compile_first()
     make_folders(out)
     with _executor(workers, scheduler, tls=tls, out=out) as executor:
@@ -85,7 +85,8 @@ def _say(name: str, line: str) -> None:
 
 
 def _ended(row: BatchRow) -> None:
-    _say(row.walk, f"{row.result}{', ' * bool(row.why)}{row.why}")
+    result = worded("batch-ended", result=row.result)
+    _say(row.walk, ", ".join(part for part in (result, row.why) if part))
 
 
 def _show(rows: list[BatchRow], *, as_json: bool) -> None:
@@ -94,6 +95,6 @@ def _show(rows: list[BatchRow], *, as_json: bool) -> None:
     if as_json:
         write_json(rows)
     else:
-        write("\n".join(table_lines(rows)))
+        write("\n".join(table_lines(rows, in_terminal)))
     if any(row.result == FAILED for row in rows):
         raise typer.Exit(1)

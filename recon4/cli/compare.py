@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.cli.terminal import write
+from recon4.cli.terminal import in_terminal, write
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
 
@@ -47,7 +47,7 @@ def compare(
     from recon4.cli.terminal import watcher
     from recon4.comparison.common_frame import open_side
     from recon4.comparison.run import MapPair, compare_maps
-    from recon4.comparison.text import differences_text
+    from recon4.comparison.text import differences_lines
     from recon4.comparison.write import exhaust, sink_of, write_summary
 
     first = open_side(project)
@@ -58,7 +58,7 @@ def compare(
         found = compare_maps(pair, sink, scales=pair.scales(core_spacing), progress=progress)
     if out and out.suffix.lower() == ".json":
         write_summary(found, out)
-    write(differences_text(found))
+    write("\n".join(map(in_terminal, differences_lines(found))))
 
 
 def _before(project: Path) -> MapSide:

@@ -10,9 +10,10 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.targets import targets
-from recon4.cli.terminal import write
+from recon4.cli.terminal import worded, write
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
+from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
     from recon4.model.site_control import SiteControl
@@ -66,9 +67,9 @@ def control_points(
     if survey[1:]:
         points = _with_covariances(points, survey[1:])
     trial = _try(project, points, picks, crs=crs)
-    write(trial_text(trial))
+    write(trial_text(trial, of_terminal()))
     if trial.unseen:
-        write(f"not measured in the map: {', '.join(trial.unseen)}")
+        write(worded("control-not-measured", names=", ".join(trial.unseen)))
     require_agreement(trial)
     if apply:
         if picks is None:
@@ -97,9 +98,9 @@ def surveyed_points(survey: Path, crs: str) -> tuple[tuple[ControlPoint, ...], s
     found = read_control(data, name=survey.name, crs=crs)
     raise_question(found.table, survey.name, in_file=True)
     for line in found.skipped:
-        write(f"{survey.name} {line}: left out")
+        write(worded("control-left-out", file=survey.name, row=line))
     if found.crs:
-        write(f"{survey.name}: latitude and longitude, put into {found.crs}")
+        write(worded("control-into", file=survey.name, crs=found.crs))
     return found.points, found.crs or crs
 
 
@@ -177,4 +178,4 @@ def _make_again(project: Path, decided: SiteControl) -> None:
         path = read_artifacts(project)["level"] / "georeference.json"
         outcome = control_in(read_object(path, max_bytes=LIMITS.findings_bytes))
         assert outcome is not None  # it is that of these targets
-        write(outcome_text(outcome))
+        write(outcome_text(outcome, of_terminal()))

@@ -142,10 +142,10 @@ def relate(first: MapSide, second: MapSide) -> Relation | None:
                     second_crs=theirs.crs,
                 )
             )
-        return Relation(_between(first, second), f"both are georeferenced in {ours.crs}")
+        return Relation(_between(first, second), CodedText("compare-georeferenced", crs=ours.crs))
     local = ours.to_crs is None and theirs.to_crs is None
     if local and _same_recording(first, second):
-        return Relation(SE3.identity(), "both were made of the same recording")
+        return Relation(SE3.identity(), CodedText("compare-same-recording"))
     return None
 
 

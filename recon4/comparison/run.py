@@ -118,7 +118,8 @@ def common_frame(first: MapSide, second: MapSide, *, align: bool) -> Relation:
 def _aligned(first: MapSide, second: MapSide, start: SE3) -> Relation:
     other = Reference(second.name, Path(), start, tiles=second.tiles)
     fit = align_by_icp(first.tiles, other, rng=np.random.default_rng(1))
-    return Relation(fit.T_map_reference, f"aligned by {fit.description}")
+    text = CodedText("compare-aligned", how=fit.description)
+    return Relation(fit.T_map_reference, text)
 
 
 def _compared(side: MapSide) -> ComparedMap:

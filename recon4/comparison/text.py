@@ -2,44 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from recon4.comparison.records import DifferenceCounts, DistanceFigures, MapDifferences
+from recon4.locales.coded import CodedText
 
 
-def differences_text(found: MapDifferences) -> str:
-    """The figures, as a terminal shows them."""
+def differences_lines(found: MapDifferences) -> Iterator[CodedText]:
+    """The figures, line by line, as a terminal shows them."""
     first, second = found.first, found.second
-    lines = [
-        f"{second.name} ({second.key[:8]}) against {first.name} ({first.key[:8]}): "
-        f"{found.relation}",
-        *_counts(found.counts),
-        *(_distances(found.distances) if found.distances else ["no core point has a distance"]),
-    ]
+    yield CodedText(
+        "differences-head",
+        second=f"{second.name} ({second.key[:8]})",
+        first=f"{first.name} ({first.key[:8]})",
+        relation=found.relation,
+    )
+    yield from _counts(found.counts)
+    if found.distances:
+        yield from _distances(found.distances)
+    else:
+        yield CodedText("differences-none")
     usual = [side.name for side in (first, second) if side.registration == "usual"]
     if usual:
-        names = " and ".join(dict.fromkeys(usual))
-        lines.append(f"{names}: states no uncertainties; that of a usual good map was used")
-    return "\n".join(lines)
+        yield CodedText("differences-usual", names=", ".join(dict.fromkeys(usual)))
 
 
-def _counts(counts: DifferenceCounts) -> list[str]:
-    rows = (
-        ("differ significantly (95 %)", counts.significant),
-        ("below the level of detection", counts.below_lod),
-        ("without a partner in the other map", counts.without_partner),
-        ("without a normal", counts.without_normal),
-        ("with too few points of their own", counts.sparse),
-    )
+def _counts(counts: DifferenceCounts) -> Iterator[CodedText]:
+    rows = {
+        "significant": counts.significant,
+        "below": counts.below_lod,
+        "alone": counts.without_partner,
+        "no-normal": counts.without_normal,
+        "sparse": counts.sparse,
+    }
     every = max(counts.core_points, 1)
-    return [
-        f"{counts.core_points} core points",
-        *(f"{count:10d}  {100.0 * count / every:5.1f} %  {text}" for text, count in rows),
-    ]
+    yield CodedText("differences-core-points", count=counts.core_points)
+    for what, count in rows.items():
+        yield CodedText(
+            "differences-count", count=f"{count:10d}", percent=100.0 * count / every, what=what
+        )
 
 
-def _distances(of: DistanceFigures) -> list[str]:
-    return [
-        f"signed mean {1000.0 * of.mean_m:.1f} mm, standard deviation {1000.0 * of.sd_m:.1f} mm",
-        f"absolute: median {1000.0 * of.p50_m:.1f} mm, 95 % below {1000.0 * of.p95_m:.1f} mm, "
-        f"largest {1000.0 * of.largest_m:.1f} mm",
-        f"level of detection: median {1000.0 * of.lod_p50_m:.1f} mm",
-    ]
+def _distances(of: DistanceFigures) -> Iterator[CodedText]:
+    yield CodedText("differences-signed", mean_mm=1000.0 * of.mean_m, sd_mm=1000.0 * of.sd_m)
+    yield CodedText(
+        "differences-absolute",
+        median_mm=1000.0 * of.p50_m,
+        high_mm=1000.0 * of.p95_m,
+        largest_mm=1000.0 * of.largest_m,
+    )
+    yield CodedText("differences-lod", median_mm=1000.0 * of.lod_p50_m)

@@ -144,3 +144,42 @@ capture-scans = { $count ->
    *[other] { $count } Scans sind
  } fertig
 capture-described = { $name } ist mit { $file } neben der Rig-Datei beschrieben
+
+## recon4 control
+
+control-not-measured = in der Karte nicht gemessen: { $names }
+control-left-out = { $file } { $row }: ausgelassen
+control-into = { $file }: Breite und Länge, umgerechnet in { $crs }
+
+## recon4 compare
+
+differences-head = { $second } gegen { $first }: { $relation }
+compare-georeferenced = beide sind in { $crs } georeferenziert
+compare-same-recording = beide sind aus derselben Aufzeichnung gemacht
+compare-aligned = ausgerichtet durch { $how }
+differences-none = kein Kernpunkt hat einen Abstand
+differences-usual = { $names }: ohne eigene Unsicherheiten; es gilt die einer üblichen guten Karte
+differences-core-points = { $count } Kernpunkte
+differences-count = { $count }  { DECIMAL($percent, digits: 1) } %  { NAMED($what, of: "differences-of") }
+differences-of-significant = mit signifikantem Unterschied (95 %)
+differences-of-below = unter der Nachweisgrenze
+differences-of-alone = ohne Gegenstück in der anderen Karte
+differences-of-no-normal = ohne Normale
+differences-of-sparse = mit zu wenigen eigenen Punkten
+differences-signed = Mittel mit Vorzeichen { DECIMAL($mean_mm, digits: 1) } mm, Standardabweichung { DECIMAL($sd_mm, digits: 1) } mm
+differences-absolute = Betrag: Median { DECIMAL($median_mm, digits: 1) } mm, 95 % unter { DECIMAL($high_mm, digits: 1) } mm, größter { DECIMAL($largest_mm, digits: 1) } mm
+differences-lod = Nachweisgrenze: Median { DECIMAL($median_mm, digits: 1) } mm
+
+## recon4 batch
+
+batch-left-out = keine Begehungen, ausgelassen: { $names }
+batch-ended = { NAMED($result, of: "usability") }
+usability-failed = gescheitert
+usability-unfinished = nicht fertig
+usability-no-verdict = ohne Beurteilung
+batch-walk = Begehung
+batch-result = Ergebnis
+batch-duration = Dauer
+batch-path = Weg
+batch-took = brauchte
+batch-why = warum

@@ -144,3 +144,42 @@ capture-scans = { $count ->
    *[other] { $count } scans are
  } ready
 capture-described = { $name } is described by { $file } beside the rig file
+
+## recon4 control
+
+control-not-measured = not measured in the map: { $names }
+control-left-out = { $file } { $row }: left out
+control-into = { $file }: latitude and longitude, put into { $crs }
+
+## recon4 compare
+
+differences-head = { $second } against { $first }: { $relation }
+compare-georeferenced = both are georeferenced in { $crs }
+compare-same-recording = both were made of the same recording
+compare-aligned = aligned by { $how }
+differences-none = no core point has a distance
+differences-usual = { $names }: states no uncertainties; that of a usual good map was used
+differences-core-points = { $count } core points
+differences-count = { $count }  { DECIMAL($percent, digits: 1) } %  { NAMED($what, of: "differences-of") }
+differences-of-significant = differ significantly (95 %)
+differences-of-below = below the level of detection
+differences-of-alone = without a partner in the other map
+differences-of-no-normal = without a normal
+differences-of-sparse = with too few points of their own
+differences-signed = signed mean { DECIMAL($mean_mm, digits: 1) } mm, standard deviation { DECIMAL($sd_mm, digits: 1) } mm
+differences-absolute = absolute: median { DECIMAL($median_mm, digits: 1) } mm, 95 % below { DECIMAL($high_mm, digits: 1) } mm, largest { DECIMAL($largest_mm, digits: 1) } mm
+differences-lod = level of detection: median { DECIMAL($median_mm, digits: 1) } mm
+
+## recon4 batch
+
+batch-left-out = no walks, left out: { $names }
+batch-ended = { NAMED($result, of: "usability") }
+usability-failed = failed
+usability-unfinished = unfinished
+usability-no-verdict = no verdict
+batch-walk = walk
+batch-result = result
+batch-duration = duration
+batch-path = path
+batch-took = took
+batch-why = why

@@ -10,9 +10,11 @@ from shutil import copytree
 import numpy as np
 import pytest
 
+from recon4.batch.table import BatchRow, table_lines
 from recon4.batch.walks import find_walks, walk_tasks
 from recon4.cli.main import main
 from recon4.errors import ConfigError
+from recon4.locales.coded import said
 from recon4.recording.samples.csv_files import IMU_HEADER
 from tests.made_once import made_once
 from tests.planar_walks import along, furnished_room, scanned, write_carmen
@@ -78,6 +80,15 @@ def test_two_workers_make_the_same_bytes(walks, alone, tmp_path, capsys):
     assert "first: good" in shown.err
     assert "%" not in shown.err
     assert shown.out.count("good") == 2
+
+
+def test_its_table_is_in_the_language_of_the_terminal():
+    row = BatchRow(walk="a", result="do not use", seconds=3.0)
+
+    head, line = table_lines([row], lambda text: said(text, "de"))
+
+    assert head.split() == ["Begehung", "Ergebnis", "Dauer", "Weg", "brauchte", "warum"]
+    assert "nicht verwenden" in line and head.index("brauchte") + len("brauchte") >= len(line)
 
 
 def test_started_again_it_only_reads_what_is_done(walks, alone, tmp_path, capsys):

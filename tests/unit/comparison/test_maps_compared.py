@@ -13,6 +13,7 @@ from recon4.comparison.common_frame import MapSide, earlier_maps, open_side, rel
 from recon4.comparison.run import common_frame
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.geometry.se3 import SE3
+from recon4.locales.languages import ENVIRONMENT
 from recon4.slices.map_crs import LOCAL, MapFrame
 from recon4.store.project import read_artifacts
 from tests.project_builder import ROOM_M, build_project
@@ -106,6 +107,16 @@ def test_the_map_before_the_last_one_is_compared(office, capsys, tmp_path):
     wall = ROOM_M[1] * ROOM_M[2] / 0.2**2
     assert counts["significant"] == pytest.approx(wall, rel=0.25)
     assert record["distances"]["largest_m"] == pytest.approx(MOVED_M, abs=0.01)
+
+
+def test_the_comparison_is_said_in_the_language_of_the_terminal(office, capsys, monkeypatch):
+    monkeypatch.setenv(ENVIRONMENT, "de")
+
+    assert main(["compare", str(office), "--core-spacing", "0.5"]) == 0
+
+    said = capsys.readouterr().out
+    assert "beide sind aus derselben Aufzeichnung gemacht" in said
+    assert " mit signifikantem Unterschied (95 %)" in said and "significant" not in said
 
 
 @pytest.mark.parametrize("ending", [".laz", ".csv"])
