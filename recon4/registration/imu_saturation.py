@@ -30,6 +30,7 @@ def saturated_axes(imu: ImuSamples) -> list[SaturatedAxis]:
 
     A sample that is repeated until the next one is there counts once. A sensor that counts in
     coarse steps repeats the largest one at the peak of a motion, too, but the step below as well.
+    One that counts in fine steps has other values at its peak, which are as near to the largest.
 
     Args:
         imu: As recorded, in its own axes.
@@ -75,7 +76,8 @@ def _runs_at_the_end(values: Array, least: float) -> list[NDArray[np.intp]]:
     step = max(float(steps.min(initial=largest)), largest - ends_at)
     rows = np.flatnonzero(size >= ends_at)
     below = np.count_nonzero((size >= largest - 1.5 * step) & (size < ends_at))
-    if len(rows) < SATURATION.piled_up * below:
+    repeats = len(np.unique(values[rows])) <= SATURATION.distinct * len(rows)
+    if not repeats or len(rows) < SATURATION.piled_up * below:
         return []
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > SATURATION.bridged) + 1)
     return [run for run in runs if len(run) >= SATURATION.least_run]

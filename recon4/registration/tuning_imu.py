@@ -95,6 +95,9 @@ class SaturationTuning(Struct, frozen=True, kw_only=True):
     least_run: int = 3
     least_samples: int = 5
     """A peak of a motion has one largest sample, a saturated sensor repeats it."""
+    distinct: float = 0.5
+    """At most this ratio of the samples at the end of a range differ: it has two ends, and noise
+    nearby."""
     piled_up: float = 3.0
     """A saturated sensor has at least this many times as many samples at its largest value as one
     step below; the peak of a smooth motion has up to 2.4 times as many."""

@@ -1,5 +1,7 @@
 """An IMU at the end of its range is named: its scale only looks wrong."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from recon4.findings.walk_record import WalkRecord
@@ -70,6 +72,19 @@ def test_coarse_steps_at_the_peak_of_a_turn_do_not_saturate_a_gyroscope():
     imu = ImuSamples(np.rint(1e9 * t_s).astype(np.int64), gyro, accel)
 
     assert saturated_texts(imu) == []
+
+
+def test_the_peak_of_a_fast_turn_does_not_saturate_a_gyroscope_of_fine_steps():
+    """Five samples of a forest walk are within 0.01 % of the largest, and none is the same."""
+    peak_deg_s = [
+        241.6885, 241.8979, 241.9998, 242.1521, 242.5889, 242.6084, 242.6118, 242.5363,
+        242.6078, 242.6044, 242.4400, 242.3328, 242.3007, 242.1657, 241.8517, 241.7034,
+    ]  # fmt: skip
+    imu = samples(gyro_range_deg_s=200.0)
+    gyro = 0.5 * imu.gyro_rad_s
+    gyro[1000:1016, 2] = np.deg2rad(peak_deg_s)
+
+    assert saturated_texts(replace(imu, gyro_rad_s=gyro)) == []
 
 
 def test_neither_is_one_that_stands_or_has_no_samples():
