@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from recon4.recording.report import ImportReport
 
 
 class EvenStamps:
-    """Stamps of one topic, and where they would lie if they followed each other evenly.
+    """Stamps of one topic or folder, and where they would lie if they followed each other evenly.
 
     A straight line fits the stamps around one. Where they scatter about it although all clouds
     begin as long after their stamp and last as long, the sensor measured evenly, and the stamps
@@ -31,6 +31,18 @@ class EvenStamps:
     def add(self, stamp_ns: int) -> None:
         """Take the stamp of the next message."""
         self._stamps_ns.append(stamp_ns)
+
+    def each(self, stamps_ns: Times) -> Iterator[int]:
+        """Stamps that are all known, one by one: before each those around it are added.
+
+        Args:
+            stamps_ns: In order [ns], (N,).
+        """
+        added, half = 0, EVEN_STAMPS.most // 2
+        for row, stamp_ns in enumerate(stamps_ns.tolist()):
+            self._stamps_ns.extend(stamps_ns[added : row + half].tolist())
+            added = row + half
+            yield stamp_ns
 
     def forget(self) -> None:
         """Begin again: the clock of the stamps was set."""
@@ -53,16 +65,18 @@ class EvenStamps:
         period_ns = _period_ns(since_ns)
         if EVEN_STAMPS.most_of_period * period_ns < EVEN_STAMPS.right_ns:  # nothing is left between
             return 0
-        late_ns = _off_the_line(since_ns, _numbers(since_ns, period_ns))
-        scatter_ns, uneven_ns = _scatter(late_ns), _scatter_of_points(self._points_ns)
-        own_ns = float(late_ns[np.argmin(np.abs(since_ns))])
+        before_next_ns = _before_next(since_ns, period_ns)
+        even_ns = _line(since_ns, _numbers(before_next_ns, period_ns))
+        scatter_ns, uneven_ns = _scatter(since_ns - even_ns), _scatter_of_points(self._points_ns)
+        own = int(np.argmin(np.abs(since_ns)))
         right_ns = EVEN_STAMPS.right_ns * (EVEN_STAMPS.again if self._scatter_ns else 1.0)
         are_right = scatter_ns <= max(right_ns, EVEN_STAMPS.than_points * uneven_ns)
-        are_uneven = max(scatter_ns, abs(own_ns) / 4.0) > EVEN_STAMPS.most_of_period * period_ns
+        off_ns = abs(float(before_next_ns[own] - even_ns[own]))
+        are_uneven = max(scatter_ns, off_ns / 4.0) > EVEN_STAMPS.most_of_period * period_ns
         if are_right or are_uneven:
             return 0
         self._scatter_ns.append(scatter_ns)
-        return round(own_ns)
+        return round(float(since_ns[own] - even_ns[own]))
 
     def say(self, sensor: str, report: ImportReport) -> None:
         """Count and state what was evened; call once, at the end."""
@@ -83,9 +97,18 @@ def _without_gap(since_ns: Iterable[int]) -> Array:
 
 
 def _period_ns(t_ns: Array) -> float:
-    """Mean time from one to the next, without those between which one is missing."""
+    """Usual time from one to the next, without those between which one is missing."""
     steps = np.diff(t_ns)
-    return max(float(np.mean(steps[steps <= 1.5 * np.median(steps)])), 1.0)
+    return float(np.median(steps[steps <= 1.5 * np.median(steps)]))
+
+
+def _before_next(t_ns: Array, period_ns: float) -> Array:
+    """Times without what held one up for longer than those after it, which come soon then, (N,)."""
+    before_ns = (1.0 - EVEN_STAMPS.most_of_period) * period_ns
+    found = t_ns.copy()
+    for row in range(len(t_ns) - 2, -1, -1):
+        found[row] = min(found[row], found[row + 1] - before_ns)
+    return found
 
 
 def _numbers(t_ns: Array, period_ns: float) -> Array:
@@ -99,11 +122,13 @@ def _numbers(t_ns: Array, period_ns: float) -> Array:
     return np.array(numbers)
 
 
-def _off_the_line(t_ns: Array, numbers: Array) -> Array:
-    """Times less those of the straight line that fits most of them."""
+def _line(t_ns: Array, numbers: Array) -> Array:
+    """Times on the straight line that fits most of them, (N,)."""
     off_ns = t_ns - np.polyval(np.polyfit(numbers, t_ns, 1), numbers)
-    near = np.abs(off_ns) <= EVEN_STAMPS.near * max(_scatter(off_ns), 1.0)
-    return t_ns - np.polyval(np.polyfit(numbers[near], t_ns[near], 1), numbers)
+    near = np.abs(off_ns - np.median(off_ns)) <= EVEN_STAMPS.near * max(_scatter(off_ns), 1.0)
+    slope, start = np.polyfit(numbers[near], t_ns[near], 1)
+    found: Array = start + slope * numbers
+    return found
 
 
 def _scatter_of_points(points_ns: Iterable[tuple[int, int]]) -> float:

@@ -23,6 +23,7 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.assembler import TimeGap, moved
 from recon4.recording.assembly.range_limits import drop_invalid
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.clocks.even_stamps import EvenStamps
 from recon4.recording.clocks.tuning import FRAME_TIMES
 from recon4.recording.clouds.cloud_points import CloudDecoder
 from recon4.recording.formats.cloud_files import (
@@ -173,10 +174,11 @@ def read_frames(
     _say_files(frames, report)
     later = frames.clock.shift_ns if frames.clock else np.zeros_like(frames.t_ns)
     frame_id, last_ns, failed = 0, None, None
-    offset_ns = round(sensor.time_offset_s * 1e9)
-    for file, stamp, shift_ns in zip(frames.files, frames.t_ns, later, strict=True):
+    even = EvenStamps()
+    stamps_ns = even.each(frames.t_ns + round(sensor.time_offset_s * 1e9))
+    for file, stamp_ns, shift_ns in zip(frames.files, stamps_ns, later, strict=True):
         try:
-            at_ns = int(stamp - shift_ns) + offset_ns
+            at_ns = stamp_ns - int(shift_ns)
             table = read_points(file, sensor.fields)
             shots = _shots(decoder, table, file.name, t_ns=at_ns, period_ns=frames.period_ns)
         except RecordingError as error:
@@ -187,9 +189,9 @@ def read_frames(
             continue
         goes_on = decoder.absolute and _is_later(shots, last_ns, frames.period_ns)
         shots = shots if goes_on else moved(shots, int(shift_ns))
-        start_ns = int(stamp) + offset_ns
-        if len(shots) and (decoder.absolute or shots.t_ns[0] < start_ns):
-            start_ns = int(shots.t_ns[0])
+        if not decoder.absolute:
+            shots, stamp_ns = _evened(shots, stamp_ns, even)
+        start_ns = _start_ns(shots, stamp_ns, absolute=decoder.absolute)
         shots = drop_invalid(shots, settings=settings, report=report)
         if not len(shots):
             report.count("frames_empty")
@@ -204,6 +206,7 @@ def read_frames(
         pose = file.with_suffix(POSE_SUFFIX)
         if frames.are_static and pose.is_file():
             yield _pose_at(frame.t_ns, pose)
+    even.say(frames.files[0].parent.name, report)
     if not frame_id and failed is not None:
         raise failed
 
@@ -215,6 +218,18 @@ def _say_files(frames: FrameFiles, report: ImportReport) -> None:
     report.count("files_out_of_order", frames.out_of_order)
     report.count("files_absent", frames.absent)
     report.count("clock_jumps_back", len(frames.clock.steps) if frames.clock else 0)
+
+
+def _evened(shots: Shots, stamp_ns: int, even: EvenStamps) -> tuple[Shots, int]:
+    """A cloud and its stamp [ns] where even ones would be."""
+    late_ns = even.late_ns(stamp_ns, shots.t_ns) if len(shots) else 0
+    return moved(shots, -late_ns), stamp_ns - late_ns
+
+
+def _start_ns(shots: Shots, stamp_ns: int, *, absolute: bool) -> int:
+    """Begin of a cloud [ns]: its stamp, but for points that are earlier or have own times."""
+    first_ns = int(shots.t_ns[0]) if len(shots) else stamp_ns
+    return first_ns if absolute else min(first_ns, stamp_ns)
 
 
 def _is_later(shots: Shots, last_ns: int | None, period_ns: int) -> bool:

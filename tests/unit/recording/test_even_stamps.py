@@ -1,5 +1,7 @@
 """Clouds whose stamps scatter although the sensor measures evenly."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ from recon4.recording.bags.recording import BagRecording
 from recon4.recording.clocks.even_stamps import EvenStamps
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
-from tests.builders import T0_NS, bag_path, room_cloud
+from tests.builders import T0_NS, bag_path, room_cloud, write_pcd
 from tests.robot_bags import RobotBag
+from tests.unit.recording.ingested import run
 from tests.warned import derivations
 
 PERIOD_NS = 100_000_000
@@ -113,3 +116,30 @@ def test_the_clouds_of_a_bag_are_evened_counted_and_it_is_stated(tmp_path):
     assert report.counts["clouds_evened"] > 70
     (said,) = [text for text in derivations(report) if "scatter" in text]
     assert said.startswith("/points: its stamps scatter by ")
+
+
+def test_stamps_that_a_busy_computer_made_late_are_put_where_even_ones_would_be():
+    held_up = np.random.default_rng(1).exponential(1.2e7, 80).astype(int)
+    stamps_ns = EVEN_NS + held_up
+
+    found = evened(stamps_ns, stamps_ns[:, None] + TURN_NS)
+
+    assert np.std(off_ms(stamps_ns)) > 10.0
+    assert np.std(off_ms(found)) < 3.0
+
+
+def test_the_frames_of_a_folder_are_evened_counted_and_it_is_stated(tmp_path):
+    late_ns = np.random.default_rng(1).exponential(8e6, 80).astype(int)
+    (tmp_path / "walk").mkdir()
+    for k, stamp_ns in enumerate((EVEN_NS + late_ns).tolist()):
+        write_pcd(tmp_path / "walk" / f"{k:03d}.pcd", room_cloud())
+        with (tmp_path / "walk" / "times.txt").open("a") as times:
+            times.write(f"{stamp_ns}\n")
+
+    store = run(tmp_path / "walk", out=tmp_path / "frames")
+
+    assert np.ptp(1e-6 * late_ns[20:]) > 30.0
+    assert np.std(off_ms(store.index["t_ns"])) < 1.6
+    report = json.loads((tmp_path / "frames" / "report.json").read_text())
+    assert report["counts"]["clouds_evened"] > 70
+    assert "STAMPS-EVENED" in json.dumps(report["derived"])
