@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 14
+AUDIT_VERSION = 15
 """Raise it when witnesses find something else in the same walk, or in another order: then finished
 projects are audited again."""
 

@@ -23,6 +23,9 @@ CLOUDS_UNTIMED = "clouds_untimed"
 """Count of clouds whose points have no times: these follow from the stamp, which may be that of the
 start, the middle or the end of a cloud, so nothing says how a clock lies to that of the points."""
 
+CLOUDS_EVENED = "clouds_evened"
+"""Count of clouds that are put where even stamps would be: how late these are is not known."""
+
 GYRO_UNIT_ASSUMED = "imu_gyro_assumed"
 """Count of angular rates that are taken as rad/s although they are large, and the accelerations do
 not say whether they are in deg/s."""

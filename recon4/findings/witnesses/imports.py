@@ -8,11 +8,16 @@ from msgspec.structs import replace
 
 from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
+from recon4.findings.witnesses.imu import confirms_times
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED, ImportNotes, import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.unused_data import unused_parts
+
+
+_CLOCKS_SET = (FindingKind.CLOCK_BACK, FindingKind.CLOCK_JUMP)
+"""Repairs that show as an error of the clock of the IMU where they are wrong, but for fixes."""
 
 
 class Import(Witness):
@@ -24,10 +29,12 @@ class Import(Witness):
         if notes.outcome != "complete":
             yield finding(FindingKind.IMPORT_INCOMPLETE, Level.CHECK, {"outcome": notes.outcome})
         lines = walk.odometry_figures.lines if walk.odometry_figures else None
+        fits = confirms_times(walk.odometry_figures)
         for one in notes.findings:
+            is_sure = fits and one.kind in _CLOCKS_SET and one.sensor != "GNSS"
             # LASER-MISSING says it of the walk, and what it costs there.
             if lines is None or one.kind is not FindingKind.LASER_NOT_IN_RIG:
-                yield one
+                yield replace(one, level=Level.NOTE) if is_sure else one
         # In the other unit the LiDARs would see the same turns 57 times as fast, or as slow.
         agrees = _lidars_agree(walk.odometry_figures)
         yield from gyro_unit_assumed(notes, Level.NOTE if agrees else Level.CHECK)

@@ -13,8 +13,8 @@ from recon4.findings.witnesses.tuning import IMU_WITNESS
 from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
-from recon4.model.import_notes import CLOUDS_UNTIMED, import_notes
-from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
+from recon4.model.import_notes import CLOUDS_EVENED, CLOUDS_UNTIMED, import_notes
+from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault, OdometryFigures
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.imu_saturation import SaturatedAxis, saturated_axes
 from recon4.registration.motion import imu_in_body
@@ -44,15 +44,26 @@ class ImuUse(Witness):
             values: dict[str, Value] = {"correlation": figures.forces_reversed, "samples": samples}
             found = finding(FindingKind.IMU_FORCES_REVERSED, Level.NOTE, values)
             yield replace(found, sensor="IMU")
-        untimed = has_untimed_clouds(walk)
+        untimed = has_derived_times(walk)
         for fault in figures.imu_faults:
             found = fault_finding(fault, corrected=True)
             yield _of_derived_times(found) if untimed and fault.kind == "clock" else found
 
 
-def has_untimed_clouds(walk: WalkRecord) -> bool:
-    """Whether times of points follow from stamps, whose place in a cloud nothing states."""
-    return CLOUDS_UNTIMED in import_notes(walk.imported).counts
+def has_derived_times(walk: WalkRecord) -> bool:
+    """Whether times of points follow from stamps: nothing states their place in a cloud, or how
+    late they are.
+    """
+    counts = import_notes(walk.imported).counts
+    return CLOUDS_UNTIMED in counts or CLOUDS_EVENED in counts
+
+
+def confirms_times(figures: OdometryFigures | None) -> bool:
+    """Whether an IMU, as it was recorded, fits the LiDARs over the whole walk."""
+    if figures is None or not figures.imu or figures.lines is not None or figures.lost:
+        return False
+    choice = figures.imu_choice.outcome if figures.imu_choice else "as recorded"
+    return choice in ("as recorded", "bias removed") and not figures.imu_faults
 
 
 def _of_derived_times(found: Finding) -> Finding:

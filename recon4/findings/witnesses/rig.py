@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
-from recon4.findings.witnesses.imu import fault_finding, has_untimed_clouds
+from recon4.findings.witnesses.imu import fault_finding, has_derived_times
 from recon4.findings.witnesses.tuning import RIG_WITNESS
 from recon4.model.calibration_figures import (
     GNSS,
@@ -40,7 +40,7 @@ class RigFile(Witness):
         if figures is None:
             return
         corrected = walk.odometry_figures.imu_faults if walk.odometry_figures else ()
-        untimed = has_untimed_clouds(walk)
+        untimed = has_derived_times(walk)
         found = list(rig_findings(figures, corrected=corrected, untimed=untimed))
         yield from found or [agreement(figures.outcome, figures.statuses)]
 
@@ -79,7 +79,7 @@ def rig_findings(
     Args:
         figures: Of the audit or calibration.
         corrected: Errors of the IMU that the odometry found, named and corrected by itself.
-        untimed: Whether times of points are derived, see `has_untimed_clouds`.
+        untimed: Whether times of points are derived, see `has_derived_times`.
     """
     for fault in figures.imu_faults:
         yield fault_finding(fault, corrected=False)

@@ -251,12 +251,12 @@ IMU-GYRO-ROTATION = Verdrehung des Kreisels
 
 IMU-CLOCK = Uhr der IMU
     .text1 = Die Uhr der IMU geht { DECIMAL($size_ms, digits: 1) } ms ± { DECIMAL($sd_ms, digits: 1) } ms { WORD($way, of: "IMU-CLOCK") } der Uhr der LiDARs. Die Odometrie hat es korrigiert.
-    .text2-if-derived = Die Punkte haben keine Zeiten: diese folgen aus den Zeitstempeln der Punktwolken, und die können für einen anderen Augenblick der Wolke gemeint sein.
+    .text2-if-derived = Die Zeiten der Punkte folgen aus den Zeitstempeln der Punktwolken, und die können verspätet oder für einen anderen Augenblick der Wolke gemeint sein.
     .word-ahead = vor
     .word-behind = hinter
     .remedy = Den Zeitversatz in der Rig-Datei prüfen.
     .meaning = Messwerte der IMU haben Zeiten, die nicht zu denen der Punkte passen; die Trajektorie ist dafür korrigiert.
-    .detection = Der Filter schätzt einen Versatz über 4 ms und fünf Standardabweichungen. Ein Hinweis, wenn die Zeiten der Punkte abgeleitet sind.
+    .detection = Der Filter schätzt einen Versatz über 4 ms und fünf Standardabweichungen. Ein Hinweis, wenn die Zeiten der Punkte abgeleitet sind, etwa die aus streuenden Zeitstempeln.
 
 IMU-LEFT-HANDED = Achsen der IMU linkshändig
     .text1 = Die IMU widerspricht der Aufzeichnung. Ihre Drehraten passen nur mit linkshändigen Achsen zu den LiDARs: eine Achse hat das falsche Vorzeichen.

@@ -220,7 +220,7 @@ TIME-GAP = Lücke in den Daten eines Sensors
 
 CLOCK-BACK = Uhr geht zurück
     .text1 = { $sensor }: die Uhr geht bei { DECIMAL($start_s, digits: 1) } s um { DECIMAL($seconds, digits: 3) } s zurück.
-    .meaning = Die Zeiten laufen gleichmäßig weiter; wie viel Zeit dort wirklich verging, ist nicht bekannt.
+    .meaning = Die Zeiten laufen gleichmäßig weiter; wie viel Zeit dort wirklich verging, ist nicht bekannt. Ein Hinweis, wenn eine IMU ohne Korrektur auf der ganzen Strecke zu den LiDARs passt.
 
 CLOCK-JUMP = Uhr gesprungen
     .text1 = { $sensor }: { WORD($whose, of: "CLOCK-JUMP") } ist um { DECIMAL($jump_s, digits: 3, sign: 1) } s gesprungen; { WORD($times, of: "CLOCK-JUMP") }.
@@ -231,7 +231,7 @@ CLOCK-JUMP = Uhr gesprungen
     .word-without-it = die Zeiten laufen ohne den Sprung weiter
     .word-by-stamps = die Zeiten laufen nach den Zeitstempeln weiter
     .word-by-arrival = seine Scans laufen nach ihrer Ankunft weiter
-    .meaning = Eine Uhr wurde während der Aufzeichnung gestellt.
+    .meaning = Eine Uhr wurde während der Aufzeichnung gestellt. Ein Hinweis, wenn eine IMU ohne Korrektur auf der ganzen Strecke zu den LiDARs passt.
 
 CLOCK-FREE = Uhr läuft frei
     .text1 = { $sensor }: seine Uhr liegt { DECIMAL($ahead_s, digits: 3, sign: 1) } s neben der des Aufzeichnungsrechners, und kein GPS steuert sie: seine Zeiten sind auf dessen Uhr verschoben.

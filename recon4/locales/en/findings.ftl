@@ -252,12 +252,12 @@ IMU-GYRO-ROTATION = Rotation of the gyroscope
 
 IMU-CLOCK = Clock of the IMU
     .text1 = The clock of the IMU is { DECIMAL($size_ms, digits: 1) } ms ± { DECIMAL($sd_ms, digits: 1) } ms { WORD($way, of: "IMU-CLOCK") } that of the LiDARs. The odometry corrected it.
-    .text2-if-derived = The points have no times: they follow from the stamps of the clouds, and those may be meant for another moment of the cloud.
+    .text2-if-derived = The times of the points follow from the stamps of the clouds, and those may be late or meant for another moment of the cloud.
     .word-ahead = ahead of
     .word-behind = behind
     .remedy = Check the time offset of the rig file.
     .meaning = Samples of the IMU have times that do not fit those of the points; the trajectory is corrected for it.
-    .detection = The filter estimates an offset above 4 ms and five standard deviations. A note if the times of the points are derived.
+    .detection = The filter estimates an offset above 4 ms and five standard deviations. A note if the times of the points are derived, as those of stamps that scatter are.
 
 IMU-LEFT-HANDED = Axes of the IMU left-handed
     .text1 = The IMU contradicts the recording. The turn rates of the IMU fit the LiDARs only with left-handed axes: an axis has the wrong sign.

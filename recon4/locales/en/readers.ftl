@@ -221,7 +221,7 @@ TIME-GAP = Gap in the data of a sensor
 
 CLOCK-BACK = Clock goes back
     .text1 = { $sensor }: the clock goes back for { DECIMAL($seconds, digits: 3) } s at { DECIMAL($start_s, digits: 1) } s.
-    .meaning = Times go on evenly; how much time really passed there is not known.
+    .meaning = Times go on evenly; how much time really passed there is not known. A note if an IMU fits the LiDARs over the whole walk without any correction.
 
 CLOCK-JUMP = Clock jumped
     .text1 = { $sensor }: { WORD($whose, of: "CLOCK-JUMP") } jumped by { DECIMAL($jump_s, digits: 3, sign: 1) } s; { WORD($times, of: "CLOCK-JUMP") }.
@@ -232,7 +232,7 @@ CLOCK-JUMP = Clock jumped
     .word-without-it = times go on without it
     .word-by-stamps = times go on by the stamps
     .word-by-arrival = its scans are continued by their arrival
-    .meaning = A clock was set while the recording ran.
+    .meaning = A clock was set while the recording ran. A note if an IMU fits the LiDARs over the whole walk without any correction.
 
 CLOCK-FREE = Clock runs freely
     .text1 = { $sensor }: its clock is { DECIMAL($ahead_s, digits: 3, sign: 1) } s off the recorder's and no GPS drives it: its times are shifted to the recorder's clock.

@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.derived_kinds import DerivedKind
+from recon4.model.import_notes import CLOUDS_EVENED
 from recon4.model.trajectory import Times
 from recon4.recording.clocks.tuning import EVEN_STAMPS
 from recon4.recording.report import ImportReport
@@ -80,7 +81,7 @@ class EvenStamps:
 
     def say(self, sensor: str, report: ImportReport) -> None:
         """Count and state what was evened; call once, at the end."""
-        report.count("clouds_evened", len(self._scatter_ns))
+        report.count(CLOUDS_EVENED, len(self._scatter_ns))
         if self._scatter_ns:
             scatter_ms = round(1e-6 * float(np.median(self._scatter_ns)), 1)
             report.derive(DerivedKind.STAMPS_EVENED, where=sensor, scatter_ms=scatter_ms)

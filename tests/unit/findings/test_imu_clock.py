@@ -48,8 +48,12 @@ def test_a_clock_that_the_odometry_corrected_is_named_once(corrected_s, levels):
 
 @pytest.mark.parametrize(
     ("counts", "usability"),
-    [({}, Usability.CHECK), ({"clouds_untimed": 40}, Usability.GOOD)],
-    ids=["times of points", "times that are derived"],
+    [
+        ({}, Usability.CHECK),
+        ({"clouds_untimed": 40}, Usability.GOOD),
+        ({"clouds_evened": 40}, Usability.GOOD),
+    ],
+    ids=["times of points", "times that are derived", "stamps that scatter"],
 )
 def test_a_clock_is_not_accused_by_times_that_nothing_states(counts, usability):
     walked = replace(clock_of_imu(0.05), imported={"counts": counts})
