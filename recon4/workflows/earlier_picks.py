@@ -17,8 +17,8 @@ from recon4.slices.measured_points import orthonormal
 from recon4.slices.site_control import seen_place
 from recon4.slices.stored_picks import TRAJECTORY, StoredPicks, add_seen_picks, unseen_picks
 from recon4.store.arrays import load_trajectory
-from recon4.store.input_contents import files_of
 from recon4.store.frames import FrameStore, open_frames
+from recon4.store.input_contents import files_of
 from recon4.store.project import read_stages
 from recon4.store.stage import Artifact
 from recon4.workflows.make_map import PLACE
