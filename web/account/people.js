@@ -125,7 +125,7 @@ async function readLog(/** @type {number | undefined} */ before = undefined) {
   const { entries, broken_at: broken, newest } = log.chain;
   const mark = broken
     ? html`<b class="bad">✕ ${t("chain-broken", { entry: String(broken) })}</b>`
-    : html`<b class="good">✓ ${t("chain-intact", { entries: String(entries) })}</b>`;
+    : html`<b class="good">✓ ${t("chain-intact", { entries })}</b>`;
   render(html`${mark}<code>${newest}</code>`, byId("chain"));
 }
 

@@ -204,7 +204,7 @@ function auditTable(/** @type {CalibrationView} */ { parameters }) {
 
 function beamTable(/** @type {CalibrationView} */ { beams }) {
   const rows = beamRows(beams);
-  const summary = t("rig-corrections", { count: String(rows.length) });
+  const summary = t("rig-corrections", { count: rows.length });
   return folded({ summary, label: t("rig-beams") }, table(BEAM_HEADS, rows.map(numbers)));
 }
 

@@ -115,7 +115,10 @@ outcome-done = Erledigt
 outcome-refused = Abgelehnt
 outcome-failed = Fehlgeschlagen
 chain-broken = Eintrag { $entry } passt nicht zur Prüfsumme des vorigen: das Protokoll wurde verändert
-chain-intact = { $entries } Einträge, Kette der Prüfsummen intakt
+chain-intact = { $entries ->
+    [one] { COUNT($entries) } Eintrag
+   *[other] { COUNT($entries) } Einträge
+ }, Kette der Prüfsummen intakt
 
 ## Vertraute Schlüssel
 

@@ -53,7 +53,10 @@ battery-minutes = Der Akku des Rechners hat noch { PERCENT($charge, digits: 0) }
 unobserved-along = Nichts hält die Karte entlang dieses Flurs: auf eine Ecke oder offene Tür richten
 unobserved-across = Nichts hält die Karte quer zum Weg: nahe an einer Wand bleiben
 scans-unreadable = Nichts von dem, was der 2-D-Laser sendet, ist lesbar: { $damaged } Datagramme
-scans-damaged = { $damaged } Datagramme mit Scans sind nicht lesbar
+scans-damaged = { $damaged ->
+    [one] { $damaged } Datagramm mit Scans ist nicht lesbar
+   *[other] { $damaged } Datagramme mit Scans sind nicht lesbar
+ }
 lines-damaged = { $damaged } Datagramme mit Linienscans sind nicht lesbar
 laser-blind = Der 2-D-Laser sieht nichts: ist er verdeckt, oder ist alles außer Reichweite?
 head-angles-missing = Die Winkel des Profilerkopfes fehlen: seine Linien können nicht platziert werden

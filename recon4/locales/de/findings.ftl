@@ -113,12 +113,18 @@ LASER-POSES-MISSING = Keine Posen vom 2-D-Laser
 
 NOT-CONVERGED = Registrierung nicht konvergiert
     .text1 = Die Registrierung konvergierte nur in { $converged } von { $multiframes } Multiframes ({ PERCENT($ratio, digits: 1) }).
-    .text2 = { $far } Multiframes konvergierten nicht und liegen bis zu { LENGTH($far_m) } von der erwarteten Stelle entfernt, zuerst { DECIMAL($far_s, digits: 1) } s nach dem Start: um so viel können sie falsch sein.
+    .text2 = { $far ->
+        [one] { $far } Multiframe konvergierte nicht und liegt { LENGTH($far_m) } von der erwarteten Stelle entfernt
+       *[other] { $far } Multiframes konvergierten nicht und liegen bis zu { LENGTH($far_m) } von der erwarteten Stelle entfernt
+     }, zuerst { DECIMAL($far_s, digits: 1) } s nach dem Start: um so viel können sie falsch sein.
     .meaning = Posen stammen aus abgebrochenen Iterationen: ihre Genauigkeit ist nicht bekannt.
     .detection = Weniger als 90 % der Multiframes konvergierten (*nicht verwenden* unter 50 %), oder eines, das nicht konvergierte, liegt mehr als 10 cm von seiner Prädiktion.
 
 SEPARATE-PIECE = Getrenntes Teilstück
-    .text1 = Von { DECIMAL($start_s, digits: 0) } s bis { DECIMAL($end_s, digits: 0) } s nach dem Start ist die Begehung ein getrenntes Teilstück von { $multiframes } Multiframes: wie der Träger dorthin kam, wurde nicht aufgezeichnet, und keine Stelle davon wurde wiedererkannt. Seine Lage in der Karte ist nicht bekannt.
+    .text1 = Von { DECIMAL($start_s, digits: 0) } s bis { DECIMAL($end_s, digits: 0) } s nach dem Start ist die Begehung ein getrenntes Teilstück von { $multiframes ->
+        [one] { $multiframes } Multiframe
+       *[other] { $multiframes } Multiframes
+     }: wie der Träger dorthin kam, wurde nicht aufgezeichnet, und keine Stelle davon wurde wiedererkannt. Seine Lage in der Karte ist nicht bekannt.
     .remedy = Ein Schleifenschluss von Hand verbindet es.
     .meaning = Die relative Pose zweier Teile der Begehung ist nicht bekannt.
     .detection = Das Tracking ging verloren oder die Aufzeichnung hat eine Lücke, und keine Kante des Graphen verbindet beide Seiten.
@@ -517,7 +523,10 @@ MIRROR = Spiegel
 
 CLASSES-MOVED = Klassenkorrektur verschoben
     .text1 = Die Karte hat sich um { LENGTH($moved_m) } verschoben, wo { $who } Punkten die Klasse { $to } gab, nahe x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m, z { DECIMAL($z_m, digits: 1) } m; die Korrektur { $id } folgte ihren Punkten und ändert { COUNT($points) } davon (damals { COUNT($points_then) }).
-    .text2 = { COUNT($lost) } ihrer Gruppen liegen nicht mehr beisammen: sie behalten ihre frühere Klasse.
+    .text2 = { $lost ->
+        [one] { COUNT($lost) } ihrer Gruppen liegt nicht mehr beisammen: sie behält ihre frühere Klasse.
+       *[other] { COUNT($lost) } ihrer Gruppen liegen nicht mehr beisammen: sie behalten ihre frühere Klasse.
+     }
     .remedy = Die Stelle ansehen; die Korrektur zurücknehmen, wenn andere Punkte gemeint waren.
     .meaning = Eine andere Trajektorie legt die korrigierten Punkte an eine andere Stelle. Das Volumen ging mit.
     .detection = Die Posen, die die Punkte gemessen haben, haben sich gemeinsam um mehr als 5 cm verschoben.

@@ -170,7 +170,10 @@ e57-coordinates = { $name }: Scan { $number }: erwartet werden kartesische oder 
 e57-more-points = { $name }: Scan { $number } hat mehr Punkte als angekündigt
 xml-doctype = sie hat einen Dokumenttyp (DOCTYPE), den ein Leser aus dem Netz holen würde
 xml-instruction = sie hat eine Verarbeitungsanweisung ({ QUOTED($target) })
-e57-checksum = falsche Prüfsumme der Seite { $first }, und { $count } weitere
+e57-checksum = falsche Prüfsumme der Seite { $first }{ $count ->
+    [0] {""}
+   *[other] , und { $count } weitere
+ }
 xml-encoding = erwartet wird die Kodierung UTF-8, erhalten: { QUOTED($encoding) }
 e57-xml = { $file }: XML-Teil: { $why }
 e57-xml-unsound = { $file }: der XML-Teil ist kein gültiges XML: { $why }
@@ -233,7 +236,10 @@ ptx-no-numbers = { $where }: keine Zeile aus Zahlen: { $why }
 reference-large = { $file } hat { $size } GiB, höchstens { $cloud_file_bytes }
 reference-no-points = { $name } enthält keine Punkte
 reference-column = { $file }: keine Spalte { $missing }; vorhanden: { $fields }
-reference-not-finite = { $name }: { $bad } Punkte haben Koordinaten, die keine Zahlen sind
+reference-not-finite = { $name }: { $bad ->
+    [one] { $bad } Punkt hat Koordinaten, die keine Zahlen sind
+   *[other] { $bad } Punkte haben Koordinaten, die keine Zahlen sind
+ }
 reference-not-meters = { $name }: Koordinaten jenseits von 100 000 km sind keine Meter
 reference-many = { $name } hat mehr als { $max_points } Millionen Punkte
 reference-format = { $file }: erwartet wird eine Punktwolke in { $names }, XYZ oder CSV

@@ -306,7 +306,10 @@ approve-again = Version { $version } von { $who } gibt diese Ergebnisse schon fr
 approve-no-map = es gibt noch keine fertige Karte: nichts freizugeben
 approve-damaged = { $detail }: erst die Karte neu rechnen
 approve-journal-altered = das Journal wurde verändert: { $detail }
-approve-conflicts = { $count } angenommene Schleifenschlüsse passen nicht in den Graphen: ablehnen oder mit einem Grund bestätigen
+approve-conflicts = { $count ->
+    [one] { $count } angenommener Schleifenschluss passt nicht in den Graphen
+   *[other] { $count } angenommene Schleifenschlüsse passen nicht in den Graphen
+ }: ablehnen oder mit einem Grund bestätigen
 reason-no-verdict = diese Karte hat kein Urteil: eine frühere Version von recon4 hat sie gerechnet
 reason-do-not-use = das Urteil über diese Karte ist „nicht verwenden“: { $reasons }
 reason-not-observable = eine Richtung dieser Karte ist auf { $count } ihrer Abschnitte nicht beobachtbar

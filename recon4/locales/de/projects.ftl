@@ -397,7 +397,10 @@ rig-of-recording = Rig der Aufzeichnung:
 rig-saved-as = Das kalibrierte Rig ist gespeichert als
 rig-compared = { $count } Parameter verglichen
 rig-audit = Vergleich
-rig-corrections = Korrekturen von { $count } einzelnen Strahlen
+rig-corrections = Korrekturen von { $count ->
+    [one] einem einzelnen Strahl
+   *[other] { $count } einzelnen Strahlen
+ }
 rig-beams = Strahlen
 rig-distance = Abstand der Punkte von gemeinsamen Ebenen
 rig-surface = Eine Fläche, von zwei LiDARs gesehen

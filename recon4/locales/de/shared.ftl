@@ -228,7 +228,10 @@ alike-things = { $count ->
   }: { COUNT($points) } Punkte, { $class }
 alike-limit = Höchster Unterschied: { $limit }
 alike-limit-means = 0 = gleich; 1 = so verschieden, wie ein Ding von zwei Seiten aussieht. Verglichen werden Größe, Höhe über dem Boden, Flachheit, und wie viele Strahlen hindurchsehen.
-alike-points = { COUNT($points) } Punkte
+alike-points = { $points ->
+    [one] { COUNT($points) } Punkt
+   *[other] { COUNT($points) } Punkte
+ }
 alike-where = x { $x }  y { $y }  z { $z } m
 alike-difference = Unterschied { $difference }
 alike-high = { $m } m hoch
@@ -252,10 +255,16 @@ correct-why = Grund
 correct-count = Punkte zählen
 correct-apply = Anwenden
 correct-nothing = Nichts zu ändern: { $why }.
-correct-counted = { COUNT($points) } Punkte, bisher: { $now }
+correct-counted = { $points ->
+    [one] { COUNT($points) } Punkt
+   *[other] { COUNT($points) } Punkte
+ }, bisher: { $now }
 correct-waiting = { $count } noch nicht in der Karte
 correct-withdrawn = { $count } noch in der Karte, aber rückgängig gemacht oder nicht mehr an erster Stelle
-correct-row = { COUNT($points) } Punkte → { $class }
+correct-row = { $points ->
+    [one] { COUNT($points) } Punkt
+   *[other] { COUNT($points) } Punkte
+ } → { $class }
 correct-not-yet = noch nicht in der Karte
 correct-undo-of = Korrektur zu { $class } von { $who }, { $when }, rückgängig machen
 correct-undo = Rückgängig

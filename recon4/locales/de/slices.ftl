@@ -143,7 +143,10 @@ weaker-layer = Schwächere Lage
 visits = Besuche
 twice-is = { $patches } Flächenstücke wurden zweimal besucht; Abstand zwischen den Besuchen { $median } (Median), { $most } (95 %); Dicke σ wie gemessen { $sigma }.
 none-twice = Keine Fläche wurde zweimal besucht: doppelte Wände sind nicht erkennbar.
-double-found = ✕ { $count } doppelte Wände
+double-found = ✕ { $count ->
+    [one] { $count } doppelte Wand
+   *[other] { $count } doppelte Wände
+ }
 no-double = ✓ Keine doppelte Wand gefunden
 not-checked = – Nicht geprüft
 and = und

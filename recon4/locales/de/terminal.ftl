@@ -16,7 +16,13 @@ stage-was-done = { NAMED($stage, of: "stage") }: fertig in { $seconds } s
 run-walk = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $multiframes } Multiframes ({ $lost } verloren)
 run-scans = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $scans } Scans ({ $lost } verloren)
 run-pairs = { $pairs } Paare versucht: { $edges }
-run-edges = { $count } Kanten: { $edges }; { $loops } Schleifenschlüsse
+run-edges = { $count ->
+    [one] { $count } Kante
+   *[other] { $count } Kanten
+ }: { $edges }; { $loops ->
+    [one] { $loops } Schleifenschluss
+   *[other] { $loops } Schleifenschlüsse
+ }
 run-points = { $points } Punkte in der Karte
 run-grid = { DECIMAL($width_m, digits: 0) } x { DECIMAL($height_m, digits: 0) } m in Zellen von { DECIMAL($cell_m, digits: 2) } m, { DECIMAL($free_m2, digits: 0) } m² frei
 run-work = { DECIMAL($seconds, digits: 1) } s Rechenzeit, höchstens { DECIMAL($memory_gb, digits: 2) } GB
@@ -120,7 +126,10 @@ written-lost = verloren: { $what }
 
 backup-left-out = ausgelassen, inzwischen geändert: { $name }
 backup-damaged = beschädigt, bevor kopiert wurde: { $name }
-backup-made = { $path }: { $files } Dateien, { $bytes } Bytes, davon { $new_bytes } neu
+backup-made = { $path }: { $files ->
+    [one] { $files } Datei
+   *[other] { $files } Dateien
+ }, { $bytes } Bytes, davon { $new_bytes } neu
 backup-no-keys = Schlüssel und Personen sind nicht enthalten (--with-keys)
 restored-files = { $files } Dateien in { $root }; recon4 verify { $root } vergleicht sie mit ihren Siegeln
 restored-no-keys = Schlüssel sind nicht enthalten: Freigaben zählen dort, sobald die Schlüssel hinzugefügt sind (recon4 keys add)

@@ -115,7 +115,10 @@ outcome-done = Done
 outcome-refused = Refused
 outcome-failed = Failed
 chain-broken = Entry { $entry } does not match the hash of the one before: the log was altered
-chain-intact = { $entries } entries, hash chain intact
+chain-intact = { $entries ->
+    [one] { COUNT($entries) } entry
+   *[other] { COUNT($entries) } entries
+ }, hash chain intact
 
 ## Trusted keys
 

@@ -53,7 +53,10 @@ battery-minutes = The computer's battery has { PERCENT($charge, digits: 0) }, { 
 unobserved-along = Nothing holds the map along this corridor: look at a corner or an open door
 unobserved-across = Nothing holds the map across your way: keep near a wall
 scans-unreadable = Nothing of what the 2-D laser sends can be read: { $damaged } datagrams
-scans-damaged = { $damaged } datagrams with scans cannot be read
+scans-damaged = { $damaged ->
+    [one] { $damaged } datagram with scans cannot be read
+   *[other] { $damaged } datagrams with scans cannot be read
+ }
 lines-damaged = { $damaged } datagrams with line scans cannot be read
 laser-blind = The 2-D laser sees nothing: is it covered, or is everything beyond its range?
 head-angles-missing = The angles of the profiler's head are missing: its lines cannot be placed

@@ -114,12 +114,18 @@ LASER-POSES-MISSING = No poses by the 2-D laser
 
 NOT-CONVERGED = Registration did not converge
     .text1 = The registration converged in only { $converged } of { $multiframes } multiframes ({ PERCENT($ratio, digits: 1) }).
-    .text2 = { $far } multiframes did not converge and lie up to { LENGTH($far_m) } from where they were expected, first { DECIMAL($far_s, digits: 1) } s after the start: they may be as wrong.
+    .text2 = { $far ->
+        [one] { $far } multiframe did not converge and lies { LENGTH($far_m) } from where it was expected
+       *[other] { $far } multiframes did not converge and lie up to { LENGTH($far_m) } from where they were expected
+     }, first { DECIMAL($far_s, digits: 1) } s after the start: they may be as wrong.
     .meaning = Poses come from iterations that were stopped: their accuracy is not known.
     .detection = Less than 90 % of the multiframes converged (*do not use* below 50 %), or one that did not is more than 10 cm from its prediction.
 
 SEPARATE-PIECE = Separate piece
-    .text1 = From { DECIMAL($start_s, digits: 0) } s to { DECIMAL($end_s, digits: 0) } s after the start the walk is a separate piece of { $multiframes } multiframes: how the body got there was not recorded, and no place of it was recognized. Its position in the map is not known.
+    .text1 = From { DECIMAL($start_s, digits: 0) } s to { DECIMAL($end_s, digits: 0) } s after the start the walk is a separate piece of { $multiframes ->
+        [one] { $multiframes } multiframe
+       *[other] { $multiframes } multiframes
+     }: how the body got there was not recorded, and no place of it was recognized. Its position in the map is not known.
     .remedy = A loop closure by hand joins it.
     .meaning = The relative pose of two parts of the walk is not known.
     .detection = Tracking was lost or the recording has a gap, and no edge of the graph joins both sides.
@@ -214,7 +220,10 @@ IMU-BIAS-REMOVED = Gyroscope bias removed
     .detection = Its mean over the first half second is above 3.4 °/s, and multiframes fit clearly better without it.
 
 IMU-SATURATED = IMU saturated
-    .text1 = The { $sensor } is saturated, first { DECIMAL($first_s, digits: 1) } s after its start: it repeats its largest value, { $largest }{ WORD($unit, of: "IMU-SATURATED") } { $direction }, { $times } times. Faster motions are missing: there only the LiDARs observe them.
+    .text1 = The { $sensor } is saturated, first { DECIMAL($first_s, digits: 1) } s after its start: it repeats its largest value, { $largest }{ WORD($unit, of: "IMU-SATURATED") } { $direction }, { $times ->
+        [one] once
+       *[other] { $times } times
+     }. Faster motions are missing: there only the LiDARs observe them.
     .word-deg_s = °/s about
     .word-m_s2 = { " " }m/s² along
     .remedy = Record with a larger range.
@@ -500,7 +509,10 @@ MIRROR = Mirror
 
 CLASSES-MOVED = Correction of classes moved
     .text1 = The map has moved by { LENGTH($moved_m) } where { $who } made points { $to }, near x { DECIMAL($x_m, digits: 1) } m, y { DECIMAL($y_m, digits: 1) } m, z { DECIMAL($z_m, digits: 1) } m; the correction { $id } followed its points and changes { COUNT($points) } of them ({ COUNT($points_then) } then).
-    .text2 = { COUNT($lost) } of its clusters no longer lie together: they keep their former class.
+    .text2 = { $lost ->
+        [one] { COUNT($lost) } of its clusters no longer lies together: it keeps its former class.
+       *[other] { COUNT($lost) } of its clusters no longer lie together: they keep their former class.
+     }
     .remedy = Look at the place; withdraw the correction if other points were meant.
     .meaning = Another trajectory put the corrected points elsewhere. The volume moved with them.
     .detection = The poses that measured the points have moved together, by more than 5 cm.
@@ -599,7 +611,10 @@ SCANS-SEARCHED = Pose found by a search
     .detection = A correlative search found the pose of more than 0.5 % of the scans.
 
 SUBMAP-RESTARTED = Local map started again
-    .text1 = The local map started again { $resets } times: the parts of the map are joined by { WORD($by, of: "SUBMAP-RESTARTED") } and by loop closures only.
+    .text1 = The local map started again { $resets ->
+        [one] once
+       *[other] { $resets } times
+     }: the parts of the map are joined by { WORD($by, of: "SUBMAP-RESTARTED") } and by loop closures only.
     .word-odometry = the odometry of the recording
     .word-motion = the motion before
     .meaning = How the parts lie to each other is hardly measured.

@@ -170,7 +170,10 @@ e57-coordinates = { $name }: scan { $number }: expected Cartesian or spherical c
 e57-more-points = { $name }: scan { $number } has more points than promised
 xml-doctype = it has a document type (DOCTYPE), which a reader would fetch
 xml-instruction = it has a processing instruction ({ QUOTED($target) })
-e57-checksum = wrong checksum of page { $first }, and { $count } others
+e57-checksum = wrong checksum of page { $first }{ $count ->
+    [0] {""}
+   *[other] , and { $count } others
+ }
 xml-encoding = expected the encoding UTF-8, got { QUOTED($encoding) }
 e57-xml = { $file }: XML section: { $why }
 e57-xml-unsound = { $file }: the XML section is not sound XML: { $why }
@@ -233,7 +236,10 @@ ptx-no-numbers = { $where }: no line of numbers: { $why }
 reference-large = { $file } has { $size } GiB, at most { $cloud_file_bytes }
 reference-no-points = { $name } holds no points
 reference-column = { $file }: no column { $missing }; it has { $fields }
-reference-not-finite = { $name }: { $bad } points have coordinates that are not numbers
+reference-not-finite = { $name }: { $bad ->
+    [one] { $bad } point has coordinates that are not numbers
+   *[other] { $bad } points have coordinates that are not numbers
+ }
 reference-not-meters = { $name }: coordinates beyond 100 000 km are not meters
 reference-many = { $name } has more than { $max_points } million points
 reference-format = { $file }: expected a { $names }, XYZ or CSV cloud

@@ -306,7 +306,10 @@ approve-again = version { $version } by { $who } approves these results already
 approve-no-map = there is no finished map yet: nothing to approve
 approve-damaged = { $detail }: rebuild the map first
 approve-journal-altered = the journal was altered: { $detail }
-approve-conflicts = { $count } accepted loop closures do not fit the graph: reject them, or confirm them with a reason
+approve-conflicts = { $count ->
+    [one] { $count } accepted loop closure does not fit the graph: reject it, or confirm it with a reason
+   *[other] { $count } accepted loop closures do not fit the graph: reject them, or confirm them with a reason
+ }
 reason-no-verdict = this map has no verdict: an earlier version of recon4 made it
 reason-do-not-use = the verdict on this map is "do not use": { $reasons }
 reason-not-observable = a direction of this map is not observable along { $count } of its stretches

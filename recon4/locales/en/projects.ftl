@@ -397,7 +397,10 @@ rig-of-recording = Rig of the recording:
 rig-saved-as = The calibrated rig is saved as
 rig-compared = { $count } parameters compared
 rig-audit = Audit
-rig-corrections = Corrections of { $count } single beams
+rig-corrections = Corrections of { $count ->
+    [one] { $count } single beam
+   *[other] { $count } single beams
+ }
 rig-beams = Beams
 rig-distance = Distance of points from common planes
 rig-surface = One surface seen by two LiDARs

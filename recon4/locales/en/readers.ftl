@@ -418,7 +418,10 @@ IMU-EMPTY = No usable IMU sample
     .meaning = The map is made without an IMU.
 
 IMU-REPEATED = IMU repeats a sample
-    .text1 = The IMU repeats a sample with new time stamps { $times } times, first { DECIMAL($first_s, digits: 1) } s after its start, for up to { DECIMAL($longest_s, digits: 1) } s: its driver hangs. { $samples } samples dropped.
+    .text1 = The IMU repeats a sample with new time stamps { $times ->
+        [one] once
+       *[other] { $times } times
+     }, first { DECIMAL($first_s, digits: 1) } s after its start, for up to { DECIMAL($longest_s, digits: 1) } s: its driver hangs. { $samples } samples dropped.
     .meaning = The motion of that time was not recorded.
 
 GNSS-EMPTY = No usable GNSS position

@@ -228,7 +228,10 @@ alike-things = { $count ->
   } alike: { COUNT($points) } points, { $class }
 alike-limit = Most different: { $limit }
 alike-limit-means = 0 = the same; 1 = as different as one thing looks from two sides. Compared are size, height above the ground, flatness, and how many beams see through.
-alike-points = { COUNT($points) } points
+alike-points = { $points ->
+    [one] { COUNT($points) } point
+   *[other] { COUNT($points) } points
+ }
 alike-where = x { $x }  y { $y }  z { $z } m
 alike-difference = difference { $difference }
 alike-high = { $m } m high
@@ -252,10 +255,16 @@ correct-why = Why
 correct-count = Count the points
 correct-apply = Apply
 correct-nothing = Nothing to change: { $why }.
-correct-counted = { COUNT($points) } points, now: { $now }
+correct-counted = { $points ->
+    [one] { COUNT($points) } point
+   *[other] { COUNT($points) } points
+ }, now: { $now }
 correct-waiting = { $count } not in the map yet
 correct-withdrawn = { $count } still in the map, but undone or no longer first
-correct-row = { COUNT($points) } points → { $class }
+correct-row = { $points ->
+    [one] { COUNT($points) } point
+   *[other] { COUNT($points) } points
+ } → { $class }
 correct-not-yet = not in the map yet
 correct-undo-of = Undo the correction to { $class } by { $who }, { $when }
 correct-undo = Undo

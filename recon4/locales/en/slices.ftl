@@ -143,7 +143,10 @@ weaker-layer = Weaker layer
 visits = Visits
 twice-is = { $patches } patches were visited twice; distance between the visits { $median } (median), { $most } (95 %); thickness σ as measured { $sigma }.
 none-twice = No surface was visited twice: double walls cannot be detected.
-double-found = ✕ { $count } double walls
+double-found = ✕ { $count ->
+    [one] { $count } double wall
+   *[other] { $count } double walls
+ }
 no-double = ✓ No double wall found
 not-checked = – Not checked
 and = and

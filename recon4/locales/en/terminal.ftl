@@ -16,7 +16,13 @@ stage-was-done = { NAMED($stage, of: "stage") }: done in { $seconds } s
 run-walk = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $multiframes } multiframes ({ $lost } lost)
 run-scans = { DECIMAL($duration_s, digits: 1) } s, { DECIMAL($length_m, digits: 1) } m, { $scans } scans ({ $lost } lost)
 run-pairs = { $pairs } pairs tried: { $edges }
-run-edges = { $count } edges: { $edges }; { $loops } loop closures
+run-edges = { $count ->
+    [one] { $count } edge
+   *[other] { $count } edges
+ }: { $edges }; { $loops ->
+    [one] { $loops } loop closure
+   *[other] { $loops } loop closures
+ }
 run-points = { $points } points in the map
 run-grid = { DECIMAL($width_m, digits: 0) } x { DECIMAL($height_m, digits: 0) } m in cells of { DECIMAL($cell_m, digits: 2) } m, { DECIMAL($free_m2, digits: 0) } m² free
 run-work = { DECIMAL($seconds, digits: 1) } s of work, { DECIMAL($memory_gb, digits: 2) } GB at most
@@ -120,7 +126,10 @@ written-lost = lost: { $what }
 
 backup-left-out = left out, it changed meanwhile: { $name }
 backup-damaged = damaged before it was copied: { $name }
-backup-made = { $path }: { $files } files, { $bytes } bytes, { $new_bytes } of them new
+backup-made = { $path }: { $files ->
+    [one] { $files } file
+   *[other] { $files } files
+ }, { $bytes } bytes, { $new_bytes } of them new
 backup-no-keys = keys and people are not in it (--with-keys)
 restored-files = { $files } files in { $root }; recon4 verify { $root } compares them with their seals
 restored-no-keys = keys are not in it: approvals count there once their keys are added (recon4 keys add)

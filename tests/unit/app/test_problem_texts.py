@@ -101,6 +101,14 @@ def test_a_text_that_another_one_quotes_is_said_in_its_language():
     assert busy.said_values("de")["detail"] in german
 
 
+def test_one_is_said_as_one():
+    one, two = (CodedText("approve-conflicts", count=count) for count in (1, 2))
+
+    assert one.startswith("1 accepted loop closure does not fit") and "them" not in one
+    assert two.startswith("2 accepted loop closures do not fit")
+    assert one.said("de").startswith("1 angenommener Schleifenschluss passt nicht")
+
+
 def test_words_of_the_server_are_those_of_the_pages():
     text = CodedText("not-allowed", name="Jo", role="viewer", what="process")
 
