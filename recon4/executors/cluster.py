@@ -30,8 +30,6 @@ log = logging.getLogger(__name__)
 
 _LINES = "recon4-lines-"
 """Topic of the lines that a run's tasks say; its number follows."""
-_OUT_OF_REACH = (OSError, TimeoutError, RuntimeError, AttributeError, KeyError)
-"""Errors of a client without its scheduler, also while it is closed."""
 _MISSING = "needs Dask, which is not installed; command: pip install 'recon4[dask]'"
 
 
@@ -182,6 +180,8 @@ def workers_of(scheduler: str, certificates: Certificates, shared: Path) -> Clus
             tls_client_key=str(certificates.key),
             require_encryption=True,
         )
+        # Else a scheduler that is lost is a traceback; parts say it.
+        logging.getLogger("distributed.client").setLevel(CLUSTER.log_level)
         try:
             client = Client(scheduler, security=security, timeout=CLUSTER.connects_within_s)
         except (OSError, TimeoutError) as error:
@@ -239,7 +239,7 @@ def _watched(client: Client, futures: Sequence[Any]) -> Iterator[None]:
     def watch() -> None:
         latest_s = time.monotonic() + CLUSTER.without_workers_s
         while not over.wait(CLUSTER.looks_every_s):
-            with suppress(*_OUT_OF_REACH):
+            with suppress(Exception):  # a client without its scheduler has errors of any kind
                 if client.scheduler_info(n_workers=1)["workers"]:
                     latest_s = time.monotonic() + CLUSTER.without_workers_s
                 elif time.monotonic() > latest_s:

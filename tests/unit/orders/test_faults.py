@@ -139,8 +139,9 @@ def test_the_connection_to_the_scheduler_breaks_and_comes_back(inputs, here, tmp
     assert [text for text in warnings if "lost" not in text and "gone" not in text] == []
 
 
-def test_the_connection_to_the_scheduler_breaks_for_good(inputs, here, tmp_path):
+def test_the_connection_to_the_scheduler_breaks_for_good(inputs, here, tmp_path, capfd):
     made, warnings = on_a_faulty_link(tmp_path, inputs, lambda link: (link.cut, lambda: None))
 
     assert made == here
     assert warnings
+    assert "Traceback" not in capfd.readouterr().err
