@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.cell_table import key_at, place_of
+
 EMPTY = -(1 << 62)
 """Free entry of the table."""
 
@@ -27,12 +29,8 @@ def add_voxels(
     mask = len(table) - 1
     added = 0
     for n in range(len(voxels)):
-        key = (
-            ((voxels[n, 0] + (1 << 20)) << 42)
-            | ((voxels[n, 1] + (1 << 20)) << 21)
-            | (voxels[n, 2] + (1 << 20))
-        )
-        place = ((key * 0x9E3779B97F4A7C1) ^ (key >> 29)) & mask
+        key = key_at(voxels[n, 0], voxels[n, 1], voxels[n, 2])
+        place = place_of(key, mask)
         while table[place] != EMPTY and table[place] != key:
             place = (place + 1) & mask
         fresh[n] = table[place] == EMPTY

@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.cell_table import place_of
 from recon4.kernels.eigen import eigen_sym3
 from recon4.kernels.lanes import add_outer, add_row, add_scaled
 from recon4.kernels.plane_tables import CUBE, EMPTY, STATE, SUMS
@@ -47,8 +48,7 @@ def _slot(keys: NDArray[np.int64], key: np.int64) -> np.uint64:
     Of an unsigned index Numba does not ask whether it counts from the end.
     """
     mask = np.uint64(len(keys) - 1)
-    h = np.uint64(key) * np.uint64(0x9E3779B97F4A7C15)
-    slot = (h >> np.uint64(20)) & mask
+    slot = np.uint64(place_of(key, np.int64(mask)))
     while keys[slot] != key and keys[slot] != EMPTY:
         slot = (slot + np.uint64(1)) & mask
     return slot
