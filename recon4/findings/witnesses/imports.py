@@ -15,7 +15,6 @@ from recon4.model.import_notes import GYRO_UNIT_ASSUMED, ImportNotes, import_not
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.unused_data import unused_parts
 
-
 _CLOCKS_SET = (FindingKind.CLOCK_BACK, FindingKind.CLOCK_JUMP)
 """Repairs that show as an error of the clock of the IMU where they are wrong, but for fixes."""
 
