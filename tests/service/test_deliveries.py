@@ -43,9 +43,20 @@ def part(server):
 
 
 @pytest.fixture(scope="module")
-def made(server, part):
+def asked(part):
     chosen = {"files": ["map.xyz", "map.laz"], "exports": [part["id"]], "language": "de"}
-    return finished(server, delivery(**chosen, license="CC BY 4.0"))
+    return delivery(**chosen, license="CC BY 4.0")
+
+
+@pytest.fixture(scope="module")
+def made(server, asked):
+    return finished(server, asked)
+
+
+@pytest.fixture(scope="module")
+def again(server, asked, made):
+    """Of the same request."""
+    return finished(server, asked)
 
 
 def test_a_delivery_has_what_was_chosen_and_is_signed_for_any_computer(server, made, part):
@@ -68,32 +79,33 @@ def test_a_delivery_has_what_was_chosen_and_is_signed_for_any_computer(server, m
     assert checked["signer"].startswith("this server, key ") and checked["doubt"] == ""
 
 
-def test_a_delivery_is_made_again_because_people_may_have_added_notes(server, made):
-    asked = {"files": ["map.ply"]}
-    first, again = (finished(server, delivery(**asked)) for _ in range(2))
-
-    assert first["id"] != again["id"]
+def test_a_delivery_is_made_again_because_people_may_have_added_notes(made, again):
+    assert again["state"] == "succeeded" and again["id"] != made["id"]
 
 
-def test_the_altered_file_of_a_delivery_is_named(server):
-    made = finished(server, delivery(files=["map.ply"]))
-    path = server.root / ".recon4/jobs" / made["id"] / "made/office-delivery.zip"
+def test_the_altered_file_of_a_delivery_is_named(server, again):
+    path = server.root / ".recon4/jobs" / again["id"] / "made/office-delivery.zip"
     with zipfile.ZipFile(path) as packed:
         place = packed.getinfo("report.pdf").header_offset + 200
     data = bytearray(path.read_bytes())
     data[place] ^= 1
     path.write_bytes(data)
 
-    found = server.get(f"{BASE}/{made['id']}/check").json()
+    found = server.get(f"{BASE}/{again['id']}/check").json()
 
-    assert found["altered"] == ["report.pdf"] and "map.ply" in found["intact"]
+    assert found["altered"] == ["report.pdf"] and "map.laz" in found["intact"]
+
+
+@pytest.fixture(scope="module")
+def exported(server):
+    """Its file is altered, then removed."""
+    return finished(server, {"file": "map.pcd", "options": {"thin_m": 0.3}})
 
 
 @pytest.mark.parametrize("how", ["altered", "removed"])
-def test_an_exported_file_that_changed_since_it_was_chosen_is_refused_in_words(server, how):
-    exported = finished(
-        server, {"file": "map.pcd", "options": {"thin_m": {"altered": 0.3, "removed": 0.4}[how]}}
-    )
+def test_an_exported_file_that_changed_since_it_was_chosen_is_refused_in_words(
+    server, exported, how
+):
     file = server.root / ".recon4/jobs" / exported["id"] / "made/office-map.pcd"
     if how == "altered":
         data = bytearray(file.read_bytes())
