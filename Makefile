@@ -25,6 +25,7 @@ TOOLS := .venv-tools
 # recon4 itself fetches nothing.
 LOCKED := -m pip install -q --no-deps --require-hashes -r
 OURSELVES := -m pip install -q --no-deps --no-build-isolation -e .
+FOR_USERS := demo site sbom audit lock clean web
 COMPILE := $(TOOLS)/bin/uv pip compile -q --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-annotate --no-header -c constraints.txt
 PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
@@ -89,7 +90,7 @@ web:
 	.ci/web
 
 # Else processes that tests run side by side each compile them.
-kernels: $(VENV)/installed-dev
+kernels: $(VENV)/installed-run
 	@$(BIN)/recon4 compile
 
 # What pip would do while nothing else can run yet; a confined process cannot keep what it compiles.
@@ -159,22 +160,17 @@ $(VENV)/bin/python:
 	.ci/apt run
 	$(PYTHON) -m venv $(VENV)
 
-# One environment takes one installation at a time. That of developers holds all of the other one.
-ifeq ($(filter-out demo site sbom audit lock clean web,$(MAKECMDGOALS)),)
+# Goals for developers leave it to `bytecode` to compile what is installed.
 $(VENV)/installed-run: $(VENV)/bin/python pyproject.toml requirements/run.lock
-	$(BIN)/python $(LOCKED) requirements/run.lock
+	$(BIN)/python $(LOCKED) requirements/run.lock $(if $(filter-out $(FOR_USERS),$(MAKECMDGOALS)),--no-compile)
 	$(BIN)/python $(OURSELVES)
 	@touch $@
-else
-$(VENV)/installed-run: $(VENV)/installed-dev
-	@touch $@
-endif
 
-$(VENV)/installed-dev: $(VENV)/bin/python pyproject.toml requirements/dev.lock
+# The same versions and others beside them: kernels and site are made meanwhile.
+$(VENV)/installed-dev: $(VENV)/installed-run requirements/dev.lock
 	.ci/apt run test
 	$(BIN)/python $(LOCKED) requirements/dev.lock --no-compile
-	$(BIN)/python $(OURSELVES)
-	@touch $@ $(VENV)/installed-run
+	@touch $@
 
 $(TOOLS)/installed: requirements/tools.lock
 	test -x $(TOOLS)/bin/python || $(PYTHON) -m venv $(TOOLS)

@@ -140,12 +140,19 @@ def planned_installs(tmp_path, *targets):
     return [line for line in planned.splitlines() if "pip install" in line]
 
 
-@pytest.mark.parametrize("targets", [("demo", "sbom"), ("unit", "e2e"), ("demo", "types", "site")])
-def test_make_never_installs_into_one_environment_twice(targets, tmp_path):
-    """``-j`` would run them at the same time, and the second takes away what the first wrote."""
+@pytest.mark.parametrize(
+    ("targets", "locks"),
+    [
+        (("demo", "sbom"), ["run"]),
+        (("types", "kernels"), ["run", "dev"]),
+        (("types", "demo", "site"), ["run", "dev"]),
+    ],
+)
+def test_make_installs_one_lock_after_the_other(targets, locks, tmp_path):
+    """``-j`` would run them side by side if the second did not need the first."""
     installs = [line for line in planned_installs(tmp_path, *targets) if "/venv/" in line]
 
-    assert len([line for line in installs if "requirements/" in line]) == 1
+    assert re.findall(r"requirements/(\w+)\.lock", "\n".join(installs)) == locks
     assert len([line for line in installs if line.endswith("-e .")]) == 1
 
 
