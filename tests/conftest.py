@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 from collections.abc import Callable, Generator, Iterator
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
+from unittest.mock import MagicMock
 
 import pytest
 from hypothesis import settings
@@ -41,16 +44,25 @@ class HasFileno(Protocol):
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Import no file without a test that is asked for: all of them take ten seconds."""
+    """Import no file, nor a conftest, without a test that is asked for: all take ten seconds."""
     asked = config.option.markexpr
-    if not asked or collection_path.suffix != ".py":
+    if not asked:
         return None
-    text = collection_path.read_text("utf-8")
+    one = collection_path.suffix == ".py"
+    files = iter((collection_path,) if one else collection_path.rglob("test_*.py"))
+    first = next(files, None)
+    return (first is not None and all(_left_out(file, asked) for file in (first, *files))) or None
+
+
+@cache
+def _left_out(path: Path, asked: str) -> bool:
+    """Whether no test of a file is asked for; False if it is not sure."""
+    text = path.read_text("utf-8")
     for mark in ("e2e", "study"):
-        whole = f"pytestmark = pytest.mark.{mark}\n" in text
+        whole = re.search(rf"^pytestmark = .*pytest\.mark\.{mark}\b", text, re.MULTILINE)
         if whole if f"not {mark}" in asked else mark in asked and mark[:4] not in text:
             return True
-    return None
+    return False
 
 
 def pytest_configure() -> None:
@@ -170,26 +182,31 @@ def short_project(short_recording, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def undrawn() -> Iterator[Callable[..., str]]:
+def undrawn() -> Iterator[tuple[Callable[..., None], Callable[..., str]]]:
     """Charts are empty in reports that this process writes: they take a third of a short run.
 
     Programs that tests start draw them, and files of tests that ask for `drawn`.
     """
     from recon4.report.figures import Chart
 
-    draw = Chart.svg
+    def without_axes(chart: Chart, *_: object, **__: object) -> None:
+        chart.axes = MagicMock(**{"get_ylim.return_value": (0.0, 1.0)})
+
+    real = Chart.__init__, Chart.svg
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Chart, "__init__", without_axes)
         patch.setattr(Chart, "svg", lambda *_, **__: '<svg class="chart"></svg>')
-        yield draw
+        yield real
 
 
 @pytest.fixture(scope="module")
-def drawn(undrawn: Callable[..., str]) -> Iterator[None]:
+def drawn(undrawn: tuple[Callable[..., None], Callable[..., str]]) -> Iterator[None]:
     """Charts are drawn from here to the end of a file."""
     from recon4.report.figures import Chart
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Chart, "svg", undrawn)
+        for name, real in zip(("__init__", "svg"), undrawn, strict=True):
+            patch.setattr(Chart, name, real)
         yield
 
 

@@ -5,7 +5,6 @@ import sqlite3
 from contextlib import closing
 
 import numpy as np
-import pyogrio
 import pytest
 
 from recon4.delivery.exports import export_file
@@ -52,6 +51,8 @@ def _write(tmp_path, place, *places, kind="POINT"):
 
 def _read(path, layer):
     """Name of the system, kind of geometry, WKB and columns, as GDAL reads them."""
+    import pyogrio
+
     about, _, wkb, columns = pyogrio.raw.read(path, layer=layer)
     return about, wkb, dict(zip(about["fields"].tolist(), columns, strict=True))
 
@@ -94,6 +95,8 @@ def _export(root, tmp_path, **options):
 
 
 def test_gdal_reads_every_layer_of_a_map_in_a_site_grid(project, tmp_path):
+    import pyogrio
+
     path, made = _export(project, tmp_path)
     shift = np.array([1000.0, 2000.0, 30.0])
 

@@ -4,7 +4,6 @@ import csv
 import json
 
 import numpy as np
-import pyogrio
 import pytest
 from typer.testing import CliRunner
 
@@ -98,6 +97,8 @@ def test_of_a_georeferenced_map_lines_are_in_longitude_and_latitude(georeference
 
 
 def test_a_gis_takes_a_map_without_a_place_for_local_coordinates(project, tmp_path):
+    import pyogrio
+
     path = tmp_path / "findings.geojson"
     export_findings(project, path)
 

@@ -7,7 +7,6 @@ from datetime import date
 
 import laspy
 import numpy as np
-import open3d
 import pyproj
 import pytest
 from msgspec import structs
@@ -169,6 +168,8 @@ def test_ply_holds_every_point_with_all_its_fields(folder, tmp_path):
 
 
 def test_pcd_holds_every_point_relative_to_its_offset(folder, tmp_path):
+    import open3d
+
     tiles = TileSet.open(folder)
     assert export_pcd(folder, tmp_path / "map.pcd") == len(tiles)
 

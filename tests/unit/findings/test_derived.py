@@ -44,9 +44,9 @@ def calls():
 def made(node, path):
     """The kind of a record that a reader makes itself, such as `RecordingInfo.walk`."""
     if (
-        isinstance(node, ast.Call)
-        and ast.unparse(node.func) == "Derived"
-        and path.parent.name in MADE_IN
+        path.parent.name in MADE_IN
+        and isinstance(node, ast.Call)
+        and getattr(node.func, "id", "") == "Derived"
     ):
         return next(one.value for one in node.keywords if one.arg == "kind")
     return None

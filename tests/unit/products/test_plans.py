@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import ezdxf
 import numpy as np
-import pyogrio
 import pytest
 from pyproj import CRS
 
@@ -264,6 +263,8 @@ def test_geojson_says_what_each_line_is(rooms, tmp_path):
     ids=["local", "wkt", "heights"],
 )
 def test_a_gis_knows_the_system_of_a_geojson(frame, starts, tmp_path):
+    import pyogrio
+
     path = tmp_path / "plan.geojson"
     line = DrawnShape(DrawingLayer("S0_WALLS", 7), np.eye(3))
     write_drawing([line], path, DrawingNotes(frame=frame))

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import laspy
 import numpy as np
-import open3d
 import pytest
 from PIL import Image
 
@@ -63,6 +62,8 @@ def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
 
 @pytest.mark.parametrize("why", ["ü" * 3000, "clear. " * 400, "😀" * 200])
 def test_a_ply_whose_approval_has_a_long_reason_is_opened_by_other_programs(tmp_path, why):
+    import open3d
+
     points = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(np.eye(3)))
     open3d.io.write_point_cloud(str(tmp_path / "map.ply"), points)
 
