@@ -54,7 +54,7 @@ _TEXTS = re.compile(r'<html [^>]*data-texts="([a-z -]+)"')
 """Files of texts of a page; the others have the shared ones, around content in English."""
 _TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
 _SCRIPT = re.compile(r'<script type="module" src="/web/([^"]+)"')
-_PRELOAD = '<link rel="modulepreload" href="{}" />\n    '
+_PRELOAD = '<link rel="modulepreload" href="/web/{}" />\n    '
 _IMPORT = re.compile(r'''(?:^|;)(?:import|export)\b[^;"]*"(\.[^"]+)"''', re.MULTILINE)
 """What a module loads before it runs."""
 LANGUAGE_COOKIE = "recon4_language"
@@ -134,27 +134,33 @@ def html_of(file: str, prefix: str = "") -> str:
     """
     head = (WEB / "shared" / "head.html").read_text("utf-8")
     page = _PAGE.sub("", _html(file)).replace(HEAD_HERE, head)
-    scripts = tuple(_SCRIPT.findall(page))
-    page = _SCRIPT.sub(lambda found: _preloads(scripts) + found[0], page, count=1)
+    named = set(_SCRIPT.findall(page))
+
+    def preloaded(script: re.Match[str]) -> str:
+        fresh = [module for module in _imported(script[1]) if module not in named]
+        named.update(fresh)
+        return "".join(_PRELOAD.format(module) for module in fresh) + script[0]
+
+    page = _SCRIPT.sub(preloaded, page)
     return _ADDRESS.sub(rf"\g<1>{prefix}", page)
 
 
 @cache
-def _preloads(scripts: tuple[str, ...]) -> str:
-    """Links to all that scripts import, so that a browser requests it at once.
+def _imported(script: str) -> tuple[str, ...]:
+    """A script and all that it imports at any depth, relative to `web/`.
 
-    Else each level of imports is requested after the one before has come.
+    A page names them, so that a browser requests them at once: else each level of imports is
+    requested after the one before has come.
     """
     found: dict[Path, None] = {}
-    left = [WEB / script for script in reversed(scripts)]
+    left = [WEB / script]
     while left:
         module = left.pop()
         if module not in found and module.is_file():
             found[module] = None
             names = _IMPORT.findall(module.read_text("utf-8"))
             left += [Path(normpath(module.parent / name)) for name in names]
-    paths = [module.relative_to(WEB).as_posix() for module in found]
-    return "".join(_PRELOAD.format(f"/web/{path}") for path in paths if path not in scripts)
+    return tuple(module.relative_to(WEB).as_posix() for module in found)
 
 
 def web_key() -> str:

@@ -26,11 +26,16 @@ AGAIN = 5
 OURS = "window.recon4Map?.run.canvas?.drawn"
 FIRST = """(function look() {
   const drawn = window.recon4Map?.run.canvas?.drawn;
-  if (drawn?.points > 10000) window.issued ??= drawn.frames;
-  if (drawn?.frames > window.issued) window.firstPoints = performance.now();
-  else requestAnimationFrame(look);
+  if (!drawn) return requestAnimationFrame(look);
+  let frames = drawn.frames;
+  const set = (value) => {
+    if (value > frames && drawn.points > 10000) window.firstPoints ??= performance.now();
+    frames = value;
+  };
+  Object.defineProperty(drawn, "frames", { get: () => frames, set });
 })()"""
-"""Notes when the first image with points is complete, since the page was asked for [ms]."""
+"""Notes when the first image with points is complete, since the page was asked for [ms]: in the
+frame that finds it so, as that frame may have the next image drawn."""
 VISER = "window.__viserTestpoints?.rendererInfo?.render"
 
 

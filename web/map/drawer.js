@@ -1,7 +1,14 @@
 // What draws the map. Without a graphics card most of the time until the first image goes to
 // compiling shaders, so it begins while the other scripts of the page still load.
 
-import { drawingTarget, pointMaterial, rendererOf, screenMaterial, sheetOf } from "./materials.js";
+import {
+  drawingTarget,
+  groundOf,
+  pointMaterial,
+  rendererOf,
+  screenMaterial,
+  sheetOf,
+} from "./materials.js";
 import {
   BufferAttribute,
   BufferGeometry,
@@ -36,13 +43,17 @@ function onePoint() {
   return geometry;
 }
 
-/** Draws a point and shades it, where nobody sees it: shaders are compiled when they first draw. */
+/**
+ * Draws a point where nobody sees it, and shades its image, which is the ground: a shader is
+ * compiled when it first draws, and again for targets of another kind.
+ */
 function compile(/** @type {ReturnType<typeof begin>} */ { renderer, material, screen }) {
-  const [image, shaded] = [drawingTarget(), drawingTarget()];
+  const image = drawingTarget();
+  const dark = matchMedia("(prefers-color-scheme: dark)");
   const camera = new PerspectiveCamera();
   const draw = (
     /** @type {import("../shared/vendor/three/three.module.min.js").Object3D} */ object,
-    /** @type {typeof image} */ into,
+    /** @type {typeof image | null} */ into,
   ) => {
     object.frustumCulled = false;
     renderer.setRenderTarget(into);
@@ -51,8 +62,8 @@ function compile(/** @type {ReturnType<typeof begin>} */ { renderer, material, s
   draw(new Points(onePoint(), material), image);
   screen.uniforms.colors.value = image.texture;
   screen.uniforms.depths.value = image.depthTexture;
-  draw(sheetOf(screen), shaded);
-  renderer.setRenderTarget(null);
+  screen.uniforms.ground.value.set(...groundOf(dark.matches));
+  draw(sheetOf(screen), null);
   renderer.getContext().flush();
 }
 

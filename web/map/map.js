@@ -1,14 +1,7 @@
 // The page of the map: the delivered points in 3-D. The address of the page is the state.
 
 import { idHere, leaveMap } from "../shared/address.js";
-import {
-  isGuest,
-  pointReader,
-  readCurrentUser,
-  readMapIndex,
-  readMapWalk,
-  readProject,
-} from "../shared/api.js";
+import { isGuest, readCurrentUser, readMapWalk, readProject } from "../shared/api.js";
 import { attempt, byId, only, render, say, showError, svg } from "../shared/dom.js";
 import { decimal, t } from "../shared/texts.js";
 import { factsIn } from "../shared/verdict.js";
@@ -25,7 +18,7 @@ import { handlesIn } from "./handles.js";
 import { listenToKeys } from "./keys.js";
 import { markingOf } from "./marking.js";
 import { drawHelp, drawStatus } from "./caption.js";
-import { MapCanvas } from "./map_canvas.js";
+import { dark, drawingOf, hideOpening, opened, run, storedOf } from "./opening.js";
 import { overlay } from "./overlay.js";
 import * as shown from "./page.js";
 import { notesOf } from "./notes.js";
@@ -61,12 +54,9 @@ import { askVolumes, volumeOf } from "./volumes.js";
 
 const { page } = shown;
 const id = idHere();
-const dark = matchMedia("(prefers-color-scheme: dark)");
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const TURN_MS = 450;
 const ADDRESS_MS = 250;
-/** What runs: the canvas, the timer of the address, the turn of the camera. */
-const run = { canvas: /** @type {MapCanvas | null} */ (null), address: 0, turn: 0 };
 const place = () => byId("map", HTMLCanvasElement);
 const screen = () => run.canvas?.screen ?? { width: 1, height: 1 };
 const seen = () => seenOn(screen());
@@ -79,7 +69,7 @@ function change(/** @type {Partial<MapState>} */ next) {
   if (next.camera) say(byId("message"), ""); // what was refused is asked again
   if (next.cutCeiling && page.index) page.state.clip.heights = shown.usualHeights(page.index);
   if (run.canvas && shown.colorShown() !== color) {
-    run.canvas.tiles.color(storedOf(shown.colorShown())).catch(showProblem);
+    run.canvas.tiles.color(storedOf()).catch(showProblem);
     compare.color();
   }
   draw();
@@ -89,11 +79,6 @@ function change(/** @type {Partial<MapState>} */ next) {
     ADDRESS_MS,
   );
 }
-
-const storedOf = (/** @type {string} */ color) =>
-  /** @type {import("./tiles.js").Stored | ""} */ (
-    page.index?.columns.find(({ name }) => name === color)?.name ?? ""
-  );
 
 const move = (/** @type {Camera} */ next) => {
   cancelAnimationFrame(run.turn);
@@ -118,21 +103,11 @@ function flyTo(/** @type {Camera} */ goal) {
 // -- what is drawn
 
 function draw() {
-  const { index, state } = page;
-  if (!index || !run.canvas) return;
+  if (!run.canvas) return;
   document.body.classList.toggle("with-tool", page.tool !== "");
   document.body.classList.toggle("with-panel", page.panel);
   drawBar(byId("bar"), act); // the map is fitted below it
-  run.canvas.drawing = {
-    camera: camera(),
-    color: shown.colorShown(),
-    ends: shown.endsShown().ends,
-    planes: shown.planes(),
-    depth: state.depth,
-    size: state.size,
-    dark: dark.matches,
-    layers: { walk: state.layers.includes("walk"), nodes: state.layers.includes("nodes") },
-  };
+  run.canvas.drawing = drawingOf(camera());
   drawPanel(byId("panel"), act);
   drawProfile(byId("profile"), profile);
   drawDivider(byId("divider"), act);
@@ -170,7 +145,7 @@ function drawOver() {
 function drawCaption() {
   if (!run.canvas) return;
   const { points, rested } = run.canvas.drawn;
-  byId("opening").hidden ||= points > 0 || rested;
+  hideOpening(run.canvas);
   const meters = 100 * pixelM(camera(), screen());
   const length = meters < 1 ? `${decimal(100 * meters, 1)} cm` : `${decimal(meters, 2)} m`;
   const scale = `100 px = ${length}`;
@@ -202,7 +177,7 @@ const compare = compareOf({
   change,
   draw,
   canvas: () => run.canvas,
-  values: () => storedOf(shown.colorShown()),
+  values: () => storedOf(),
 });
 const profile = profileOf({ draw, dark: () => dark.matches, change: widened });
 
@@ -356,29 +331,28 @@ async function begin() {
   document.title = t("title-of", { project: project.name });
   const stages = project.stages.map(({ stage: name }) => name);
   if (!stages.includes("map")) return withoutPoints(stages);
-  const index = (page.index = await readMapIndex(id));
-  if (page.state.cutCeiling) page.state.clip.heights = shown.usualHeights(index);
-  run.canvas = new MapCanvas(place(), index, pointReader(id, index));
-  run.canvas.onDrawn = drawCaption;
-  run.canvas.tiles.onProblem = showProblem;
+  const { canvas, sampled } = await opened;
+  canvas.onDrawn = drawCaption;
+  canvas.tiles.onProblem = showProblem;
   new ResizeObserver(draw).observe(place());
   listen();
   if (takeNews()) page.reading = t("new-map-shown");
   if (!page.guest) followJobs(byId("news"));
   draw();
+  canvas.refine();
   addEventListener("pagehide", () => leaveMap(id, format(page.state)));
   act.toMap();
-  await run.canvas.tiles.readSample(storedOf(shown.colorShown()));
+  await sampled;
   const lists = page.guest
     ? []
     : [notes, saved, compare].map((one) => one.read().catch(showProblem));
   const [walk] = await Promise.all([readMapWalk(id), ...lists]);
   page.walk = walk;
-  run.canvas.layers(walk.positions_m, walk.nodes_m);
+  canvas.layers(walk.positions_m, walk.nodes_m);
   if (page.state.mark && !page.state.camera) marking.mark(page.state.mark);
   draw();
 }
 
 attempt(byId("message"), begin);
-/** For tests: what is shown and drawn. */
-Object.assign(window, { recon4Map: { page, run, camera, move } });
+/** For tests: the camera. */
+Object.assign(/** @type {any} */ (window).recon4Map, { camera, move });

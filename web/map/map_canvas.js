@@ -4,20 +4,20 @@ import { focalPx } from "./camera.js";
 import { choose } from "./lod.js";
 import { Pace } from "./pace.js";
 import {
-  BACKGROUNDS,
   MOST_PLANES,
   boundsOf,
   define,
   drawingTarget,
   giveColors,
   giveLook,
+  groundOf,
   sheetOf,
 } from "./materials.js";
 import { drawerOf } from "./drawer.js";
 import { placeCamera } from "./projection.js";
 import { layersOf } from "./walk_layers.js";
 import { MapTiles } from "./tiles.js";
-import { Color, PerspectiveCamera, Scene } from "../shared/vendor/three/three.module.min.js";
+import { PerspectiveCamera, Scene } from "../shared/vendor/three/three.module.min.js";
 
 /**
  * @import {Camera, Screen} from "./camera.js"
@@ -66,6 +66,7 @@ export class MapCanvas {
   /** @type {{sync: WebGLSync, began: number, points: number, moving: boolean} | null} */
   #pending = null;
   #asked = false;
+  #refines = false;
   /** @type {Partial<ReturnType<typeof layersOf>>} */
   #layers = {};
   /** @type {CorePoints | null} */
@@ -151,6 +152,12 @@ export class MapCanvas {
     this.#news();
   }
 
+  /** From now on all points are drawn at rest: an image that holds up what is done meanwhile. */
+  refine() {
+    this.#refines = true;
+    this.#ask();
+  }
+
   /** Has the image drawn again: points have arrived, or its size has changed. */
   #news() {
     this.#finished = false;
@@ -177,15 +184,13 @@ export class MapCanvas {
 
   #frame() {
     const drawing = this.#drawing;
-    if (!drawing) return;
-    const ground = BACKGROUNDS[drawing.dark ? "dark" : "light"];
-    if (!this.tiles.begun) return this.#clear(null, new Color(...ground)); // no shaders yet
+    if (!drawing || !this.tiles.begun) return;
     if (!this.#isReady()) return this.#ask();
     const moving = performance.now() - this.#moved < REST_MS;
     const first = this.#hadPoints !== this.tiles.total > 0; // few at once, before many
     if (moving || first) this.#drawCoarse(drawing);
-    else if (!this.#finished) this.#refine(drawing);
-    if (moving || !this.#finished) this.#ask();
+    else if (!this.#finished && this.#refines) this.#refine(drawing);
+    if (moving || (!this.#finished && this.#refines) || this.#pending) this.#ask();
     this.onDrawn();
   }
 
@@ -318,17 +323,9 @@ export class MapCanvas {
     else uniforms.nearness.value.set(1 / near, 1 / far - 1 / near);
     uniforms.scale.value = drawing.camera.parallel ? 1 / drawing.camera.distance : 0;
     uniforms.strength.value = drawing.depth ? 25 : 0;
-    uniforms.ground.value.set(...BACKGROUNDS[drawing.dark ? "dark" : "light"]);
-    this.#clear(into, 0);
-  }
-
-  /**
-   * @param {WebGLRenderTarget | null} into null = the canvas
-   * @param {number | Color} color
-   */
-  #clear(into, color) {
+    uniforms.ground.value.set(...groundOf(drawing.dark));
     this.#renderer.setRenderTarget(into);
-    this.#renderer.setClearColor(color, 1);
+    this.#renderer.setClearColor(0, 1);
     this.#renderer.clear();
   }
 

@@ -26,12 +26,15 @@ import { t } from "../shared/texts.js";
  */
 
 export const MOST_PLANES = 12;
-export const BACKGROUNDS = { dark: [0.063, 0.078, 0.094], light: [0.914, 0.93, 0.941] };
+const GROUNDS = { dark: [0.063, 0.078, 0.094], light: [0.914, 0.93, 0.941] };
 const PLAIN = { dark: [209, 214, 219], light: [189, 194, 201] };
 const CLASS_CODES = 68;
 const RAMP = 17;
 const [PLAIN_AT, COLORS] = [RAMP + CLASS_CODES, RAMP + CLASS_CODES + 2]; // then unknown values
 const CUBE_TILES = 64; // most tiles of a cube
+
+/** The color where nothing is. */
+export const groundOf = (/** @type {boolean} */ dark) => GROUNDS[dark ? "dark" : "light"];
 
 /** The box of all points: what is drawn lies in it. */
 export function boundsOf(/** @type {Array<Pick<MapNode, "low_m" | "high_m">>} */ boxes) {

@@ -9,7 +9,7 @@ import { VIEWS } from "./views.js";
 /** @import {Camera, Screen, View} from "./camera.js" */
 
 const PANEL_PX = 320;
-const CAPTION_PX = 44;
+const CAPTION_PX = 31; // before it is drawn
 
 /** The image, and what of it no bar, panel or caption covers. @returns {View} */
 export function seenOn(/** @type {Screen} */ screen) {
