@@ -13,6 +13,7 @@ from recon4.cli.tables import parse_choice
 from recon4.cli.terminal import write, write_json
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
+from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density
@@ -103,10 +104,10 @@ def evaluate(  # noqa: PLR0913 - options of a command
     if truth is not None and truth.suffix == RELATIONS_SUFFIX:
         compared = _relation_errors(result, truth)
         record["relations"] = compared
-        texts.append(relations_text(compared))
+        texts.append(relations_text(compared, of_terminal()))
     elif truth is not None:
         found = evaluate_result(result, truth, model=model, unit=unit, true_poses=floor)
-        record, texts = found.to_json(), [found.table()]
+        record, texts = found.to_json(), [found.table(of_terminal())]
         if report is not None:
             _write_report(result, found, report)
     if markers is not None:
@@ -118,7 +119,7 @@ def evaluate(  # noqa: PLR0913 - options of a command
     if patch:
         density = _patch_density(result, patch)
         record["patch"] = density
-        texts.append(density_text(density))
+        texts.append(density_text(density, of_terminal()))
     if as_json:
         write_json(record)
     else:

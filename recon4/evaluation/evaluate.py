@@ -19,6 +19,7 @@ from recon4.evaluation.text import evaluation_text
 from recon4.evaluation.trajectories import trajectory_with_hints
 from recon4.evaluation.tuning import EVALUATION, SEGMENT_DRIFT
 from recon4.geometry.se3 import SE3, Array
+from recon4.locales.languages import ENGLISH
 from recon4.model.frames import Frames
 from recon4.model.plain import finite_or_none
 from recon4.model.trajectory import Trajectory
@@ -73,9 +74,9 @@ class Evaluation:
     floor: ErrorFloor | None = None
     quality: MapQuality | None = None
 
-    def table(self) -> str:
+    def table(self, language: str = ENGLISH) -> str:
         """The figures as text tables for a terminal."""
-        return evaluation_text(self)
+        return evaluation_text(self, language)
 
     def to_json(self) -> dict[str, object]:
         """Plain JSON values; NaN becomes null, arrays with one row per pose are left out."""

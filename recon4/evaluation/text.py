@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from math import degrees
 from typing import TYPE_CHECKING
 
@@ -12,174 +14,193 @@ from recon4.evaluation.kitti import Drift
 from recon4.evaluation.relations import RelationErrors
 from recon4.evaluation.slices import RelativeError, SliceError
 from recon4.evaluation.table import number, percentage, text_table
+from recon4.locales.coded import CodedText
+from recon4.locales.languages import ENGLISH
+from recon4.locales.numbers import localized
+from recon4.locales.texts import Shown
 
 if TYPE_CHECKING:
-    from recon4.evaluation.evaluate import Evaluation
+    from recon4.evaluation.evaluate import Evaluation, MapQuality
 
 _CM = 100.0
 _DEG = degrees(1.0)
 
 
-def evaluation_text(found: Evaluation) -> str:
+@dataclass(frozen=True, slots=True)
+class _Words:
+    """Texts and numbers of a language."""
+
+    language: str
+
+    def __call__(self, code: str, /, **values: Shown) -> str:
+        return CodedText(f"evaluated-{code}", **values).said(self.language)
+
+    def row(self, codes: str) -> tuple[str, ...]:
+        """Several texts, of codes with spaces between them."""
+        return tuple(self(code) for code in codes.split())
+
+    def number(self, value: float, digits: int = 2, scale: float = 1.0) -> str:
+        """A number for a cell."""
+        return localized(number(value, digits, scale), self.language)
+
+    def percentage(self, value: float) -> str:
+        """A ratio 0..1 as percent."""
+        return localized(percentage(value), self.language)
+
+    def hints(self, hints: Iterable[str]) -> Iterator[str]:
+        """What is strange about the files."""
+        return (self("warning", hint=hint) for hint in hints)
+
+
+def evaluation_text(found: Evaluation, language: str = ENGLISH) -> str:
     """All tables of an evaluation."""
-    head = (
-        f"{found.estimate} against {found.truth}: {found.poses} poses "
-        f"({percentage(found.coverage_ratio)} covered by ground truth), "
-        f"{found.duration_s:.1f} s, {found.path_length_m:.1f} m"
+    say = _Words(language)
+    head = say(
+        "head",
+        estimate=found.estimate,
+        truth=found.truth,
+        poses=found.poses,
+        covered=say.percentage(found.coverage_ratio),
+        duration_s=found.duration_s,
+        length_m=found.path_length_m,
     )
-    hints = [f"Warning: {hint}" for hint in found.hints]
-    parts = [head, *hints, ate_text(found), *(drift_text(drift) for drift in found.drift)]
+    drifts = (_drift_text(drift, say) for drift in found.drift)
+    parts = [head, *say.hints(found.hints), _ate_text(found, say), *drifts]
     if found.relative is not None:
-        parts.append(relative_text(found.relative))
+        parts.append(_relative_text(found.relative, say))
     if found.relative is not None and found.measured is not None:
-        parts.append(surfaces_text(found.relative, found.measured))
+        parts.append(_surfaces_text(found.relative, found.measured, say))
     if found.floor is not None:
-        parts.append(floor_text(found.floor))
+        parts.append(_floor_text(found.floor, say))
     if found.quality is not None:
-        density, sharp = found.quality.density, found.quality.sharpness
-        parts.append(
-            f"Density: median {number(density.median_per_cm2)} points/cm² "
-            f"(10 % of places below {number(density.low_per_cm2)}, "
-            f"10 % above {number(density.high_per_cm2)}; radius {density.radius_m:g} m)\n"
-            f"Sharpness: mean map entropy {number(sharp.entropy, 3)} nats, "
-            f"plane thickness {number(sharp.plane_thickness_m, 2, _CM)} cm "
-            f"(radius {sharp.radius_m:g} m, voxel {sharp.voxel_m:g} m, {sharp.places} places)"
-        )
+        parts.append(_quality_text(found.quality, say))
     return "\n\n".join(parts)
 
 
-def relations_text(found: RelationErrors) -> str:
-    """Errors against reference relations."""
-    rows = [
-        (
-            "translation [cm]",
-            *(
-                number(value, 2, _CM)
-                for value in (
-                    found.translation_mean_m,
-                    found.translation_sd_m,
-                    found.translation_largest_m,
-                )
-            ),
+def _quality_text(quality: MapQuality, say: _Words) -> str:
+    density, sharp = quality.density, quality.sharpness
+    lines = (
+        say(
+            "density",
+            median=say.number(density.median_per_cm2),
+            low=say.number(density.low_per_cm2),
+            high=say.number(density.high_per_cm2),
+            radius_m=density.radius_m,
         ),
-        (
-            "rotation [°]",
-            *(
-                number(value, 3, _DEG)
-                for value in (
-                    found.rotation_mean_rad,
-                    found.rotation_sd_rad,
-                    found.rotation_largest_rad,
-                )
-            ),
+        say(
+            "sharpness",
+            entropy=say.number(sharp.entropy, 3),
+            thickness_cm=say.number(sharp.plane_thickness_m, 2, _CM),
+            radius_m=sharp.radius_m,
+            voxel_m=sharp.voxel_m,
+            places=sharp.places,
         ),
-    ]
-    head = f"{found.relations} relations compared, {found.outside} outside of the trajectory"
-    head = "\n".join([head, *(f"Warning: {hint}" for hint in found.hints)])
-    return head + "\n" + text_table(("Relative error", "mean", "deviation", "largest"), rows)
-
-
-def ate_text(found: Evaluation) -> str:
-    """Absolute errors under the three alignments, in the form of L Table 2."""
-    rows = []
-    for alignment, error in (
-        ("SVD-aligned", found.aligned),
-        ("first pose", found.first_pose),
-        ("not aligned", found.unaligned),
-    ):
-        rows += _error_rows(alignment, error)
-    table = text_table(("Absolute error", "RMSE", "mean", "median", "min", "max"), rows)
-    if found.aligned.determined:
-        return table
-    return (
-        table
-        + "\n(the positions lie on a line or a point: the rotation of the SVD fit is undetermined)"
     )
+    return "\n".join(lines)
 
 
-def drift_text(drift: Drift) -> str:
+def relations_text(found: RelationErrors, language: str = ENGLISH) -> str:
+    """Errors against reference relations."""
+    say = _Words(language)
+    shifts = (found.translation_mean_m, found.translation_sd_m, found.translation_largest_m)
+    turns = (found.rotation_mean_rad, found.rotation_sd_rad, found.rotation_largest_rad)
+    rows = [
+        (say("translation"), *(say.number(value, 2, _CM) for value in shifts)),
+        (say("rotation"), *(say.number(value, 3, _DEG) for value in turns)),
+    ]
+    head = say("relations", count=found.relations, outside=found.outside)
+    table = text_table(say.row("relative-error mean deviation largest"), rows)
+    return "\n".join([head, *say.hints(found.hints), table])
+
+
+def _ate_text(found: Evaluation, say: _Words) -> str:
+    """Absolute errors under the three alignments, in the form of L Table 2."""
+    errors = {"svd": found.aligned, "first-pose": found.first_pose, "unaligned": found.unaligned}
+    rows = [row for name, error in errors.items() for row in _error_rows(say(name), error, say)]
+    table = text_table(say.row("absolute-error rmse mean median least most"), rows)
+    return table if found.aligned.determined else f"{table}\n{say('undetermined')}"
+
+
+def _drift_text(drift: Drift, say: _Words) -> str:
     """One drift metric, one row per length."""
     if not drift.pieces:
-        return f"Drift, {drift.metric}: the walk is too short"
+        return say("drift-short", metric=drift.metric)
     rows = [
         (
             f"{row.length:g} {drift.unit}",
             str(row.pieces),
-            number(row.translation, 3, 100.0),
-            number(row.rotation_rad_m, 4, _DEG),
+            say.number(row.translation, 3, 100.0),
+            say.number(row.rotation_rad_m, 4, _DEG),
         )
         for row in drift.rows
         if row.pieces
     ]
-    rows.append(
-        (
-            "all",
-            str(drift.pieces),
-            number(drift.translation, 3, 100.0),
-            number(drift.rotation_rad_m, 4, _DEG),
-        )
-    )
-    return text_table((f"Drift, {drift.metric}", "pieces", "%", "deg/m"), rows)
+    means = say.number(drift.translation, 3, 100.0), say.number(drift.rotation_rad_m, 4, _DEG)
+    rows.append((say("all"), str(drift.pieces), *means))
+    return text_table((say("drift", metric=drift.metric), say("pieces"), "%", "deg/m"), rows)
 
 
-def relative_text(error: RelativeError) -> str:
+def _relative_text(error: RelativeError, say: _Words) -> str:
     """e_r in the form of V Table 3.2."""
-    rows = [_slice_row(row) for row in (*error.slices, error.point_weighted)]
-    rows.append(("mean of slices", "", "", number(error.plain_mean_m, 2, _CM), "", ""))
-    far = f"> {error.outlier_m:g} m"
-    header = (f"e_r (aligned: {error.alignment})", "points", far, "mean cm", "< 2 cm", "< 5 cm")
-    return text_table(header, rows)
+    rows = [_slice_row(row, say) for row in error.slices]
+    rows.append((say("points-all"), *_slice_row(error.point_weighted, say)[1:]))
+    rows.append((say("slices-mean"), "", "", say.number(error.plain_mean_m, 2, _CM), "", ""))
+    far = f"> {localized(f'{error.outlier_m:g}', say.language)} m"
+    title = say("relative", alignment=error.alignment)
+    return text_table((title, say("points"), far, *_within(say)), rows)
 
 
-def surfaces_text(delivered: RelativeError, measured: RelativeError) -> str:
+def _surfaces_text(delivered: RelativeError, measured: RelativeError, say: _Words) -> str:
     """e_r of the delivered map beside that of the same points where they were measured."""
-    pairs = (("on fitted surfaces", delivered), ("as measured", measured))
-    rows = [(name, *_slice_row(error.point_weighted)[1:]) for name, error in pairs]
-    return text_table(("Map", "points", "far", "mean cm", "< 2 cm", "< 5 cm"), rows)
+    pairs = (("fitted", delivered), ("measured", measured))
+    rows = [(say(name), *_slice_row(error.point_weighted, say)[1:]) for name, error in pairs]
+    return text_table((*say.row("map points far"), *_within(say)), rows)
 
 
-def floor_text(floor: ErrorFloor) -> str:
+def _floor_text(floor: ErrorFloor, say: _Words) -> str:
     """e_r of estimated and of true poses from the same points."""
-    pairs = (("estimated poses", floor.estimated), ("true poses", floor.true))
-    rows = [(name, *_slice_row(error.point_weighted)[1:]) for name, error in pairs]
-    header = (
-        f"Same points of {floor.frames} frames",
-        "points",
-        "far",
-        "mean cm",
-        "< 2 cm",
-        "< 5 cm",
-    )
-    return text_table(header, rows) + f"\nratio {number(floor.ratio, 3)}"
+    pairs = (("estimated-poses", floor.estimated), ("true-poses", floor.true))
+    rows = [(say(name), *_slice_row(error.point_weighted, say)[1:]) for name, error in pairs]
+    header = (say("same-points", frames=floor.frames), *say.row("points far"), *_within(say))
+    return f"{text_table(header, rows)}\n{say('ratio', ratio=say.number(floor.ratio, 3))}"
 
 
-def density_text(density: Density) -> str:
+def _within(say: _Words) -> tuple[str, ...]:
+    """Titles of the last columns of `_slice_row`."""
+    return (say("mean-cm"), "< 2 cm", "< 5 cm")
+
+
+def density_text(density: Density, language: str = ENGLISH) -> str:
     """Density of a patch."""
-    return (
-        f"Patch: {density.points} points on {density.area_m2:.4f} m², "
-        f"{number(density.points_per_cm2)} points/cm²"
-    )
+    say = _Words(language)
+    per_cm2 = say.number(density.points_per_cm2)
+    area_m2 = say.number(density.area_m2, 4)
+    return say("patch", points=density.points, area_m2=area_m2, per_cm2=per_cm2)
 
 
-def _error_rows(alignment: str, error: AbsoluteError) -> list[tuple[str, ...]]:
+def _error_rows(alignment: str, error: AbsoluteError, say: _Words) -> list[tuple[str, ...]]:
+    parts = {
+        "position": (error.position_m, _CM),
+        "rotation": (error.rotation_rad, _DEG),
+        "yaw": (error.yaw_rad, _DEG),
+    }
     return [
-        (f"{alignment}: position [cm]", *_spread(error.position_m, _CM)),
-        (f"{alignment}: rotation [deg]", *_spread(error.rotation_rad, _DEG)),
-        (f"{alignment}: yaw only [deg]", *_spread(error.yaw_rad, _DEG)),
+        (say(f"error-{name}", alignment=alignment), *_spread(spread, scale, say))
+        for name, (spread, scale) in parts.items()
     ]
 
 
-def _spread(spread: Spread, scale: float) -> tuple[str, ...]:
+def _spread(spread: Spread, scale: float, say: _Words) -> tuple[str, ...]:
     values = (spread.rmse, spread.mean, spread.median, spread.minimum, spread.maximum)
-    return tuple(number(value, 3, scale) for value in values)
+    return tuple(say.number(value, 3, scale) for value in values)
 
 
-def _slice_row(row: SliceError) -> tuple[str, ...]:
+def _slice_row(row: SliceError, say: _Words) -> tuple[str, ...]:
     return (
         row.name,
         str(row.points),
         str(row.outliers),
-        number(row.mean_m, 2, _CM),
-        percentage(row.ratio_within_2cm),
-        percentage(row.ratio_within_5cm),
+        say.number(row.mean_m, 2, _CM),
+        say.percentage(row.ratio_within_2cm),
+        say.percentage(row.ratio_within_5cm),
     )

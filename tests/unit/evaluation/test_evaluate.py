@@ -149,6 +149,9 @@ def test_everything_at_once_with_model_and_map(tmp_path: Path) -> None:
     text = found.table()
     for words in ("SVD-aligned: position [cm]", "V Eq. 3.1", "mean of slices", "points/cm²"):
         assert words in text
+    german = found.table("de")
+    for words in ("nicht ausgerichtet: Position [cm]", "Mittel der Schnitte", "> 0,5 m"):
+        assert words in german
     again = json.loads(json.dumps(found.to_json(), allow_nan=False))
     assert again["relative"]["point_weighted"]["mean_m"] == found.relative.point_weighted.mean_m
     assert "position_errors_m" not in again["aligned"]
