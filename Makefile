@@ -49,8 +49,9 @@ endif
 demo: $(VENV)/installed-run site
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
-# Browser tests wait most of the time: they run beside the others, which leave them the processor.
-# The kernels take one processor for a minute, which comes first: what needs none takes the other.
+# Browser tests wait most of the time: they run beside the others, which leave them the processor
+# and themselves wait for other programs a good part of it: four fill what is left of two.
+# The kernels come first, beside what is still installed: all tests need them.
 # What both runs of tests need, as a finished project, is made once.
 test:
 	@made=$$(mktemp -d) && trap 'rm -rf "$$made"' EXIT && trap 'exit 130' INT TERM && export RECON4_MADE_ONCE="$$made" && \
@@ -73,7 +74,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/pyrefly check
 
 unit: $(VENV)/installed-dev site kernels bytecode
-	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
+	nice -n 9 $(BIN)/python -m pytest -n 4 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
 
 looks: $(VENV)/installed-dev site kernels bytecode
 	RECON4_LOOKS=both $(BIN)/python -m pytest -m 'e2e and not study'
