@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.kernels.ouster import CHECKSUM_TABLES
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
 from recon4.recording.packets.ouster.data_packets import checksums
@@ -189,6 +190,18 @@ def test_the_sum_of_a_packet_does_not_depend_on_those_beside_it():
 
     for count in range(len(packets) + 1):
         assert checksums(packets[:count]).tolist() == alone[:count]
+
+
+@pytest.mark.parametrize("size", [8, 15, 967, 968, 969, 1937, 8456])
+def test_the_sum_of_long_packets_is_that_of_each_byte_in_turn(size):
+    packets = np.random.default_rng(size).integers(0, 256, (6, size + 8), dtype=np.uint8)
+    table = CHECKSUM_TABLES[0]
+
+    total = np.full(len(packets), 2**64 - 1, np.uint64)
+    for byte in packets[:, :size].T:
+        total = total >> np.uint64(8) ^ table[(total ^ byte) & np.uint64(0xFF)]
+
+    np.testing.assert_array_equal(checksums(packets), ~total)
 
 
 def test_of_two_sensors_behind_one_address_the_one_of_the_rig_is_read():
