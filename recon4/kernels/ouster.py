@@ -131,7 +131,8 @@ def checksums(
             begun[4 * w + 1] = words[one, w]
             begun[4 * w + 2] = words[two, w]
             begun[4 * w + 3] = words[three, w]
-        begun[:4] ^= _ALL_ONES
+        for k in range(min(4, len(begun))):
+            begun[k] ^= _ALL_ONES
         _fold(four, last)
         a = b = c = d = start
         for w in range(0, len(last), 4):
