@@ -151,6 +151,7 @@ _MESSAGES = {
     "clouds": _READ,
     "clouds_duplicate": _repaired("clouds"),
     "clouds_evened": _repaired("clouds"),
+    "clouds_other_order": _repaired("clouds"),
     "clouds_late": _lost("clouds", apart=True),
     "clouds_wrong_times": CountMeaning(CountKind.REPLACED, "clouds"),
     "clouds_untimed": _usual("clouds"),

@@ -112,6 +112,7 @@ count-robot_descriptions_refused = nicht gelesen
 count-clouds = Punktwolken
 count-clouds_duplicate = doppelt aufgezeichnet, die Kopien ausgelassen
 count-clouds_evened = mit streuenden Zeitstempeln, auf gleichmäßige Zeiten gelegt
+count-clouds_other_order = mit Bytes in anderer Reihenfolge als angegeben, in dieser gelesen
 count-clouds_late = nach vielen späteren aufgezeichnet, ausgelassen
 count-clouds_wrong_times = die Zeiten ihrer Punkte sind nicht sinnvoll, sie werden aus Azimut oder Zeitstempel genommen
 count-clouds_untimed = ohne Zeiten ihrer Punkte

@@ -281,6 +281,9 @@ LINES-UNTIMED =
 
 ## Punkte
 
+BYTES-ORDER =
+    .text1 = { $where }: was die Punktwolken als Reihenfolge ihrer Bytes angeben (is_bigendian), ist falsch: so gelesen sind die Koordinaten keine Längen. Sie werden in der anderen Reihenfolge gelesen.
+
 FIELDS-UNREAD =
     .text1 = { $where }: Felder unbekannter Typen werden nicht gelesen: { $fields }.
 

@@ -113,6 +113,7 @@ count-robot_descriptions_refused = not read
 count-clouds = clouds
 count-clouds_duplicate = recorded twice, the copies dropped
 count-clouds_evened = with stamps that scatter, put where even ones would be
+count-clouds_other_order = with bytes in another order than they state, read in that one
 count-clouds_late = recorded after many later ones, left out
 count-clouds_wrong_times = the times of their points make no sense, they are taken from the azimuth or the stamp
 count-clouds_untimed = without times of their points

@@ -278,6 +278,9 @@ LINES-UNTIMED =
 
 ## Points
 
+BYTES-ORDER =
+    .text1 = { $where }: what the clouds state as the order of their bytes (is_bigendian) is wrong: in that order the coordinates are no lengths. They are read in the other order.
+
 FIELDS-UNREAD =
     .text1 = { $where }: fields of types that are not known are not read: { $fields }.
 

@@ -23,7 +23,7 @@ from recon4.recording.clocks.stamp_order import StampOrder
 from recon4.recording.clocks.stamps import StampClock
 from recon4.recording.clouds.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import BagMessage
-from recon4.recording.formats.cloud_tables import cloud_table, unread_fields
+from recon4.recording.formats.cloud_tables import cloud_table, says_other_order, unread_fields
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import LISTED
 
@@ -81,6 +81,9 @@ class CloudReader:
                 fields = ", ".join(unread[: LISTED.few])
                 self._report.derive(DerivedKind.FIELDS_UNREAD, where=message.topic, fields=fields)
             try:
+                if says_other_order(cloud):
+                    self._report.count("clouds_other_order")
+                    self._report.derive(DerivedKind.BYTES_ORDER, where=message.topic)
                 table = cloud_table(cloud)
                 shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
             except CorruptFile as error:

@@ -39,6 +39,35 @@ def unread_fields(cloud: Any) -> list[str]:
     return [f"{clean_name(f.name)} ({f.datatype})" for f in unread]
 
 
+def says_other_order(cloud: Any) -> bool:
+    """Whether only in the other order of bytes the coordinates of a ``PointCloud2`` are lengths.
+
+    Raises:
+        CorruptFile: If the data are shorter than the layout.
+    """
+    if isinstance(cloud, PointMessage):
+        return False
+    known, data = _known_fields(cloud), _packed(cloud)
+    x = [f for f in known if f.name.lower() == "x" and _FIELD_TYPES[f.datatype] in ("f4", "f8")]
+    if not x:
+        return False
+    said, other = (
+        _lengths(data.view(_point_dtype(x[:1], int(cloud.point_step), order))[x[0].name])
+        for order in _orders(cloud)
+    )
+    return other > max(4 * said, 10)
+
+
+def _orders(cloud: Any) -> str:
+    """The order of bytes that a cloud states, and the other one."""
+    return "><" if cloud.is_bigendian else "<>"
+
+
+def _lengths(x: NDArray[np.floating[Any]]) -> int:
+    """How many are coordinates, also on the earth; bytes in another order mostly are none."""
+    return int(np.count_nonzero((np.abs(x) > 1e-4) & (np.abs(x) < 1e7)))
+
+
 def cloud_table(cloud: Any) -> Table:
     """Fields of a ``PointCloud2``, or of another message of points, by lower-case name.
 
@@ -47,11 +76,26 @@ def cloud_table(cloud: Any) -> Table:
     """
     if isinstance(cloud, PointMessage):
         return cloud.table
-    order = ">" if cloud.is_bigendian else "<"
+    known, data = _known_fields(cloud), _packed(cloud)
+    require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
+    order = _orders(cloud)[says_other_order(cloud)]
+    points = data.view(_point_dtype(known, int(cloud.point_step), order))
+    return {
+        field.name.lower(): points[field.name].astype(points[field.name].dtype.newbyteorder("="))
+        for field in known
+    }
+
+
+def _known_fields(cloud: Any) -> list[Any]:
     known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
     if {f.name.lower() for f in cloud.fields if f not in known} & {"x", "y", "z"}:
         fields = ", ".join(unread_fields(cloud)[: LISTED.few])
         raise CorruptFile(CodedText("cloud-types", fields=fields, most=max(_FIELD_TYPES)))
+    return known
+
+
+def _packed(cloud: Any) -> NDArray[np.uint8]:
+    """The bytes of all points, one after the other."""
     step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)
     data: NDArray[np.uint8] = np.asarray(cloud.data, np.uint8)
     # Some drivers leave the length of a row as it was: their data have no room for any other.
@@ -74,14 +118,8 @@ def cloud_table(cloud: Any) -> Table:
                 "message-cloud-large", width=width, height=height, max_cloud_points=MAX_CLOUD_POINTS
             )
         )
-    require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
-    dtype = _point_dtype(known, step, order)
     rows = data[: row_step * height].reshape(height, row_step)[:, : step * width]
-    points = np.ascontiguousarray(rows).reshape(-1).view(dtype)
-    return {
-        field.name.lower(): points[field.name].astype(points[field.name].dtype.newbyteorder("="))
-        for field in known
-    }
+    return np.ascontiguousarray(rows).reshape(-1)
 
 
 def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.void]:

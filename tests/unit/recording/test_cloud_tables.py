@@ -5,7 +5,9 @@ import pytest
 
 from recon4.model.derived_kinds import DerivedKind
 from tests.builders import T0_NS, Bag, bag_path
+from tests.robot_bags import RobotBag
 from tests.unit.recording.point_bags import ROOM, STEP_NS, read
+from tests.variants.messages import CloudMessage
 
 
 def cloud_bag(folder, table, alter=lambda message: None):
@@ -48,6 +50,39 @@ def test_a_field_of_an_unknown_type_is_named(tmp_path):
     assert len(shots) == 3
     (found,) = (one for one in report.derived if one.kind is DerivedKind.FIELDS_UNREAD)
     assert found.values == {"where": "/points", "fields": "intensity (13)"}
+
+
+@pytest.mark.parametrize("kind", ["<f4", "<f8"])
+def test_clouds_with_bytes_in_another_order_than_they_state_are_read_and_it_is_stated(
+    kind, tmp_path
+):
+    def alter(message):
+        message.is_bigendian = True
+
+    table = ROOM | {name: ROOM[name].astype(kind) for name in "xyz"}
+    _, shots, report = read(cloud_bag(tmp_path, table, alter))
+
+    np.testing.assert_array_equal(shots[0].xyz[:, 0], ROOM["x"])
+    assert report.counts["clouds_other_order"] == 3
+    (found,) = (one for one in report.derived if one.kind is DerivedKind.BYTES_ORDER)
+    assert found.values == {"where": "/points"}
+
+
+def test_clouds_with_the_bytes_that_they_state_keep_them(tmp_path):
+    path = bag_path(tmp_path, "db3")
+    with RobotBag(path, "db3") as bag:
+        for k in range(3):
+            t_ns = T0_NS + k * STEP_NS
+            points = np.rec.fromarrays(
+                [column.astype(column.dtype.newbyteorder(">")) for column in ROOM.values()],
+                names=",".join(ROOM),
+            )
+            CloudMessage("/points", "lidar", t_ns, np.asarray(points))(bag, t_ns)
+
+    _, shots, report = read(path)
+
+    np.testing.assert_array_equal(shots[0].xyz[:, 0], ROOM["x"])
+    assert not report.counts["clouds_other_order"]
 
 
 def test_coordinates_of_an_unknown_type_are_the_reason_why_there_are_no_points(tmp_path):
