@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 15
+AUDIT_VERSION = 16
 """Raise it when witnesses find something else in the same walk, or in another order: then finished
 projects are audited again."""
 
@@ -60,6 +60,7 @@ class FindingKind(StrEnum):
     IMU_FOREIGN = "IMU-FOREIGN"
     IMU_UNIT = "IMU-UNIT"
     IMU_SCALE = "IMU-SCALE"
+    IMU_LEVER_ARM = "IMU-LEVER-ARM"
     TURN_SCALE = "TURN-SCALE"
     UNSEEN_RIDE = "UNSEEN-RIDE"
     HEIGHT_CONTRADICTED = "HEIGHT-CONTRADICTED"

@@ -74,7 +74,7 @@ class FeltMotion:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Felt:
+class Felt:
     """Integrals over the time from each multiframe to the next, in odom axes."""
 
     dt_s: Array
@@ -104,7 +104,7 @@ def felt_motion(
         rig: Where the IMU is.
         accel_noise: Noise density of the specific force [m/s²/√Hz].
     """
-    felt = _integrate(steps.column("t_mid_ns"), trajectory, imu, rig=rig)
+    felt = integrate_felt(steps.column("t_mid_ns"), trajectory, imu, rig=rig)
     if felt is None:
         return None
     return _smoothed(felt, _measured(steps), accel_noise)
@@ -190,7 +190,17 @@ def _sd_along(step: OdometryStep, along: Array) -> float:
     return float(np.sqrt(along @ step.motion_cov[TRANSLATION, TRANSLATION] @ along))
 
 
-def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig) -> _Felt | None:
+def integrate_felt(
+    t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
+) -> Felt | None:
+    """Integrals from each multiframe to the next; None without an accelerometer.
+
+    Args:
+        t_ns: Times of multiframes [ns], (K + 1,).
+        trajectory: ``T_odom_body``.
+        imu: Its samples.
+        rig: Where the IMU is.
+    """
     _, force = imu_in_body(imu, rig)
     if not np.isfinite(force).all():
         return None
@@ -200,13 +210,13 @@ def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
         for k in range(0, len(t_ns) - 1, FELT.at_once)
     ]
     dt_s, speed, shift = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    return _Felt(dt_s, speed, shift, _missing(t_ns, imu))
+    return Felt(dt_s, speed, shift, _missing(t_ns, imu))
 
 
 def _integrated(
     t_ns: Times, trajectory: Trajectory, sample_ns: Times, *, force: Array
 ) -> tuple[Array, Array, Array]:
-    """Times, speeds and shifts of `_Felt` from each of some multiframes to the next."""
+    """Times, speeds and shifts of `Felt` from each of some multiframes to the next."""
     inside = (sample_ns >= t_ns[0]) & (sample_ns <= t_ns[-1])
     grid = distinct(np.concatenate([sample_ns[inside], t_ns]))
     s = 1e-9 * (grid - grid[0])
@@ -289,7 +299,7 @@ def _pulled_m(steps: WalkSteps, finite: NDArray[np.bool_]) -> Array:
     return np.asarray(np.minimum(speed_m_s * dt_s, FELT.unknown_m)[:, None] * along[rows])
 
 
-def _smoothed(felt: _Felt, measured: _MeasuredShifts, accel_noise: float) -> FeltMotion:
+def _smoothed(felt: Felt, measured: _MeasuredShifts, accel_noise: float) -> FeltMotion:
     """Rauch, Tung and Striebel's smoother.
 
     The state is velocity, bias, gravity, and what pulls the measured shifts along, (12,).
@@ -330,13 +340,13 @@ def _along(pulled_m: Array) -> Array:
     return np.outer(pulled_m, pulled_m) / max(float(np.linalg.norm(pulled_m)), 1e-12)
 
 
-def _shift_by_state(felt: _Felt, k: int) -> Array:
+def _shift_by_state(felt: Felt, k: int) -> Array:
     dt_s = felt.dt_s[k]
     by_pull = np.zeros((3, 3))
     return np.hstack([dt_s * np.eye(3), -felt.shift[k, :, 1:], 0.5 * dt_s**2 * np.eye(3), by_pull])
 
 
-def _ahead(felt: _Felt, k: int, x: Array, *, F: Array) -> Array:
+def _ahead(felt: Felt, k: int, x: Array, *, F: Array) -> Array:
     """State at the next multiframe."""
     predicted = F @ x
     predicted[_V] += felt.speed[k, :, 0]
@@ -344,7 +354,7 @@ def _ahead(felt: _Felt, k: int, x: Array, *, F: Array) -> Array:
 
 
 def _transition(
-    felt: _Felt, measured: _MeasuredShifts, k: int, *, accel_noise: float
+    felt: Felt, measured: _MeasuredShifts, k: int, *, accel_noise: float
 ) -> tuple[Array, Array]:
     """Transition to the next multiframe, and the covariance that it adds."""
     dt_s = float(felt.dt_s[k])

@@ -66,6 +66,25 @@ class ImuGravityTuning(Struct, frozen=True, kw_only=True):
 IMU_GRAVITY = ImuGravityTuning()
 
 
+class ImuLeverArmTuning(Struct, frozen=True, kw_only=True):
+    """A lever arm of an IMU that is wrong (`imu_lever_arm.py`)."""
+
+    least_m: float = 0.1
+    """A shorter error costs less than others do [m]."""
+    sigmas: float = 5.0
+    """It exceeds this multiple of its standard deviation."""
+    min_frames: int = 40
+    """Fewer multiframes with all samples do not show it."""
+    prior_sd: tuple[float, float, float] = (10.0, 0.3, 20.0)
+    """Standard deviation of lever arm [m], bias and gravity [m/s²] before the fit."""
+    rounds: int = 5
+    huber: float = 2.0
+    """Residuals beyond this many standard deviations count less."""
+
+
+IMU_LEVER_ARM = ImuLeverArmTuning()
+
+
 class ReversedForcesTuning(Struct, frozen=True, kw_only=True):
     """Accelerations with the wrong sign."""
 

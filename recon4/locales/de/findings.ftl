@@ -289,6 +289,13 @@ IMU-SCALE = Maßstab der IMU
     .meaning = Das Gerät ist nicht kalibriert.
     .detection = Über die Begehung ist der Maßstab um mehr als 4 % (Beschleunigungsmesser) oder 2 % (Kreisel) daneben.
 
+IMU-LEVER-ARM = Hebelarm der IMU
+    .text1 = Nach ihren Kräften liegt die IMU { LENGTH($length_m) } ± { LENGTH($sd_m) } neben der Stelle der Rig-Datei, vor allem entlang { $axis } des Körpers.
+    .text2-if-least = Es kann mehr sein: die Trajektorie folgt diesen Kräften.
+    .remedy = Messen, wo die IMU sitzt, und es in der Rig-Datei angeben (xyz_m).
+    .meaning = In Drehungen werden die Kräfte an eine falsche Stelle übertragen; der Beschleunigungsmesser widerspricht den LiDARs oder verbiegt die Trajektorie.
+    .detection = Unterschiede der Verschiebungen von Multiframe zu Multiframe passen nur mit einem anderen Hebelarm zu den Kräften, um mehr als 10 cm und fünf Standardabweichungen.
+
 TURN-SCALE = Odometrie gegen registrierte Paare
     .text1 = Die Odometrie dreht { PERCENT($size, digits: 1) } ± { PERCENT($sd, digits: 1) } { WORD($way, of: "TURN-SCALE") } als registrierte Paare von Orten: der Maßstab des Kreisels oder die Uhr der IMU widerspricht den LiDARs.
     .word-farther = weiter

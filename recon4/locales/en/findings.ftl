@@ -293,6 +293,13 @@ IMU-SCALE = Scale of the IMU
     .meaning = The unit is not calibrated.
     .detection = Over the walk the scale is off by more than 4 % (accelerometer) or 2 % (gyroscope).
 
+IMU-LEVER-ARM = Lever arm of the IMU
+    .text1 = By its forces the IMU lies { LENGTH($length_m) } ± { LENGTH($sd_m) } from where the rig file has it, mostly along { $axis } of the body.
+    .text2-if-least = It may be more: the trajectory follows these forces.
+    .remedy = Measure where the IMU is, and give it in the rig file (xyz_m).
+    .meaning = In turns the forces are moved to a wrong place; the accelerometer contradicts the LiDARs, or bends the trajectory.
+    .detection = Differences of shifts from multiframe to multiframe fit the forces only with another lever arm, by more than 10 cm and five standard deviations.
+
 TURN-SCALE = Odometry against registered pairs
     .text1 = The odometry turns { PERCENT($size, digits: 1) } ± { PERCENT($sd, digits: 1) } { WORD($way, of: "TURN-SCALE") } than registered pairs of places do: the scale of the gyroscope or the clock of the IMU contradicts the LiDARs.
     .word-farther = farther
