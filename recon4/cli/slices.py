@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -16,6 +15,7 @@ from recon4.cli.references import (
     UnitOption,
     open_reference,
 )
+from recon4.cli.terminal import say, say_approval
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
 
@@ -63,8 +63,9 @@ def cut_map(  # noqa: PLR0913 - options of a command
         look = SliceLook("distance" if against else color, project.name, against)
         points = write_planes(opened, planes, file, look=look)
     state = latest_state(project, draft=draft)
-    note = ", one per square centimeter drawn" if file.suffix.lower() == ".dxf" else ""
-    sys.stdout.write(f"{points} points in {file}{note}\n{state.text}\n")
+    is_thinned = file.suffix.lower() == ".dxf"
+    say("slice-thinned" if is_thinned else "slice-written", points=points, file=str(file))
+    say_approval(state)
 
 
 @slices.command("doubles")
@@ -84,11 +85,14 @@ def double_walls(project: ProjectArgument) -> None:
     for wall in found.walls:
         x, y, z = wall.middle_m
         (a0, a1), (b0, b1) = wall.spans_s
-        sys.stdout.write(
-            f"{x:9.2f} {y:9.2f} {z:7.2f}  {100 * wall.separation_m:5.1f} cm apart "
-            f"(limit {100 * wall.limit_m:.1f}), {a0:.0f}-{a1:.0f} s and {b0:.0f}-{b1:.0f} s\n"
+        say(
+            "doubles-wall",
+            place=f"{x:9.2f} {y:9.2f} {z:7.2f}",
+            apart_cm=100 * wall.separation_m,
+            limit_cm=100 * wall.limit_m,
+            spans=f"{a0:.0f}-{a1:.0f} s, {b0:.0f}-{b1:.0f} s",
         )
-    sys.stdout.write(f"{len(found.walls)} double walls in {found.patches} patches seen twice\n")
+    say("doubles-found", count=len(found.walls), patches=found.patches)
     if found.walls:
         raise typer.Exit(1)
 

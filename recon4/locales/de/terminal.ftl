@@ -236,3 +236,13 @@ evaluated-true-poses = wahre Posen
 evaluated-same-points = Dieselben Punkte von { $frames } Multiframes
 evaluated-ratio = Verhältnis { $ratio }
 evaluated-patch = Fläche: { $points } Punkte auf { $area_m2 } m², { $per_cm2 } Punkte/cm²
+
+## recon4 slice, recon4 doubles
+
+slice-written = { $points } Punkte in { $file }
+slice-thinned = { $points } Punkte in { $file }, gezeichnet ist einer je Quadratzentimeter
+doubles-wall = { $place }  { DECIMAL($apart_cm, digits: 1) } cm auseinander (Grenze { DECIMAL($limit_cm, digits: 1) }), { $spans }
+doubles-found = { $count ->
+    [one] { $count } doppelte Wand
+   *[other] { $count } doppelte Wände
+ } in { $patches } Flächen, die zweimal gesehen wurden

@@ -236,3 +236,13 @@ evaluated-true-poses = true poses
 evaluated-same-points = Same points of { $frames } frames
 evaluated-ratio = ratio { $ratio }
 evaluated-patch = Patch: { $points } points on { $area_m2 } m², { $per_cm2 } points/cm²
+
+## recon4 slice, recon4 doubles
+
+slice-written = { $points } points in { $file }
+slice-thinned = { $points } points in { $file }, one per square centimeter drawn
+doubles-wall = { $place }  { DECIMAL($apart_cm, digits: 1) } cm apart (limit { DECIMAL($limit_cm, digits: 1) }), { $spans }
+doubles-found = { $count ->
+    [one] { $count } double wall
+   *[other] { $count } double walls
+ } in { $patches } patches seen twice
