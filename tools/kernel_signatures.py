@@ -19,7 +19,9 @@ from numba.core import event
 from recon4.classes.clusters import cells_of_class, connected, evidence
 from recon4.comparison.m3c2 import differences
 from recon4.comparison.records import M3C2Scales
+from recon4.export.tuning import OCTREE
 from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.octree import by_octant, first_of_cells
 from recon4.kernels.signatures import SIGNATURES, kernel_name, spelled
 from recon4.live.mapper.live_map import LiveMap
 from recon4.mapping.class_corrections import ClassVolumes
@@ -109,6 +111,7 @@ def _lidars(folder: Path) -> None:
     tiles = TileSet.open(made["map"])
     find_double_walls(tiles)
     _things(tiles)
+    _octree()
     list(differences(tiles, tiles, SE3.identity(), scales=M3C2Scales()))
     plane = SlicePlane.horizontal(1.0)
     paper = RasterGrid(extent(tiles, plane), PIXEL_M)
@@ -159,6 +162,14 @@ def _things(tiles: TileSet) -> None:
     code = next(iter(tiles.class_counts()))
     cells = cells_of_class(tiles, code, ClassVolumes(()))
     evidence(tiles, cells, connected(cells.key))
+
+
+def _octree() -> None:
+    """What COPC of more points than this map has calls."""
+    rows, marks = np.arange(2, dtype=np.int32), np.zeros(2, np.bool_)
+    steps = np.zeros((3, 2), np.int32)
+    first_of_cells(steps, rows, 0, OCTREE.side_bits, marks)
+    by_octant(steps, rows, OCTREE.side_bits - 1, marks, rows.copy())
 
 
 def _packets() -> None:

@@ -120,7 +120,7 @@ KINDS: dict[str, ExportKind] = {
     kind.name: kind
     for kind in (
         _kind("map.copc.laz", "COPC", "QGIS, web viewers", group=_CLOUDS, takes=_CLASSED,
-              point_bytes=10.5, thinned_bytes=15.6, sorted_bytes=53.0),
+              point_bytes=10.5, thinned_bytes=15.6, sorted_bytes=20.0),
         _kind("map.laz", "LAZ", "CloudCompare, PDAL", group=_CLOUDS, takes=_CLASSED,
               point_bytes=9.9, thinned_bytes=15.0),
         _kind("map.e57", "E57, scans with poses", "Recap, Cyclone, CloudCompare", group=_CLOUDS,

@@ -166,7 +166,7 @@ def _write(
     writer = _NodeWriter(file, lazrs.LasZipCompressor(file, compression))
     writer.compressor.reserve_offset_to_chunk_table()  # else the first chunk would begin with it
     progress.start("octree", header.point_count, "points")
-    tree = Octree(cube, header.point_format.dtype(), writer.write, progress)
+    tree = Octree(cube, writer.write, progress)
     tree.build(files.place(cube))
     writer.compressor.done()
     file.seek(0, io.SEEK_END)

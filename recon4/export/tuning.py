@@ -74,8 +74,10 @@ class OctreeTuning(Struct, frozen=True, kw_only=True):
     """A node samples what is below it in 2^7 cells along each edge: COPC's spacing."""
     bucket_bits: int = 17
     """Points are sorted by cubes of 2^17 steps (13 m) in files first."""
-    points_in_memory: int = 2_000_000
-    """A file with more points is split by the nodes below it: 100 MB and some copies."""
+    together: int = 250_000
+    """Points that are sorted by these cubes at once: frames of the files compress better."""
+    points_in_memory: int = 4_000_000
+    """A file with more points is split by the nodes below it: 210 MB and some copies."""
     points_of_leaf: int = 50_000
     """A node with fewer points has no nodes below it: one request of a viewer."""
 

@@ -102,7 +102,7 @@ def test_what_cannot_be_made_is_refused_before_it_waits(server, ask, says):
         ("map.laz", True, 0.0),
         ("map.laz", False, 1.0),
         ("map.e57", True, 16.0 / 16.2),
-        ("map.copc.laz", False, 53.0 / 10.5),
+        ("map.copc.laz", False, 20.0 / 10.5),
     ],
 )
 def test_an_export_needs_room_for_its_file_and_what_lies_beside_it(
