@@ -356,7 +356,7 @@ export function controlPanel(host, { id, change, point: pointAt, measured, known
   draw();
   const crs = () => /** @type {HTMLInputElement} */ (within(host, ".site input")).value.trim();
   targetsSection(within(host, ".targets"), { id, crs, stored: () => turns.last, put, go: show });
-  const site = siteSection(within(host, ".site"), id);
+  const site = siteSection(within(host, ".site"), id, readKept);
   attempt(message(), async () => {
     await readKept();
     await report();

@@ -14,8 +14,9 @@ const SITE_GRID = "site grid";
  * Fills the section below the residuals.
  * @param {HTMLElement} host
  * @param {string} id of the project
+ * @param {() => Promise<unknown>} readPoints as a decision left them
  */
-export function siteSection(host, id) {
+export function siteSection(host, id, readPoints) {
   const state = {
     trial: /** @type {SiteTrial | null} */ (null),
     tried: "", // the system of the trial
@@ -50,6 +51,7 @@ export function siteSection(host, id) {
   const remade = (what, decide) =>
     run(what, async () => {
       await decide();
+      await readPoints();
       await remakeMap(id);
       set({ done: true });
     });
