@@ -65,7 +65,8 @@ class Assembler:
     """Assembles shots into multiframes, each as soon as all sensors have passed its end.
 
     Times that go back by more than ``gap_s`` continue after the last good one (counted, and a
-    `TimeGap`); jumps forward stay and are a `TimeGap`; frames without points are left out.
+    `TimeGap`); jumps forward stay and are a `TimeGap`; frames without points are left out, and
+    those of a small part of their time, which do not determine a pose (counted).
     """
 
     def __init__(
@@ -136,7 +137,7 @@ class Assembler:
             self._report.count("points_late", stream.late)
         warn_of_lidar_clocks(self._report)
         held, self._held = self._held, None
-        return frames if held is None or self._too_small(held) else [*frames, held]
+        return frames if held is None else [*frames, held]
 
     # -- taking in
 
@@ -274,6 +275,8 @@ class Assembler:
             return []
         frame_id = self._held.frame_id + 1 if self._held else 0
         frame = _multiframe(parts, frame_id, start_ns, duration_ns=self.duration_ns)
+        if self._too_small(frame):
+            return []
         for row, stream in enumerate(self._streams):
             if stream.delivers and not np.any(frame.sensor == row):
                 self._report.count(f"frames_without_{stream.name}")
@@ -297,7 +300,10 @@ class Assembler:
         return [before]
 
     def _too_small(self, frame: Multiframe) -> bool:
+        """Whether all points are of a small part of the time, as beside a cloud that is missing."""
         if len(frame) >= ASSEMBLY.kept_ratio * self._usual:
+            return False
+        if np.ptp(frame.dt_ns) >= ASSEMBLY.kept_ratio * frame.duration_ns:
             return False
         self._report.count("frames_incomplete_dropped")
         self._report.count("points_of_incomplete_frames", len(frame))

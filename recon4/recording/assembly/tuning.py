@@ -13,7 +13,8 @@ class AssemblyTuning(Struct, frozen=True, kw_only=True):
     clocks_ns: int = 10_000_000_000
     """First points of two LiDARs that are farther apart are of two clocks [ns]."""
     kept_ratio: float = 0.2
-    """A first or last revolution below this ratio of the usual number of points is left out."""
+    """A frame below this ratio of the usual number of points and of its time is left out, a first
+    one by its number of points alone."""
     fallback_hz: float = 10.0
     """Without a rotation frames are cut this often."""
     head_points: int = 1_500_000

@@ -220,6 +220,19 @@ def test_scraps_at_the_ends_are_left_out_and_counted():
     assert report.counts["points_of_incomplete_frames"] == 100
 
 
+def test_what_is_left_of_a_missing_cloud_makes_no_frame():
+    """Clouds do not begin where frames do: some points of their neighbors lie in the gap."""
+    first, *clouds = pieces(spin(seconds=1.0), 10)
+    first = rows(first, slice(len(first) // 10, None))
+    clouds[7] = rows(clouds[7], slice(0, None, 20))  # few points, but of the whole time
+
+    frames, _, report = assemble([first, *clouds[:3], *clouds[4:]])
+
+    assert len(frames) == 9
+    assert all(len(frame) > 0.04 * len(frames[0]) for frame in frames)
+    assert report.counts["frames_incomplete_dropped"] == 1
+
+
 def test_half_a_revolution_at_the_end_is_kept():
     frames, _, _ = assemble(pieces(spin(seconds=1.05)))
 
