@@ -54,7 +54,7 @@ _TEXTS = re.compile(r'<html [^>]*data-texts="([a-z -]+)"')
 """Files of texts of a page; the others have the shared ones, around content in English."""
 _TEXT = re.compile(r"\{\{ ([a-z0-9-]+) \}\}")
 _SCRIPT = re.compile(r'<script type="module" src="/web/([^"]+)"')
-_PRELOAD = '<link rel="modulepreload" href="/web/{}" />\n    '
+_PRELOAD = '<link rel="modulepreload" href="{}" />\n    '
 _IMPORT = re.compile(r'''(?:^|;)(?:import|export)\b[^;"]*"(\.[^"]+)"''', re.MULTILINE)
 """What a module loads before it runs."""
 LANGUAGE_COOKIE = "recon4_language"
@@ -139,7 +139,7 @@ def html_of(file: str, prefix: str = "") -> str:
     def preloaded(script: re.Match[str]) -> str:
         fresh = [module for module in _imported(script[1]) if module not in named]
         named.update(fresh)
-        return "".join(_PRELOAD.format(module) for module in fresh) + script[0]
+        return "".join(_PRELOAD.format(f"/web/{module}") for module in fresh) + script[0]
 
     page = _SCRIPT.sub(preloaded, page)
     return _ADDRESS.sub(rf"\g<1>{prefix}", page)

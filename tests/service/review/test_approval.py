@@ -175,7 +175,7 @@ def test_conflicts_are_confirmed_with_a_reason_or_not_at_all(root, server):
     confirmed = approve(server, confirmed=True)
 
     assert [refused.status_code, without_reason.status_code] == [409, 409]
-    assert "do not fit" in refused.json()["detail"]
+    assert "1 accepted loop closure does not fit" in refused.json()["detail"]
     assert confirmed.status_code == 201
     statement = json.loads((root / "versions/1/approval.json").read_text())["statement"]
     assert statement["figures"]["conflicts"] == 1

@@ -75,7 +75,7 @@ def test_one_multiframe_that_did_not_converge_counts_if_it_is_far_from_where_it_
     levels = [one.level for one in found if one.kind is FindingKind.NOT_CONVERGED]
     assert levels == ([] if level is None else [level])
     assert all(
-        "lie up to 14.0 cm from where" in text_of(one) and one.span_s == (3.9, 3.9)
+        "lies 14.0 cm from where" in text_of(one) and one.span_s == (3.9, 3.9)
         for one in found
         if one.kind is FindingKind.NOT_CONVERGED
     )

@@ -197,7 +197,7 @@ def test_coordinates_that_are_no_numbers_are_refused(tmp_path):
     data[-8:] = np.array([np.nan]).tobytes()
     path.write_bytes(data)
 
-    with pytest.raises(CorruptFile, match="1 points have coordinates that are not numbers"):
+    with pytest.raises(CorruptFile, match="1 point has coordinates that are not numbers"):
         list(read_points(path))
 
 
