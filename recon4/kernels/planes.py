@@ -19,7 +19,6 @@ from recon4.kernels.cell_table import place_of
 from recon4.kernels.eigen import eigen_sym3
 from recon4.kernels.lanes import add_outer, add_row, add_scaled
 from recon4.kernels.plane_tables import CUBE, EMPTY, STATE, SUMS
-from recon4.kernels.prefetch import AHEAD, fetch_row
 
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
 """Rows of the array of criteria that a cube's points have to meet to count as a plane."""
@@ -340,7 +339,6 @@ def accumulate(
     a = np.zeros(SUMS.all)
     matches, total, chi2 = 0, 0.0, 0.0
     for k in range(len(q)):
-        fetch_row(fits, found[min(k + AHEAD.points, len(q) - 1)])
         residual[k] = np.nan
         if found[k] == EMPTY:
             continue
