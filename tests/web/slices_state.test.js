@@ -14,6 +14,7 @@ import {
   normalFrom,
   normalOf,
   parse,
+  withoutPlane,
 } from "../../web/slices/state.js";
 import { endsOf, stretchMarks, timesOf } from "../../web/slices/stretch_mark.js";
 import { sliceOf } from "../../web/shared/verdict.js";
@@ -136,4 +137,13 @@ test("the walk is marked in any slice, where it is near", () => {
     [[1, 1]],
   ]);
   assert.deepEqual(stretchMarks(walk, /** @type {any} */ (level))[0]?.dots?.length, 2);
+});
+
+test("a map in other coordinates is shown by its own plane, in the same colors", () => {
+  const before = "kind=vertical&a=1,2&b=3,4&u=5&v=6&m=0.02&color=intensity&t=0.02";
+  const after = parse(`?${withoutPlane(before)}`);
+
+  assert.equal(after.given, false);
+  assert.deepEqual([after.kind, after.u, after.v, after.m], ["horizontal", null, null, null]);
+  assert.deepEqual([after.color, after.t], ["intensity", 0.02]);
 });

@@ -6,6 +6,7 @@ import { followMap } from "../shared/followed_map.js";
 import { page } from "./page.js";
 import { format } from "./state.js";
 
+const newest = { frame: "" };
 const AGAIN = "map made again"; // in the history of the tab: it has just been loaded again
 
 /** Whether this page was loaded again because of a new map; says so once. */
@@ -15,15 +16,17 @@ export function takeNews() {
   return news;
 }
 
-/** Loads the page again, with its view and its measurements. */
+/** Loads the page again, with its view and its measurements if they are in the same coordinates. */
 function reload() {
-  if (page.index) history.replaceState(AGAIN, "", `?${format(page.state)}`);
+  const shown = page.index?.frame === newest.frame ? `?${format(page.state)}` : "?";
+  if (page.index) history.replaceState(AGAIN, "", shown);
   location.reload();
 }
 
 /** Whether the map of the project is the one that is shown. */
 async function isNewest() {
-  const { key, version } = await readMapIndex(idHere());
+  const { key, version, frame } = await readMapIndex(idHere());
+  newest.frame = frame;
   return page.index !== null && key === page.index.key && version === page.index.version;
 }
 

@@ -6,11 +6,23 @@ import { byId } from "../shared/dom.js";
 import { followMap } from "../shared/followed_map.js";
 import { page } from "./drawing.js";
 import { keepOpenPanels } from "./findings.js";
+import { withoutPlane } from "./state.js";
+
+const newest = { frame: "" };
 
 /** Whether the map of the project is the one that is shown. */
 async function isNewest() {
-  const { key } = await readSliceFacts(idHere(), page.state.source);
+  const { key, frame } = await readSliceFacts(idHere(), page.state.source);
+  newest.frame = frame;
   return key === page.facts?.key;
+}
+
+/** Loads the page again; in other coordinates the plane would be anywhere. */
+function reload() {
+  keepOpenPanels();
+  if (page.facts && page.facts.frame !== newest.frame)
+    history.replaceState(null, "", `?${withoutPlane(location.search)}`);
+  location.reload();
 }
 
 /** Whether something is being done that a new page would lose. */
@@ -33,9 +45,6 @@ export async function followJobs(opening) {
     opening,
     isNewest,
     isBusy,
-    reload: () => {
-      keepOpenPanels();
-      location.reload();
-    },
+    reload,
   });
 }

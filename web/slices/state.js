@@ -228,6 +228,13 @@ export function normalFrom(/** @type {{azimuth: number, tilt: number}} */ { azim
   return [Math.sin(t) * Math.sin(a), Math.sin(t) * Math.cos(a), Math.cos(t)];
 }
 
+/** The query of an address without its plane. */
+export function withoutPlane(/** @type {string} */ query) {
+  const left = new URLSearchParams(query);
+  for (const key of ["kind", "u", "v", "m"]) left.delete(key);
+  return left;
+}
+
 /**
  * A plane of another kind: through the middle of what is seen of a horizontal one, else of the map.
  * @param {Kind} kind
