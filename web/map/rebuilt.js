@@ -6,7 +6,8 @@ import { followMap } from "../shared/followed_map.js";
 import { page } from "./page.js";
 import { format } from "./state.js";
 
-const newest = { frame: "" };
+/** @import {Newest} from "../shared/followed_map.js" */
+
 const AGAIN = "map made again"; // in the history of the tab: it has just been loaded again
 
 /** Whether this page was loaded again because of a new map; says so once. */
@@ -16,18 +17,24 @@ export function takeNews() {
   return news;
 }
 
-/** Loads the page again, with its view and its measurements if they are in the same coordinates. */
-function reload() {
-  const shown = page.index?.frame === newest.frame ? `?${format(page.state)}` : "?";
+/**
+ * Loads the page again, with its view and its measurements if they are in the same coordinates.
+ * @param {Newest} newest
+ */
+function reload({ sameFrame }) {
+  const shown = sameFrame ? `?${format(page.state)}` : "?";
   if (page.index) history.replaceState(AGAIN, "", shown);
   location.reload();
 }
 
-/** Whether the map of the project is the one that is shown. */
-async function isNewest() {
+/** The map that the project has now. */
+async function newest() {
   const { key, version, frame } = await readMapIndex(idHere());
-  newest.frame = frame;
-  return page.index !== null && key === page.index.key && version === page.index.version;
+  const { index } = page;
+  return {
+    isShown: index !== null && key === index.key && version === index.version,
+    sameFrame: frame === index?.frame,
+  };
 }
 
 /**
@@ -37,7 +44,7 @@ async function isNewest() {
 export function followJobs(element) {
   followMap(element, {
     hasMap: () => Boolean(page.index),
-    isNewest,
+    newest,
     isBusy: () => page.draft.length > 0 || page.notes.draft !== null || page.drag !== null,
     reload,
   });

@@ -5,7 +5,12 @@ import { watchJobs } from "./api.js";
 import { html, only, render } from "./dom.js";
 import { t } from "./texts.js";
 
-/** @import {JobView} from "./http_types" */
+/**
+ * @import {JobView} from "./http_types"
+ * @typedef {object} Newest the map that a project has now
+ * @property {boolean} isShown the page shows it
+ * @property {boolean} sameFrame its coordinates are those of the map that the page shows
+ */
 
 /**
  * Follows the jobs of the project.
@@ -13,19 +18,21 @@ import { t } from "./texts.js";
  * @param {object} page
  * @param {() => boolean} page.hasMap whether it shows one
  * @param {Promise<unknown>} [page.opening] ends once it is known whether it shows one
- * @param {() => Promise<boolean>} page.isNewest whether the map is still the one it shows
+ * @param {() => Promise<Newest>} page.newest the map that the project has now
  * @param {() => boolean} page.isBusy whether something is being done that a new page would lose
- * @param {() => void} page.reload shows the new map
+ * @param {(newest: Newest) => void} page.reload shows the new map
  */
-export function followMap(element, { hasMap, opening, isNewest, isBusy, reload }) {
+export function followMap(element, { hasMap, opening, newest, isBusy, reload }) {
   const id = idHere();
   let open = "";
 
   async function look() {
-    if (await isNewest()) return render("", element);
-    if (!hasMap() || !isBusy()) return reload();
+    const found = await newest();
+    if (found.isShown) return render("", element);
+    const show = () => reload(found);
+    if (!hasMap() || !isBusy()) return show();
     render(
-      html`${t("map-was-remade")} <button type="button" @click=${reload}>${t("show-new")}</button>`,
+      html`${t("map-was-remade")} <button type="button" @click=${show}>${t("show-new")}</button>`,
       element,
     );
   }

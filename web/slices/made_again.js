@@ -8,20 +8,21 @@ import { page } from "./drawing.js";
 import { keepOpenPanels } from "./findings.js";
 import { withoutPlane } from "./state.js";
 
-const newest = { frame: "" };
+/** @import {Newest} from "../shared/followed_map.js" */
 
-/** Whether the map of the project is the one that is shown. */
-async function isNewest() {
+/** The map that the project has now. */
+async function newest() {
   const { key, frame } = await readSliceFacts(idHere(), page.state.source);
-  newest.frame = frame;
-  return key === page.facts?.key;
+  return { isShown: key === page.facts?.key, sameFrame: frame === page.facts?.frame };
 }
 
-/** Loads the page again; in other coordinates the plane would be anywhere. */
-function reload() {
+/**
+ * Loads the page again; in other coordinates the plane would be anywhere.
+ * @param {Newest} newest
+ */
+function reload({ sameFrame }) {
   keepOpenPanels();
-  if (page.facts && page.facts.frame !== newest.frame)
-    history.replaceState(null, "", `?${withoutPlane(location.search)}`);
+  if (page.facts && !sameFrame) history.replaceState(null, "", `?${withoutPlane(location.search)}`);
   location.reload();
 }
 
@@ -43,7 +44,7 @@ export async function followJobs(opening) {
   followMap(news, {
     hasMap: () => Boolean(page.facts),
     opening,
-    isNewest,
+    newest,
     isBusy,
     reload,
   });
