@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,22 +112,37 @@ def absent_picks(
         picks: Id -> place [m], (3,).
         radii_m: Id -> radius of a sphere, whose middle is the place.
     """
-    return {
-        name
-        for name, at in picks.items()
-        if len(points_near(tiles, at, SIGHTINGS.around_m + radii_m.get(name, 0.0)))
-        < SIGHTINGS.points
-    }
+
+    def without_points(names: Iterable[str], limit: int | None) -> set[str]:
+        found = set()
+        for name in names:
+            radius_m = SIGHTINGS.around_m + radii_m.get(name, 0.0)
+            near = columns_near(tiles, picks[name], radius_m, limit=limit)["xyz"]
+            if len(near) < SIGHTINGS.points:
+                found.add(name)
+        return found
+
+    return without_points(without_points(picks, PICKS.sample), None)
 
 
-def columns_near(tiles: TileSet, p_map: Array, radius_m: float, *names: str) -> Columns:
-    """Points of the map in a ball: ``xyz`` in the map [m], (N, 3) float64, and other fields."""
+def columns_near(
+    tiles: TileSet, p_map: Array, radius_m: float, *names: str, limit: int | None = None
+) -> Columns:
+    """Points of the map in a ball: ``xyz`` in the map [m], (N, 3) float64, and other fields.
+
+    Args:
+        tiles: The map.
+        p_map: Middle of the ball [m], (3,).
+        radius_m: Its radius.
+        names: Other fields.
+        limit: Most points of each tile that are read; None = all.
+    """
     low, high = p_map - radius_m, p_map + radius_m
     near: list[Columns] = []
     for tile in tiles:
         if np.any(np.array(tile.low_m) > high) or np.any(np.array(tile.high_m) < low):
             continue
-        found = tile.read(["xyz", *names])
+        found = tile.read(["xyz", *names], limit=limit)
         box = np.all(np.abs(found["xyz"] - (p_map - tile.origin_m)) <= radius_m, axis=1)
         found = {name: values[box] for name, values in found.items()}
         found["xyz"] = found["xyz"].astype(np.float64) + tile.origin_m

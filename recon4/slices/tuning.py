@@ -154,6 +154,9 @@ class PickTuning(Struct, frozen=True, kw_only=True):
     """Radius within which a surface is fitted by a plane [m]."""
     least_points: int = 8
     """Fewer points are no surface."""
+    sample: int = 50_000
+    """These points of each tile show most places that the map has; the others are looked for among
+    all, which takes fifteen times as long."""
 
 
 PICKS = PickTuning()
