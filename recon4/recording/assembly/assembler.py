@@ -288,8 +288,7 @@ class Assembler:
     def _release(self, before: Multiframe, frame: Multiframe) -> list[Multiframe]:
         """Return the frame held back, unless it is an incomplete one at the start."""
         if before.frame_id == 0 and len(before) < ASSEMBLY.kept_ratio * len(frame):
-            self._report.count("frames_incomplete_dropped")
-            self._report.count("points_of_incomplete_frames", len(before))
+            self._leave_out(before)
             self._held = _renumbered(frame, 0)
             return []
         if not self._begun:
@@ -305,9 +304,12 @@ class Assembler:
             return False
         if np.ptp(frame.dt_ns) >= ASSEMBLY.kept_ratio * frame.duration_ns:
             return False
+        self._leave_out(frame)
+        return True
+
+    def _leave_out(self, frame: Multiframe) -> None:
         self._report.count("frames_incomplete_dropped")
         self._report.count("points_of_incomplete_frames", len(frame))
-        return True
 
     def _take_out(self, stream: _Stream, start_ns: int, end_ns: int) -> list[Shots]:
         taken, left = [], []

@@ -81,10 +81,11 @@ class CloudReader:
                 fields = ", ".join(unread[: LISTED.few])
                 self._report.derive(DerivedKind.FIELDS_UNREAD, where=message.topic, fields=fields)
             try:
-                if says_other_order(cloud):
+                other_order = says_other_order(cloud)
+                if other_order:
                     self._report.count("clouds_other_order")
                     self._report.derive(DerivedKind.BYTES_ORDER, where=message.topic)
-                table = cloud_table(cloud)
+                table = cloud_table(cloud, other_order=other_order)
                 shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
             except CorruptFile as error:
                 self._report.count("messages_corrupt")

@@ -105,11 +105,9 @@ def _period_ns(t_ns: Array) -> float:
 
 def _before_next(t_ns: Array, period_ns: float) -> Array:
     """Times without what held one up for longer than those after it, which come soon then, (N,)."""
-    before_ns = (1.0 - EVEN_STAMPS.most_of_period) * period_ns
-    found = t_ns.copy()
-    for row in range(len(t_ns) - 2, -1, -1):
-        found[row] = min(found[row], found[row + 1] - before_ns)
-    return found
+    before_ns = (1.0 - EVEN_STAMPS.most_of_period) * period_ns * np.arange(len(t_ns))
+    earliest_ns = np.minimum.accumulate((t_ns - before_ns)[::-1])[::-1]
+    return np.asarray(earliest_ns + before_ns, np.float64)
 
 
 def _numbers(t_ns: Array, period_ns: float) -> Array:

@@ -68,8 +68,12 @@ def _lengths(x: NDArray[np.floating[Any]]) -> int:
     return int(np.count_nonzero((np.abs(x) > 1e-4) & (np.abs(x) < 1e7)))
 
 
-def cloud_table(cloud: Any) -> Table:
+def cloud_table(cloud: Any, *, other_order: bool | None = None) -> Table:
     """Fields of a ``PointCloud2``, or of another message of points, by lower-case name.
+
+    Args:
+        cloud: The message.
+        other_order: What `says_other_order` says of it; None = it is asked.
 
     Raises:
         CorruptFile: If the data are shorter than the layout.
@@ -78,7 +82,8 @@ def cloud_table(cloud: Any) -> Table:
         return cloud.table
     known, data = _known_fields(cloud), _packed(cloud)
     require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
-    order = _orders(cloud)[says_other_order(cloud)]
+    is_other = says_other_order(cloud) if other_order is None else other_order
+    order = _orders(cloud)[is_other]
     points = data.view(_point_dtype(known, int(cloud.point_step), order))
     return {
         field.name.lower(): points[field.name].astype(points[field.name].dtype.newbyteorder("="))
