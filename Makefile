@@ -95,13 +95,11 @@ kernels: $(VENV)/installed-run
 	@$(BIN)/recon4 compile
 
 # What pip would do while nothing else can run yet; a confined process cannot keep what it compiles.
-# Else the processes of a test run, which begin at once, each compile our own code and the tests, and
-# look for constants in it.
+# Else the processes of a test run, which begin at once, each compile our own code and the tests.
 bytecode: $(VENV)/installed-dev
 	@$(BIN)/python -m compileall -qq -x '/tests?/' $(VENV)/lib || true
 	@$(BIN)/python -m compileall -qq recon4 app tests tools
 	@$(BIN)/python -m tools.rewritten_tests
-	@$(BIN)/python -m tools.code_constants
 
 studies: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m 'study and not e2e' --durations=0

@@ -13,7 +13,6 @@ from collections.abc import Callable, Generator, Iterator
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
-from unittest.mock import MagicMock
 
 import pytest
 from hypothesis import settings
@@ -182,31 +181,26 @@ def short_project(short_recording, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def undrawn() -> Iterator[tuple[Callable[..., None], Callable[..., str]]]:
+def undrawn() -> Iterator[Callable[..., str]]:
     """Charts are empty in reports that this process writes: they take a third of a short run.
 
     Programs that tests start draw them, and files of tests that ask for `drawn`.
     """
     from recon4.report.figures import Chart
 
-    def without_axes(chart: Chart, *_: object, **__: object) -> None:
-        chart.axes = MagicMock(**{"get_ylim.return_value": (0.0, 1.0)})
-
-    real = Chart.__init__, Chart.svg
+    draw = Chart.svg
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Chart, "__init__", without_axes)
         patch.setattr(Chart, "svg", lambda *_, **__: '<svg class="chart"></svg>')
-        yield real
+        yield draw
 
 
 @pytest.fixture(scope="module")
-def drawn(undrawn: tuple[Callable[..., None], Callable[..., str]]) -> Iterator[None]:
+def drawn(undrawn: Callable[..., str]) -> Iterator[None]:
     """Charts are drawn from here to the end of a file."""
     from recon4.report.figures import Chart
 
     with pytest.MonkeyPatch.context() as patch:
-        for name, real in zip(("__init__", "svg"), undrawn, strict=True):
-            patch.setattr(Chart, name, real)
+        patch.setattr(Chart, "svg", undrawn)
         yield
 
 
