@@ -7,6 +7,7 @@ names, on all processors, outside any confinement, before a process reads a file
 
 from __future__ import annotations
 
+import gc
 import multiprocessing
 import os
 from collections.abc import Iterator
@@ -18,6 +19,7 @@ from recon4.sandbox.private_cache import is_compiled, mark_compiled
 from recon4.store.locks import open_lock_file, wait_for_lock
 from recon4.system.processes import die_with_parent
 from recon4.system.runtime_folder import runtime_folder
+from recon4.system.tuning import PROCESSES
 
 
 def compile_kernels(progress: Progress) -> bool:
@@ -39,7 +41,7 @@ def compile_kernels(progress: Progress) -> bool:
             return False
         calls = {name: set(kernel.calls) for name, kernel in kernels().items()}
         spawn = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(mp_context=spawn, initializer=die_with_parent) as pool:
+        with ProcessPoolExecutor(mp_context=spawn, initializer=_begin) as pool:
             done = _compiled(pool, calls)
             for _ in track(done, progress, what="kernels", unit="kernels", total=len(calls)):
                 pass
@@ -70,6 +72,11 @@ def _compiled(pool: ProcessPoolExecutor, calls: dict[str, set[str]]) -> Iterator
             future.result()
             done.add(name := running.pop(future))
             yield name
+
+
+def _begin() -> None:
+    die_with_parent()
+    gc.set_threshold(PROCESSES.collected_after)
 
 
 def _compile(name: str) -> None:
