@@ -53,23 +53,25 @@ def private_cache(folder: Path) -> dict[str, str]:
 
 
 def cached_elsewhere(folder: Path) -> tuple[Path, ...]:
-    """Targets of the links in a private cache folder, which its process must read."""
+    """Folders of what a private cache folder links to, which its process must read."""
     links = (path for path in folder.rglob("*") if path.is_symlink())
-    return tuple(dict.fromkeys(link.resolve().parent for link in links))
+    folders = dict.fromkeys(link.readlink().parent for link in links)
+    return tuple(dict.fromkeys(folder.resolve() for folder in folders))
 
 
 def _link(paths: Iterable[Path], folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     for path in paths:
         with suppress(FileExistsError):  # the one in front of it is the one that is used
-            (folder / path.name).symlink_to(path)
+            (folder / path.name).symlink_to(path.resolve() if path.is_symlink() else path)
 
 
 def _files(folder: Path, *suffixes: str) -> list[Path]:
     """Files of some suffixes in a folder; none when it is missing or others may write it."""
     with suppress(OSError):
-        paths = [folder / name for name in os.listdir(folder) if name.endswith(suffixes)]
-        return [path for path in paths if not any(map(writable_by_others, (folder, path)))]
+        if not writable_by_others(folder):
+            paths = [folder / name for name in os.listdir(folder) if name.endswith(suffixes)]
+            return [path for path in paths if not writable_by_others(path)]
     return []
 
 
@@ -83,7 +85,7 @@ def writable_by_others(path: Path) -> str:
     except OSError:
         return ""
     user, mode = os.getuid(), stat.S_IMODE(found.st_mode)
-    if found.st_uid not in (0, user, KERNELS.stat().st_uid):
+    if found.st_uid not in (0, user) and found.st_uid != KERNELS.stat().st_uid:
         return f"it belongs to user {found.st_uid}, this is user {user}"
     group = mode & stat.S_IWGRP and found.st_gid not in (0, user)
     if group or mode & stat.S_IWOTH:

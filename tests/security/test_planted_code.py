@@ -138,6 +138,15 @@ def test_a_confined_child_links_no_kernel_of_another_user(tmp_path, monkeypatch)
     assert folder not in cached_elsewhere(tmp_path / "after")
 
 
+def test_a_confined_child_of_another_reads_the_kernels_themselves(tmp_path, monkeypatch):
+    folder = kernels_of(tmp_path / "numba")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", private_cache(tmp_path / "outer")["NUMBA_CACHE_DIR"])
+    private_cache(tmp_path / "inner")
+
+    assert folder in cached_elsewhere(tmp_path / "inner")
+
+
 def test_a_cache_of_the_user_and_a_private_group_is_fine(tmp_path):
     folder = kernels_of(tmp_path / "numba")
     os.chown(folder, -1, os.getuid() if os.geteuid() == 0 else -1)
