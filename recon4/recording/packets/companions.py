@@ -6,7 +6,10 @@ changed file makes a new map. Readers use those that are given.
 
 from __future__ import annotations
 
+from base64 import b64decode, b64encode
+from binascii import Error as NoBase64
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,12 +20,17 @@ from recon4.recording.limits import LIMITS
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, same_start
 
+_BYTES = "data:application/octet-stream;base64,"
+"""What a description begins with whose file is no text (RFC 2397): a binary table of angles."""
+
 
 def described_in(rig: Rig | None) -> list[Companion]:
     """The descriptions of sensors in a rig file."""
     sensors = rig.sensors if rig is not None else ()
     return [
-        Companion(f"{s.name} (rig file)", s.description.encode()) for s in sensors if s.description
+        Companion(f"{s.name} (rig file)", _content_of(s.description))
+        for s in sensors
+        if s.description
     ]
 
 
@@ -48,10 +56,26 @@ def with_descriptions(rig: Rig, files: Sequence[Path]) -> tuple[Rig, dict[str, s
         own = [one for one in fit if one.name.startswith(sensor.name)] or fit * (len(alike) == 1)
         if len(own := _most_alike(own)) == 1:
             used[sensor.name] = own[0].name
-            sensors.append(replace(sensor, description=own[0].content.decode(errors="replace")))
+            sensors.append(replace(sensor, description=_description_of(own[0].content)))
         else:
             sensors.append(sensor)
     return replace(rig, sensors=tuple(sensors)), used
+
+
+def _description_of(content: bytes) -> str:
+    """A file as the description of a sensor: its text, or its bytes as a data URL."""
+    try:
+        return content.decode()
+    except UnicodeDecodeError:
+        return _BYTES + b64encode(content).decode()
+
+
+def _content_of(description: str) -> bytes:
+    """The file that a description is; bytes that are damaged stay text, which describes nothing."""
+    if description.startswith(_BYTES):
+        with suppress(NoBase64):
+            return b64decode(description.removeprefix(_BYTES), validate=True)
+    return description.encode()
 
 
 def _most_alike(found: list[Companion]) -> list[Companion]:

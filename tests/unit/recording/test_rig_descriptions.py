@@ -1,6 +1,7 @@
 """Files beside a rig file describe its LiDARs: a live capture has no recording to lie beside."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,11 +9,12 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.model.imu_mounts import imu_mount
 from recon4.model.lidars import lidar_model
-from recon4.model.rig import format_rig, parse_rig
+from recon4.model.rig import format_rig, load_rig, parse_rig
 from recon4.recording.packets.companions import described_in, with_descriptions
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.ouster.encode import metadata_json
 from tests.ouster_models import nominal_metadata
+from tests.unit.recording.hesai_mirrors import mirror_table
 
 METADATA = metadata_json(nominal_metadata("OS0-32", profile="LEGACY")).decode()
 FILES = {
@@ -60,6 +62,28 @@ def test_of_two_lidars_of_a_family_the_names_of_the_files_decide(tmp_path):
 
     assert used == {"left": "left_1.json", "right": "right_1.json"}
     assert unnamed == {}
+
+
+def test_two_binary_tables_of_angles_stay_byte_for_byte_in_a_rig_file_that_is_read(tmp_path):
+    table = mirror_table().content
+    for name in ("left.dat", "right.dat"):
+        (tmp_path / name).write_bytes(table)
+    rig = rig_of(("left", "AT128"), ("right", "AT128"))
+
+    described, used = with_descriptions(rig, sorted(tmp_path.iterdir()))
+
+    assert used == {"left": "left.dat", "right": "right.dat"}
+    (tmp_path / "rig.toml").write_text(format_rig(described))
+    kept = described_in(load_rig(tmp_path / "rig.toml"))
+    assert [one.content for one in kept] == [table, table]
+
+
+def test_a_damaged_binary_table_describes_nothing():
+    damaged = "data:application/octet-stream;base64,7v8BBYA"
+    rig = rig_of(("left", "AT128"))
+    (kept,) = described_in(replace(rig, sensors=(replace(rig.sensors[0], description=damaged),)))
+
+    assert not any(family.describes(kept) for family in FAMILIES)
 
 
 def test_a_description_in_the_rig_file_stays(tmp_path):
