@@ -228,7 +228,8 @@ class KnownPlaces:
         self.views = views
         self.held = np.zeros(1 << KNOWN_PLACES.bits, np.int64)
         moving, met = np.empty((2, *KNOWN_PLACES.cubes), np.int32)
-        self.cubes = Cubes(moving, met, *np.empty((2, *KNOWN_PLACES.cubes[:2]), np.float32))
+        low_m, floor_m = np.empty((2, *KNOWN_PLACES.cubes[:2]), np.float32)
+        self.cubes = Cubes(moving, met, low_m, floor_m, np.empty(low_m.shape, np.bool_))
 
 
 def _classes(frame: Multiframe, places: KnownPlaces, *, known: _Compared) -> NDArray[np.uint8]:

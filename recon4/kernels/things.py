@@ -56,6 +56,8 @@ class Cubes(NamedTuple):
     """Lowest point of each column [m], (I, J)."""
     floor_m: NDArray[np.float32]
     """Lowest point around each column [m], (I, J)."""
+    near: NDArray[np.bool_]
+    """Whether something moves in a column or beside it, (I, J)."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -79,6 +81,7 @@ def spread_to_neighbors(
     cubes.moving[:] = 0
     cubes.met[:] = 0
     cubes.low_m[:] = np.inf
+    cubes.near[:] = False
     for n in range(len(p)):
         verdict[n] = VERDICT.met if evidence[n] <= EVIDENCE.doubted else VERDICT.unknown
         if evidence[n] == EVIDENCE.moved:
@@ -86,10 +89,14 @@ def spread_to_neighbors(
         if _cube_of((p[n, 0], p[n, 1], p[n, 2]), body_m, rules.cube_m, shape, at):
             i, j, k = at[0], at[1], at[2]
             cubes.low_m[i, j] = min(cubes.low_m[i, j], p[n, 2])
-            cubes.moving[i, j, k] += verdict[n] == VERDICT.seen_through
             cubes.met[i, j, k] += verdict[n] == VERDICT.met
+            if verdict[n] == VERDICT.seen_through:
+                if cubes.moving[i, j, k] == 0:
+                    cubes.near[i - 1 : i + 2, j - 1 : j + 2] = True
+                cubes.moving[i, j, k] += 1
     for n in range(len(p)):
-        if _cube_of((p[n, 0], p[n, 1], p[n, 2]), body_m, rules.cube_m, shape, at):
+        is_inside = _cube_of((p[n, 0], p[n, 1], p[n, 2]), body_m, rules.cube_m, shape, at)
+        if is_inside and cubes.near[at[0], at[1]]:
             verdict[n] = _by_neighbors(verdict[n], p[n, 2], at, rules, cubes)
 
 
@@ -183,6 +190,8 @@ def move_as_things(
         cubes: With the lowest points of `spread_to_neighbors`; the counts are overwritten.
     """
     p, evidence, verdict = points
+    if _count_moving(verdict, chosen) < rules.few:
+        return
     label, cube = cubes.moving, np.full((len(p), 3), -1, np.int64)
     label[:] = -1
     _find_floor(cubes, rules.around)
@@ -204,6 +213,14 @@ def move_as_things(
         i, j, k = cube[n, 0], cube[n, 1], cube[n, 2]
         if i >= 0 and evidence[n] != EVIDENCE.stands and _moves(sums[label[i, j, k]], rules):
             verdict[n] = VERDICT.seen_through
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _count_moving(verdict: NDArray[np.int8], chosen: NDArray[np.bool_]) -> int:
+    moving: Any = 0
+    for n in range(len(verdict)):
+        moving += chosen[n] and verdict[n] == VERDICT.seen_through
+    return int(moving)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
