@@ -5,10 +5,10 @@
 WALK is a project of ``recon4 process``, RECORDING the folder of ``recon4 simulate`` with its truth.
 The map is laid on the true model as by `tests.benchmarks.delivered`: by the fit of its trajectory,
 whose error is that of ATE, then by ICP. Along a corridor the trajectory alone leaves a turn open.
-Seen is a stretch of a plastered wall at the height of the cut which three places of the path see,
-nearer than 20 m. Right is a stretch of it with a drawn wall within 1 cm. Invented is a stretch of a
-drawn wall with nothing of a building, seen or not, within 5 cm: walls of every material, columns,
-panes and mirrors.
+Seen is a stretch of a wall (of a building, but no door leaf, frame, pane or mirror) at the height
+of the cut which three places of the path see, nearer than 20 m. Right is a stretch of it with a
+drawn wall within 1 cm. Invented is a stretch of a drawn wall with nothing of a building, seen or
+not, within 5 cm: walls of every material, columns, panes and mirrors.
 """
 
 from __future__ import annotations
@@ -37,7 +37,8 @@ from tests.benchmarks.delivered import onto_truth
 
 STEP_M = 0.02
 CUT_M = 1.2
-WALLS = (MATERIAL.plaster,)
+NO_WALLS = (MATERIAL.wood, MATERIAL.paper)
+"""Leaves of doors, and frames."""
 PANES = max(SURFACES.glass, SURFACES.clear, SURFACES.mirror)
 HEAD = ("world", "storey", "seen m", "right %", "drawn m", "1 cm %", "invented %", "median mm",
         "95 % mm", "rms mm", "doors, windows")  # fmt: skip
@@ -83,7 +84,7 @@ def row(world: World, plan: FloorPlan, T_world_map: SE3, *, path: Array) -> tupl
     """Figures of a plan."""
     floor_m = float((T_world_map @ np.array([[0.0, 0.0, plan.storey.floor_m]]))[0, 2])
     cut_m = floor_m + CUT_M
-    true = true_walls(world.mesh, cut_m, np.isin(world.mesh.reflectivity, np.float32(WALLS)))
+    true = true_walls(world.mesh, cut_m, of_walls(world.mesh))
     real = true_walls(world.mesh, cut_m, of_buildings(world.mesh))
     storey = path[np.abs(path[:, 2] - floor_m - CUT_M) < 1.2]
     seen = seen_from(Scene(world.mesh), true, storey, cut_m)
@@ -110,6 +111,12 @@ def row(world: World, plan: FloorPlan, T_world_map: SE3, *, path: Array) -> tupl
 def of_buildings(mesh: WorldMesh) -> np.ndarray:
     """Which triangles a plan may show as a wall: of a building, a pane or a mirror, (T,)."""
     return (mesh.kind == SurfaceKind.BUILDING) | (mesh.reflectivity <= np.float32(PANES))
+
+
+def of_walls(mesh: WorldMesh) -> np.ndarray:
+    """Which triangles are of a wall or a column, of any color, (T,)."""
+    found = (mesh.kind == SurfaceKind.BUILDING) & (mesh.reflectivity > np.float32(PANES))
+    return found & ~np.isin(mesh.reflectivity, np.float32(NO_WALLS))
 
 
 def true_walls(mesh: WorldMesh, z_m: float, wall: np.ndarray) -> TrueWalls:
