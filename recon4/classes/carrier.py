@@ -60,12 +60,18 @@ class CarrierVolume:
             counts.ravel()[:] += np.bincount(cube[verdict == what], minlength=size)
 
     def filled(self) -> CarrierCubes:
-        """The cubes that the carrier fills, and those around them."""
-        from scipy.ndimage import binary_dilation
+        """The cubes that the carrier fills, and those around them.
 
+        Who walks along is beside the carrier in many scans, but at no place in nearly all of them.
+        """
+        from scipy.ndimage import binary_dilation, binary_propagation
+
+        touching = np.ones((3, 3, 3))
         often = max(VOLUME.least_scans, VOLUME.occupied * self.scans)
         inner = (self.occupied >= often) & (self.through > self.met)
-        return CarrierCubes(inner, binary_dilation(inner, np.ones((3, 3, 3))))
+        always = inner & (self.occupied >= VOLUME.always * self.scans)
+        inner = binary_propagation(always, touching, mask=inner)
+        return CarrierCubes(inner, binary_dilation(inner, touching))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -89,8 +89,11 @@ class CarrierVolumeTuning(Struct, frozen=True, kw_only=True):
     """… which are compared with others this far apart [ns]."""
     occupied: float = 0.1
     """A cube is of the carrier if at least this part of the scans has points in it, three at least,
-    and other scans see through more of them than they meet."""
+    and other scans see through more of them than they meet …"""
     least_scans: int = 3
+    always: float = 0.9
+    """… and it is connected with one that this part of the scans has points in. Of two walks with
+    people it is at most 0.78 of those, and 1.0 of the carrier."""
 
 
 VOLUME = CarrierVolumeTuning()

@@ -30,6 +30,8 @@ class Cause(IntEnum):
     """The person who carries the sensors."""
     REFLECTION = 4
     """A mirror, or a pane at grazing incidence, was met before."""
+    IN_WALL = 5
+    """A person who walks through a wall or furniture, as nobody can."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,8 +67,10 @@ def causes(
     found[away_m < TOLERANCE.surface_m] = Cause.SURFACE
     found[_behind_mirror(setup, points, origins)] = Cause.REFLECTION
     # People walk through walls here, and what of a wall is in one of them is the wall.
-    moving_m = np.minimum(_to_people(setup, points, t_s), _to_vehicles(setup, points, t_s))
-    found[moving_m < np.minimum(TOLERANCE.body_m, away_m)] = Cause.MOVING
+    people_m, in_wall = _to_people(setup, points, t_s)
+    moving_m = np.minimum(people_m, _to_vehicles(setup, points, t_s))
+    moves = moving_m < np.minimum(TOLERANCE.body_m, away_m)
+    found[moves] = np.where(in_wall & (people_m <= moving_m), Cause.IN_WALL, Cause.MOVING)[moves]
     carrier_m = _to_carrier(setup, points, t_s)
     found[carrier_m < np.minimum(TOLERANCE.body_m, away_m)] = Cause.CARRIER
     return found
@@ -93,19 +97,26 @@ def _distance(scene: Scene, points: Array, rows: NDArray[np.bool_]) -> Array:
     return out
 
 
-def _to_people(setup: SimulationSetup, points: Array, t_s: Array) -> Array:
-    """Distance to the surface of the nearest person [m], inf = none at this height, (N,)."""
-    found = np.full(len(points), np.inf)
+def _to_people(
+    setup: SimulationSetup, points: Array, t_s: Array
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Distance to the surface of the nearest person [m], inf = none at this height, (N,), and
+    whether he is in a wall at this height, (N,).
+    """
+    found, in_wall = np.full(len(points), np.inf), np.zeros(len(points), np.bool_)
     companions = setup.surroundings.companions
     if companions is None:
-        return found
+        return found, in_wall
     centers, feet_m = companions.centers(setup.walk, t_s)
     high = points[:, 2] - feet_m
     inside = (high > 0.0) & (high < COMPANION.height_m + TOLERANCE.body_m)
     for center in centers:
         away_m = np.abs(np.linalg.norm(points[:, :2] - center, axis=1) - COMPANION.radius_m)
-        found[inside] = np.minimum(found, away_m)[inside]
-    return found
+        near = inside & (away_m < np.minimum(found, 2.0 * TOLERANCE.body_m))
+        found[near] = away_m[near]
+        axis = np.column_stack([center, points[:, 2]])[near]
+        in_wall[near] = setup.surroundings.scene.distance(axis) < COMPANION.radius_m
+    return found, in_wall
 
 
 def _to_vehicles(setup: SimulationSetup, points: Array, t_s: Array) -> Array:

@@ -1,12 +1,14 @@
 """Classes of points on simulated walks, against the true cause of each point, and what they change.
 
-    python -m tests.benchmarks.classes [SCENE ...] [--seed 11] [--work FOLDER] [--estimated]
+    python -m tests.benchmarks.classes [SCENE[:VARIANT] ...] [--seed 11] [--work FOLDER]
+        [--lidar MODEL] [--estimated]
 
 The carrier returns beams. Points are placed by the true poses, so the figures are those of the
 stages `classes` and `map` alone: how many points of each cause are kept or left out, and the mean
 distance of the delivered points from the true surfaces, without classes and with them.
 ``--estimated``: the packets of the walk are mapped, and multiframes, poses and mirrors are those
-of the whole program; no distances, for which there is `tests.benchmarks.delivered`.
+of the whole program; no distances, for which there is `tests.benchmarks.delivered`. ``--lidar``:
+one LiDAR in place of two VLP-16.
 """
 
 from __future__ import annotations
@@ -39,7 +41,7 @@ from recon4.simulation.crowd import ALONE, Crowd
 from recon4.simulation.degradation import PEOPLE, VEHICLES
 from recon4.simulation.frames import simulate_frames
 from recon4.simulation.lidar import LidarModel
-from recon4.simulation.setup import Models, SimulationSetup, prepare
+from recon4.simulation.setup import Models, SimulationSetup, prepare, rig_of_lidars
 from recon4.simulation.simulate import record
 from recon4.store.arrays import load_trajectory
 from recon4.store.classes import StoredClasses
@@ -57,6 +59,8 @@ class WalkScene:
     crowd: Crowd = ALONE
     tilt_deg: float = 0.0
     """The first LiDAR looks down ahead by this angle."""
+    lidar: str = ""
+    """Its model, if there is only one."""
 
 
 SCENES = {
@@ -79,17 +83,26 @@ def main() -> None:
     parser.add_argument("scenes", nargs="*", default=list(SCENES))
     parser.add_argument("--seed", type=int, default=11)
     parser.add_argument("--work", type=Path)
+    parser.add_argument("--lidar", default="")
     parser.add_argument("--estimated", action="store_true", help="poses of the whole program")
     a = parser.parse_args()
     tables = estimated_figures if a.estimated else figures
     with tempfile.TemporaryDirectory() as folder:
         for name in a.scenes:
-            print(f"\n{name}\n{tables(name, a.work or Path(folder), seed=a.seed)}", flush=True)
+            scene = scene_of(name, a.lidar)
+            print(f"\n{name}\n{tables(scene, a.work or Path(folder), seed=a.seed)}", flush=True)
 
 
-def figures(name: str, work: Path, *, seed: int) -> str:
+def scene_of(name: str, lidar: str) -> WalkScene:
+    """The scene of a name, in a variant of its world behind a colon."""
+    kind, colon, variant = name.partition(":")
+    scene = SCENES[kind]
+    return replace(scene, world=scene.world + colon + variant, lidar=lidar)
+
+
+def figures(scene: WalkScene, work: Path, *, seed: int) -> str:
     """The tables of a scene by true poses; its walk is kept in the folder for the next run."""
-    setup, folder = walk_of(name, seed), work / f"{name}-{seed}"
+    setup, folder = walk_of(scene, seed), work / folder_name(scene, seed)
     if not folder.exists():
         folder.mkdir(parents=True)
         simulate_frames(setup, folder)
@@ -104,15 +117,16 @@ def figures(name: str, work: Path, *, seed: int) -> str:
     return f"{found}\n{cost}\n\n{text_table(head, maps)}"
 
 
-def estimated_figures(name: str, work: Path, *, seed: int) -> str:
+def estimated_figures(scene: WalkScene, work: Path, *, seed: int) -> str:
     """The table of a scene whose packets the whole program maps; walk and project are kept."""
-    setup, recording = walk_of(name, seed), work / f"{name}-{seed}-packets"
+    setup, name = walk_of(scene, seed), folder_name(scene, seed)
+    recording = work / f"{name}-packets"
     if not recording.exists():
-        crowd = SCENES[name].crowd
+        crowd = scene.crowd
         beside = {PEOPLE: crowd.people, VEHICLES: crowd.vehicles}
         values = {kind: float(number) for kind, number in beside.items() if number}
         record(setup, {recording: values}, bag=False, progress=Silent())
-    runs, _ = map_walk(recording, work / f"{name}-{seed}-project", audited=False)
+    runs, _ = map_walk(recording, work / f"{name}-project", audited=False)
     level = runs["level"].artifact.folder
     frames, truth = FrameStore.open(runs["frames"].artifact.folder), recording / "truth.tum"
     mirrors = load_mirrors(level / "mirrors.npz")
@@ -120,14 +134,20 @@ def estimated_figures(name: str, work: Path, *, seed: int) -> str:
     return f"{by_cause(frames, read_tum(truth), stored, setup=setup)}\n{cost}"
 
 
-def walk_of(name: str, seed: int) -> SimulationSetup:
+def folder_name(scene: WalkScene, seed: int) -> str:
+    """Of a walk and its map; no scene shares it with another."""
+    crowd, world = scene.crowd, scene.world.replace(":", "-")
+    return f"{world}-{crowd.people}-{crowd.vehicles}{scene.lidar}-{seed}"
+
+
+def walk_of(scene: WalkScene, seed: int) -> SimulationSetup:
     """The walk of a scene."""
-    scene = SCENES[name]
+    rig = rig_of_lidars([scene.lidar]) if scene.lidar else load_rig("4recon")
     return prepare(
         scene.world,
         seconds=scene.seconds,
         seed=seed,
-        rig=tilted(load_rig("4recon"), scene.tilt_deg),
+        rig=tilted(rig, scene.tilt_deg),
         models=Models(lidar=replace(LidarModel(), carrier_returns=True)),
         crowd=scene.crowd,
     )

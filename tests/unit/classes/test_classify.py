@@ -52,6 +52,20 @@ def test_the_carrier_behind_the_sensor_is_found_and_the_walls_beside_are_kept():
     assert kept(classes, names, "corridor") > 0.998
 
 
+def test_who_walks_beside_the_carrier_moves_and_is_no_part_of_the_carrier():
+    carrier = cylinder("carrier", lambda t_s: (0.4 * t_s - 0.4, 0.0), 0.2, 1.6)
+    friend = cylinder("friend", lambda t_s: (0.4 * t_s, 0.9 + 0.15 * np.sin(t_s)), 0.2)
+
+    classes, names = found(
+        *(box("hall", (-6.0, -1.5, 0.0), (12.0, 1.8, 2.5)), carrier, friend),
+        azimuth_deg=(-180.0, 180.0),
+    )
+
+    assert (classes[names == "carrier"] == PointClass.CARRIER).mean() > 0.99
+    assert (classes[names == "friend"] == PointClass.MOVING).mean() > 0.95
+    assert kept(classes, names, "hall") > 0.995
+
+
 def test_beams_that_graze_a_doorway_do_not_erase_its_frame():
     left = box("frame", (5.0, -3.0, 0.0), (5.2, -0.45, 3.0))
     right = box("frame", (5.0, 0.45, 0.0), (5.2, 3.0, 3.0))
