@@ -66,7 +66,8 @@ class HeightContradiction:
     largest_m_s2: float
     usual_m_s2: float
     rise_m: float
-    """Largest height that the IMU measures meanwhile and the trajectory has not [m]."""
+    """Largest height that the IMU measures meanwhile and the trajectory has not [m]; up is
+    positive."""
 
     @property
     def doubt(self) -> HeightDoubt:
@@ -189,22 +190,25 @@ def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightCont
             float(knots_s[span.stop - 1]),
             float(np.abs(extra[span]).max()),
             usual,
-            _rise_m(extra[span]),
+            _rise_m(extra[span], in_motion=span.start == 0),
         )
         for span in spans
     ]
 
 
-def _rise_m(extra: Array) -> float:
-    """Height with the largest size that a stretch of accelerations leads to, from rest [m].
+def _rise_m(extra: Array, *, in_motion: bool) -> float:
+    """Largest height from one moment to a later one that a stretch leads to, from rest [m].
 
-    A speed that is left at its end carries on until the LiDARs correct it.
+    A speed that is left at its end carries on until the LiDARs correct it. A recording that begins
+    `in_motion`, in this stretch, has no rest before it: there the LiDARs give the speed at its end.
     """
-    speed_m_s = np.cumsum(extra) * RIDES.knot_s
-    height_m = np.cumsum(speed_m_s) * RIDES.knot_s
-    carried_m = height_m[-1] + RIDES.same_ride_s * speed_m_s[-1]
-    reached_m = np.append(height_m, carried_m)
-    return float(reached_m[np.argmax(np.abs(reached_m))])
+    speed_m_s = np.cumsum(np.append(0.0, extra)) * RIDES.knot_s
+    if in_motion:
+        speed_m_s -= speed_m_s[-1]
+    height_m = np.append(0.0, np.cumsum(speed_m_s) * RIDES.knot_s)
+    reached_m = np.append(height_m, height_m[-1] + RIDES.same_ride_s * speed_m_s[-1])
+    low, high = int(np.argmin(reached_m)), int(np.argmax(reached_m))
+    return float(np.copysign(reached_m[high] - reached_m[low], high - low))
 
 
 def _contradiction(

@@ -142,6 +142,20 @@ def test_a_step_of_a_lift_is_announced_but_forbids_nothing() -> None:
     assert is_severe(HeightContradiction(3.0, 6.0, 0.15, 0.03, -1.2))
 
 
+def test_a_walk_that_sinks_when_its_recording_begins_is_wrong_by_what_it_sinks() -> None:
+    trajectory, imu = walked("office", seconds=20.0)
+    t_s = (trajectory.t_ns - trajectory.t_ns[0]) * 1e-9
+    sunk_m = 0.2 * np.exp(-t_s / 0.6)
+    place = trajectory.T_a_b.t + np.outer(sunk_m, [0.0, 0.0, 1.0])
+    sinking = Trajectory(trajectory.t_ns, SE3(trajectory.T_a_b.R, place))
+
+    (found,) = unseen_rides(sinking, imu, RIG, lost_ns=NOTHING_LOST)
+
+    assert isinstance(found, HeightContradiction)
+    assert found.start_s < 1.0
+    assert abs(found.rise_m) == pytest.approx(0.15, abs=0.08)
+
+
 @pytest.mark.parametrize(("break_knots", "found"), [(4, 1), (12, 2)])
 def test_a_contradiction_goes_on_through_a_short_break(break_knots: int, found: int) -> None:
     """As in elevator:2: 0.2 m/s² up for 2.5 s, a break, 0.2 m/s² down for 2.5 s."""
