@@ -22,7 +22,12 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.choose import Trial, Trials, choose
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.hypothesis_table import row_of
-from recon4.registration.imu_choice import choose_imu, start_and_fastest_turn
+from recon4.registration.imu_choice import (
+    choose_imu,
+    start_and_fastest_turn,
+    with_residuals,
+    without_forces,
+)
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.moving import find_moving, hide_moving
 from recon4.registration.tracked_walk import TrackedWalk, WalkInputs, track_walk
@@ -58,7 +63,19 @@ def choose_walk(recording: WalkInputs) -> Choice:
     hypotheses = _WalkHypotheses(recording)
     trials = choose(hypotheses.list, partial(track_walk, recording), most=_most_walks(recording))
     whole = tuple(row_of(row, whole=True, chosen=row is trials.best.row) for row in trials.rows)
-    return Choice(trials.best, (*hypotheses.windows, *whole), _moving(recording, trials))
+    return Choice(_stated(trials), (*hypotheses.windows, *whole), _moving(recording, trials))
+
+
+def _stated(trials: Trials[TrackedWalk]) -> Trial[TrackedWalk]:
+    """The best one; if a whole walk has shown that forces are wrong, with the residuals of both."""
+    best = trials.best
+    imu = best.hypothesis.imu
+    if imu.choice.outcome != "accelerometer not used" or imu.choice.with_m is not None:
+        return best
+    won = [row for row in trials.rows if row.verdict.wins]
+    rival = next(row for row in reversed(won) if row.hypothesis.imu.choice != imu.choice)
+    stated = with_residuals(imu, rival.score, best.row.score)
+    return replace(best, row=replace(best.row, hypothesis=replace(best.hypothesis, imu=stated)))
 
 
 def _most_walks(recording: WalkInputs) -> int:
@@ -76,10 +93,12 @@ class _WalkHypotheses:
 
     def list(self, trials: Trials[TrackedWalk]) -> Iterator[Hypothesis]:
         """The next hypothesis, by what those before have shown."""
-        yield self._first()
+        first = self._first()
+        yield first
         leave_out = self._recording.settings.odometry.leave_out_moving
         if not (leave_out and trials.best.tracked.moving.is_crowded):
             yield from _with_corrected_imu(trials)
+            yield from _where_forces_lose(trials, first)
         if leave_out and not is_settled(trials):
             yield from self._without_moving(trials)
 
@@ -191,6 +210,24 @@ def _with_corrected_imu(trials: Trials[TrackedWalk]) -> Iterator[Hypothesis]:
         yield best.hypothesis.with_imu(imu)
         if trials.best is best:
             return
+
+
+def _where_forces_lose(trials: Trials[TrackedWalk], first: Hypothesis) -> Iterator[Hypothesis]:
+    """The gyroscope alone, if tracking was lost with forces that no correction found.
+
+    Windows of ten multiframes do not show them: a wrong lever arm pushes in turns only. What a walk
+    that was lost found wrong with the IMU is forgotten.
+    """
+    imu = first.imu.samples
+    if not trials.best.tracked.score.lost or imu is None or not np.isfinite(imu.accel_m_s2).all():
+        return
+    yield replace(
+        first.with_imu(without_forces(imu)),
+        because=Because.GYROSCOPE_ALONE,
+        proof=Proof.CLEARLY_BETTER,
+    )
+    if trials.last is trials.best:
+        yield from _with_corrected_imu(trials)
 
 
 def _as_found(trial: Trial[TrackedWalk]) -> ImuAssumption:

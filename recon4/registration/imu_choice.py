@@ -18,7 +18,7 @@ from recon4.model.frames import Frames
 from recon4.model.odometry_figures import ImuChoice
 from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import Because, TrialVerdict, TriedHypothesis
-from recon4.registration.choose import Trial, Trials, choose
+from recon4.registration.choose import Trials, choose
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.hypothesis_table import row_of
 from recon4.registration.motion import ImuMotion
@@ -177,7 +177,12 @@ def _variants(
         doubted=used.hypothesis.imu,
     )
     if trials.last.verdict is TrialVerdict.TURNS_EXPLAINED:
-        yield _without_forces(used)
+        assert used.hypothesis.imu.samples is not None
+        yield Hypothesis(
+            because=Because.GYROSCOPE_ALONE,
+            imu=without_forces(used.hypothesis.imu.samples),
+            proof=Proof.CLEARLY_BETTER,
+        )
 
 
 def _without_bias(imu: ImuSamples, zero_rad_s: Array) -> ImuAssumption:
@@ -188,17 +193,18 @@ def _without_bias(imu: ImuSamples, zero_rad_s: Array) -> ImuAssumption:
     )
 
 
-def _without_forces(used: Trial[TrackedWindows]) -> Hypothesis:
-    imu = used.hypothesis.imu.samples
-    assert imu is not None
-    return Hypothesis(
-        because=Because.GYROSCOPE_ALONE,
-        imu=ImuAssumption(
-            ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan)),
-            ImuChoice(outcome="accelerometer not used"),
-        ),
-        proof=Proof.CLEARLY_BETTER,
+def without_forces(imu: ImuSamples) -> ImuAssumption:
+    """The gyroscope alone."""
+    return ImuAssumption(
+        ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan)),
+        ImuChoice(outcome="accelerometer not used"),
     )
+
+
+def with_residuals(imu: ImuAssumption, rival: Score, own: Score) -> ImuAssumption:
+    """The same, with the residuals of the rival that uses more of the IMU, and its own."""
+    figures = {"with_m": rival.residual_m, "without_m": own.residual_m}
+    return replace(imu, choice=msgspec.structs.replace(imu.choice, **figures))
 
 
 def _both_settled(trials: Trials[TrackedWindows]) -> Iterator[Hypothesis]:
@@ -264,9 +270,7 @@ def _chosen(stages: list[Trials[TrackedWindows]]) -> ImuTrials:
     imu = best.hypothesis.imu
     if best.verdict is TrialVerdict.CLEARLY_BETTER and imu.choice.outcome in _LESS:
         rival = [row for row in stages[-1].rows if row.verdict.wins][-2]
-        figures = {"with_m": rival.score.residual_m}
-        figures["without_m"] = best.tracked.score.residual_m
-        imu = replace(imu, choice=msgspec.structs.replace(imu.choice, **figures))
+        imu = with_residuals(imu, rival.score, best.tracked.score)
     tried = tuple(
         row_of(row, whole=False, chosen=row is best.row) for trials in stages for row in trials.rows
     )

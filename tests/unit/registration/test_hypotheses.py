@@ -7,16 +7,18 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.model.odometry_figures import MovingFigures, MovingOutcome
+from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import Because
 from recon4.progress import Silent
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption
-from recon4.registration.imu_choice import AS_RECORDED
+from recon4.registration.imu_choice import AS_RECORDED, start_and_fastest_turn
 from recon4.registration.pulled_motion import less_sure
 from recon4.registration.tracked_walk import TrackedWalk, WalkInputs, track_walk
 from recon4.registration.walk_steps import WalkSteps
-from recon4.settings import Settings
+from recon4.settings import Settings, preset
+from tests.unit.registration.test_imu_choice import Walk as RecordedWalk
 from tests.unit.registration.test_moving import GROUP, ROWS, Walk
 
 SETTINGS = Settings()
@@ -123,3 +125,31 @@ def test_what_was_left_out_makes_nothing_less_sure() -> None:
     moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.LEFT_OUT)
 
     assert not list(less_sure(steps, moving, with_imu=False))
+
+
+class Shaken(RecordedWalk):
+    """A recording whose accelerometer is pushed where no window of the trial looks."""
+
+    def __init__(self, frames) -> None:
+        imu = frames.imu
+        windows = start_and_fastest_turn(imu, frames.t_mid_ns)
+        tried = {row for window in windows for row in window}
+        free = [
+            row for row in range(12, len(frames) - 8) if not tried & set(range(row - 2, row + 8))
+        ]
+        since_s = (imu.t_ns - frames.t_mid_ns[free[0]]) * 1e-9
+        accel = imu.accel_m_s2.copy()
+        accel[(since_s > 0.0) & (since_s < 0.5)] += [40.0, 0.0, 0.0]
+        super().__init__(frames, ImuSamples(imu.t_ns, imu.gyro_rad_s, accel))
+
+
+def test_forces_that_lose_the_track_outside_of_all_windows_are_not_used(frames) -> None:
+    recording = WalkInputs(Shaken(frames), preset("indoor"), Silent(), None)
+
+    found = choose_walk(recording)
+
+    first, alone = (row for row in found.tried if row.whole)
+    assert (first.because, alone.because) == (Because.START, Because.GYROSCOPE_ALONE)
+    assert first.lost > alone.lost == 0
+    choice = found.best.hypothesis.imu.choice
+    assert choice.outcome == "accelerometer not used" and choice.with_m > choice.without_m
