@@ -2,7 +2,7 @@
 
 ``measured.toml`` is written with ``python -m tests.benchmarks.precision RUNS --toml NAME``; each
 source is one set of runs. An *alarm* makes the verdict worse than good. It is *true* in a run whose
-trajectory is wrong, or whose fault it names.
+trajectory is wrong, or whose fault it names. ``--faults`` counts kinds at any level.
 """
 
 from __future__ import annotations
@@ -48,6 +48,7 @@ the whole map has no place there.
 
 *Measured* counts the alarms (*check* or *do not use*) in runs with known truth. An alarm is true in
 a run whose trajectory is wrong, or whose fault it names; wrong runs without it may have others.
+Of kinds that may be notes it says in how many runs with and without their fault they are said.
 [Precision](../studies/precision.md) says how the runs were made. Of a published table only the
 first reason of each run is known, by the code of its time.
 
@@ -59,8 +60,8 @@ _READERS = """\
 
 What the readers of recordings repair, leave out or doubt. `recon4 info` says it before a map is
 made, `recon4 process` while it reads, the phone while it records. They make a 3-D map *check*. Of a
-2-D map they are notes, except what they say of mounts. In the measured runs they are counted
-together, as IMPORT-REMARK.
+2-D map they are notes, except what they say of mounts. Most are counted together in the
+measured runs, as IMPORT-REMARK.
 """
 _DERIVED = """\
 ## What readers derive
@@ -122,8 +123,10 @@ def _section(kind: FindingKind, entry: KindText) -> str:
     rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", "", f"- says: {shown}"]
     if entry.detection:
         rows.append(f"- detected: {entry.detection}")
-    if kind not in catalog().readers:
-        measured = (_capital(source.words(kind)) for source in sources())
+    by_reader = kind in catalog().readers
+    counted = [one for one in sources() if not by_reader or kind in one.faults]
+    if counted:
+        measured = (_capital(source.words(kind)) for source in counted)
         rows.append(f"- measured: {'. '.join(measured)}")
     if entry.remedy:
         rows.append(f"- what to do: {entry.remedy}")
@@ -149,6 +152,18 @@ class Alarms(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return self.true / self.alarms
 
 
+class FaultCounts(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """In how many runs a kind is said, at any level."""
+
+    with_fault: int
+    """Runs with a fault that it names …"""
+    said: int
+    """… and those of them that say it."""
+    without: int
+    false: int
+    """Likewise without such a fault."""
+
+
 class MeasuredRuns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A set of runs."""
 
@@ -158,9 +173,15 @@ class MeasuredRuns(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     wrong: int
     """… and those whose is not."""
     kinds: dict[FindingKind, Alarms]
+    faults: dict[FindingKind, FaultCounts] = {}
+    """Kinds that were counted as notes, too."""
 
     def words(self, kind: FindingKind) -> str:
         """What it says of a kind."""
+        named = self.faults.get(kind)
+        if named is not None:
+            text = f"said in {named.said} of {named.with_fault} runs with its fault"
+            return f"{text}, in {named.false} of {named.without} without it ({self.name})"
         runs = self.right + self.wrong
         found = self.kinds.get(kind)
         if found is None:

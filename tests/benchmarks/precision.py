@@ -1,10 +1,12 @@
 """How often each kind of finding is right: precision and recall over runs of the proving ground.
 
     python -m tests.benchmarks.precision OUT/runs.jsonl [docs/studies/… …] [--toml NAME]
+        [--faults KIND,…]
 
 Of a page with the published table (``.md``) only the first reason of each run is known.
 ``--toml`` prints a source for ``recon4/findings/measured.toml``, whose figures the page
-``docs/reference/findings.md`` quotes.
+``docs/reference/findings.md`` quotes. ``--faults`` adds, of kinds that may be notes, in how many
+runs with a fault that they name, and without one, they are said at any level.
 
 A finding is an *alarm* if it makes the verdict worse than good. Its precision is the ratio of its
 alarms that stand in runs whose trajectory is not right, or whose degradation it names; its recall
@@ -53,10 +55,15 @@ NAMES = {
     "gnss-clock": {"GNSS-CLOCK"},
     "people": {"MOVING-OBJECTS"},
     "vehicles": {"MOVING-OBJECTS"},
+    "imu-lever-arm": {"IMU-LEVER-ARM", "IMU-ACCELEROMETER-NOT-USED"},
+    "imu-set": {"CLOCK-JUMP"},
+    "recorder-set": {"CLOCK-JUMP"},
+    "frames-set": {"CLOCK-BACK"},
 }
-"""Degradation -> kinds that name it: no false alarm, even if the trajectory is right."""
+"""Degradation or fault -> kinds that name it: no false alarm, even if the trajectory is right."""
 
-
+WITH_MIRRORS = ("mirrors", "showroom")
+"""Worlds in which there is one."""
 _FIRST_REASONS = {
     "The rig file contradicts the recording": "RIG-CONTRADICTED",
     "Between .* moving objects": "MOVING-OBJECTS",
@@ -114,6 +121,17 @@ def kind_counts(lines: Iterable[Line]) -> dict[str, KindCounts]:
     }
 
 
+def fault_counts(lines: Sequence[Line], kind: str) -> dict[str, int]:
+    """In how many runs with a fault that a kind names, and without one, it is said."""
+    said = Counter((kind in _named(line), kind in line["kinds"]) for line in lines)
+    return {
+        "with_fault": said[True, True] + said[True, False],
+        "said": said[True, True],
+        "without": said[False, True] + said[False, False],
+        "false": said[False, True],
+    }
+
+
 def false_alarms(lines: Sequence[Line]) -> dict[str, float]:
     """Ratio of the right runs without a degradation that it names, by verdict."""
     clean = [
@@ -152,7 +170,7 @@ def _names_a_degradation(line: Line) -> bool:
 def _named(line: Line) -> set[str]:
     """The kinds that name what is wrong with a recording, or what stands in its world."""
     named = {kind for one in line["degradation"].split("+") for kind in NAMES.get(one, ())}
-    return named | ({"MIRROR"} if line["walk"].startswith("mirrors") else set())
+    return named | ({"MIRROR"} if line["walk"].startswith(WITH_MIRRORS) else set())
 
 
 def table_lines(page: Path) -> list[Line]:
@@ -185,15 +203,22 @@ def _kind_of(reason: str) -> str:
     raise ValueError(f"expected the first reason of a run, got {reason!r}")
 
 
-def source_toml(lines: Sequence[Line], name: str) -> str:
-    """The counts as a source of ``recon4/findings/measured.toml``."""
+def source_toml(lines: Sequence[Line], name: str, faults: Sequence[str] = ()) -> str:
+    """The counts as a source of ``recon4/findings/measured.toml``; ``faults`` are kinds."""
     right = sum(line["outcome"] == "right" for line in lines)
     rows = [
         f"{kind} = {{ alarms = {n.alarms}, true = {n.true}, of_wrong = {n.of_wrong} }}"
         for kind, n in sorted(kind_counts(lines).items())
     ]
     head = ["[[sources]]", f'name = "{name}"', f"right = {right}", f"wrong = {len(lines) - right}"]
-    return "\n".join([*head, "[sources.kinds]", *rows])
+    counted = {kind: fault_counts(lines, kind) for kind in sorted(faults)}
+    named = [
+        f"{kind} = {{ {', '.join(f'{key} = {n}' for key, n in counts.items())} }}"
+        for kind, counts in counted.items()
+    ]
+    return "\n".join(
+        [*head, "[sources.kinds]", *rows, *(["[sources.faults]", *named] if named else [])]
+    )
 
 
 def report(lines: Sequence[Line]) -> str:
@@ -222,12 +247,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", type=Path, nargs="+")
     parser.add_argument("--toml", metavar="NAME", help="print a source of that name")
+    parser.add_argument("--faults", metavar="KIND,…", default="", help="count them at any level")
     asked = parser.parse_args()
     lines = [
         line for path in asked.runs
         for line in (table_lines(path) if path.suffix == ".md" else read_lines(path))
     ]  # fmt: skip
-    print(source_toml(lines, asked.toml) if asked.toml else report(lines))
+    kinds = [kind for kind in asked.faults.split(",") if kind]
+    print(source_toml(lines, asked.toml, kinds) if asked.toml else report(lines))
 
 
 if __name__ == "__main__":

@@ -69,6 +69,8 @@ OF_LIDARS = {"extrinsics", "lidar-clock", "swap-lidars", "wrong-model"}
 """What the audit of the rig finds of a LiDAR is part of the covariances."""
 GENERIC = {FindingKind.LOOPS_NONE, FindingKind.IMU_MISSING, FindingKind.HEIGHTS_UNSTATED}
 """Findings that say only what the walk or the recording lacks, right or wrong."""
+RECORDED = ("recording.pcap", "scans")
+"""What a recording is in, the first of them that is there: packets, or a folder of clouds."""
 _REASON_LENGTH = 160
 
 
@@ -198,7 +200,8 @@ def simulated_inputs(recording: Path, rig: Rig, project: Project) -> dict[str, I
     """What ``recon4 process`` reads of a simulated recording: descriptions of LiDARs, too."""
     tables = {name: recording / f"{name}.csv" for name in ("imu", "gnss")}
     given = {name: path for name, path in tables.items() if path.exists()}
-    sources = located_sources(Sources.of(recording / "recording.pcap", rig=rig, **given))
+    written = next(path for name in RECORDED if (path := recording / name).exists())
+    sources = located_sources(Sources.of(written, rig=rig, **given))
     return import_inputs(sources, project.ledger, Silent(), planar=False)
 
 
@@ -296,7 +299,7 @@ def run_walk(
     wanted = [d for d in degradations if applies(d, outdoors=outdoors, rig=rig)]
     name = f"{walk}_{seconds:g}s".translate(str.maketrans("/: +", "-v__"))
     folders = {d: out / "recordings" / name / d.replace("+", "_") for d in wanted}
-    _simulate(walk, {d: f for d, f in folders.items() if not f.exists()}, seconds=seconds)
+    simulate_walk(walk, {d: f for d, f in folders.items() if not f.exists()}, seconds=seconds)
     for degradation, recording in folders.items():
         project = out / "project"
         shutil.rmtree(project, ignore_errors=True)
@@ -308,7 +311,7 @@ def run_walk(
         shutil.rmtree(project, ignore_errors=True)
 
 
-def _simulate(walk: str, folders: Mapping[str, Path], *, seconds: float) -> None:
+def simulate_walk(walk: str, folders: Mapping[str, Path], *, seconds: float) -> None:
     """Write the recordings of a walk; the rays are cast once for all that do not change them."""
     world, seed = walk.split("/")[:2]
     values = {degradation: values_of(degradation) for degradation in folders}

@@ -19,6 +19,7 @@ from tests.benchmarks.precision import (
     table_lines,
 )
 from tests.benchmarks.proving_ground import DEGRADATIONS
+from tests.benchmarks.recorded_faults import FAULTS
 
 
 def run(outcome, verdict, degradation="none", **kinds):
@@ -61,7 +62,7 @@ def test_the_stated_uncertainty_is_compared_where_a_run_says_both():
 
 
 def test_degradations_and_kinds_are_those_of_the_program():
-    assert set(NAMES) <= set(DEGRADATIONS)
+    assert set(NAMES) <= {*DEGRADATIONS, *FAULTS}
     assert {kind for kinds in NAMES.values() for kind in kinds} <= set(FindingKind)
 
 
@@ -103,6 +104,24 @@ def test_what_the_page_of_findings_quotes_is_what_was_counted():
         "2 alarms in 5 runs, 50 % of them true, in 1 of 1 wrong runs (five runs)"
     )
     assert source.words(FindingKind.MIRROR) == "no alarm in 5 runs (five runs)"
+
+
+def test_a_note_is_counted_in_runs_with_and_without_its_fault():
+    runs = [
+        run("right", "good", "imu-lever-arm", IMU_LEVER_ARM="note"),
+        run("right", "good", "imu-lever-arm"),
+        run("right", "good", "none", IMU_LEVER_ARM="note"),
+        run("right", "good", "imu-set", CLOCK_JUMP="note"),
+    ]
+    text = source_toml(runs, "four runs", ["IMU-LEVER-ARM", "CLOCK-JUMP"])
+    source = msgspec.convert(tomllib.loads(text)["sources"][0], MeasuredRuns)
+
+    assert source.words(FindingKind.IMU_LEVER_ARM) == (
+        "said in 1 of 2 runs with its fault, in 1 of 2 without it (four runs)"
+    )
+    assert source.words(FindingKind.CLOCK_JUMP) == (
+        "said in 1 of 1 runs with its fault, in 0 of 3 without it (four runs)"
+    )
 
 
 def test_the_published_table_is_counted_in_the_catalog():
