@@ -2,6 +2,8 @@ import "./english.js?map";
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { setFlagsFromString } from "node:v8";
+import { runInNewContext } from "node:vm";
 
 import { moveByGestures } from "../../web/map/controls.js";
 import { MapTiles } from "../../web/map/tiles.js";
@@ -32,8 +34,7 @@ const READER = {
 };
 
 /** Tiles of a map, and a wait until they read no more. */
-function tilesOf(reader, count = 1) {
-  const scene = { add() {}, remove() {} };
+function tilesOf(reader, count = 1, scene = { add() {}, remove() {} }) {
   const index = { tiles: Array.from({ length: count }, () => TILE), columns: [] };
   return new MapTiles(index, { scene, material: {}, reader, onLook() {} });
 }
@@ -60,6 +61,32 @@ test("what is wanted before the sample has come does not overlap it", async () =
     const { place, value } = object.geometry.attributes;
     assert.equal(value.count, place.count);
   }
+});
+
+test("nothing of a chunk stays when its points are dropped", async () => {
+  const added = [];
+  let removed = 0;
+  const scene = { add: (object) => added.push(new WeakRef(object)), remove: () => removed++ };
+  const sample = async (stored) => bytes(stored, 150 * TILE.sample, true);
+  const tiles = tilesOf({ ...READER, sample }, 150, scene);
+  await tiles.readSample("");
+  const halves = [(row) => row < 100, (row) => row >= 100];
+  for (const isSeen of halves) {
+    const counts = tiles.nodes.map(({ cube, points, row }) =>
+      cube < 0 || isSeen(row) ? points : 0,
+    );
+    tiles.want(counts, CAMERA);
+    await settled();
+    tiles.show(counts);
+  }
+
+  setFlagsFromString("--expose-gc");
+  await settled();
+  runInNewContext("gc")();
+
+  assert.ok(removed > 20);
+  const alive = added.filter((one) => one.deref());
+  assert.equal(alive.length, added.length - removed);
 });
 
 test("without a sample parts are read all the same", async () => {

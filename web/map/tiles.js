@@ -28,6 +28,7 @@ import {
  * @property {Uint16Array} places
  * @property {Points} object
  * @property {string} valuesOf what its values are of; empty = none have been read
+ * @property {Look} look
  * @typedef {object} Look what the shader is given for the points of a chunk
  * @property {number[]} thinned how much farther apart neighbors are than if all were drawn: at
  *   the tile, or at each tile of the cube
@@ -150,13 +151,13 @@ export class MapTiles {
     const have = this.have.map((points, k) => Math.min(counts[k], points));
     this.#chunks.forEach((chunks, k) => {
       const thinned = have[k] ? thinnedOf(this.nodes, k, (node) => have[node]) : [];
-      for (const { start, stop, object, valuesOf } of chunks) {
+      for (const chunk of chunks) {
+        const { start, stop, object, valuesOf } = chunk;
         const shown = Math.min(stop, have[k]) - start;
         object.visible = shown > 0;
         if (shown <= 0) continue;
         object.geometry.setDrawRange(0, shown);
-        const known = valuesOf === this.#values;
-        object.onBeforeRender = () => this.#onLook({ thinned, known });
+        chunk.look = { thinned, known: valuesOf === this.#values };
         drawn.push({ object, points: shown });
       }
     });
@@ -342,7 +343,10 @@ export class MapTiles {
       visible: false,
     });
     this.#scene.add(object);
-    this.#chunks[k].push({ start, stop, places, object, valuesOf: "" });
+    const look = { thinned: [], known: false };
+    const chunk = { start, stop, places, object, valuesOf: "", look };
+    object.onBeforeRender = () => this.#onLook(chunk.look);
+    this.#chunks[k].push(chunk);
     this.total += count;
   }
 
