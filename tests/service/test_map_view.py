@@ -395,6 +395,6 @@ def test_a_changed_layout_of_the_index_has_another_version():
     text = re.sub(r'"(description|title)": "[^"]*",? ?', "", layout)
 
     assert (MAP_CHUNKS.version, hashlib.sha256(text.encode()).hexdigest()[:12]) == (
-        5,
-        "e75bfff9aff7",
+        6,
+        "cf3373f53ca9",
     )

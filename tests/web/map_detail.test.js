@@ -2,7 +2,6 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { rayAt } from "../../web/map/camera.js";
-import { usualColor } from "../../web/map/colors.js";
 import { apartOf } from "../../web/map/density.js";
 import {
   choose,
@@ -144,12 +143,4 @@ test("a slow computer loses pixels first, then points; a quick one gets more", (
   assert.ok(pace.moving < 150_000);
   for (let k = 0; k < 40; k++) pace.note(pace.moving, 12);
   assert.ok(pace.sharpness === 1 && pace.moving > 2_000_000 && pace.resting >= pace.moving);
-});
-
-test("values that are the same everywhere are not shown at first", () => {
-  const column = (name, low, high) => ({ name, low, high, scale: 0.0625 });
-  const intensity = column("intensity", 3, 90);
-  assert.equal(usualColor([intensity, column("normalized", 1, 40)]), "normalized");
-  assert.equal(usualColor([intensity, column("normalized", 0, 0.0625)]), "intensity");
-  assert.equal(usualColor([column("intensity", 0, 0.0625)]), "height");
 });

@@ -79,15 +79,3 @@ export function endText(/** @type {number} */ value, /** @type {string} */ unit)
   const digits = Math.abs(value) >= 100 ? 0 : unit === "m" ? 2 : 1;
   return `${decimal(value, digits)}${unit ? ` ${unit}` : ""}`;
 }
-
-/**
- * By what the points are colored at first: not by values that are the same everywhere, as those
- * of a recording without intensities.
- * @param {Array<{name: string, low: number, high: number, scale: number}>} columns
- * @returns {import("./state.js").ColorBy}
- */
-export function usualColor(columns) {
-  const varied = columns.filter(({ low, high, scale }) => high - low > 1.5 * scale);
-  const usual = /** @type {const} */ (["normalized", "intensity"]);
-  return usual.find((name) => varied.some((one) => one.name === name)) ?? "height";
-}

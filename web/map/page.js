@@ -3,7 +3,6 @@
 import { decimal, t } from "../shared/texts.js";
 import { parse } from "./state.js";
 import { planesOf } from "./clip.js";
-import { usualColor } from "./colors.js";
 import { lineOf } from "./places.js";
 
 /**
@@ -100,7 +99,7 @@ export function colorShown() {
   const { color } = state;
   if (color && (["height", "plain"].includes(color) || names.includes(color))) return color;
   if (color === "class" && index && Object.keys(index.classes).length) return color;
-  return usualColor(index?.columns ?? []);
+  return index?.color ?? "height";
 }
 
 /** Colors that this map can be shown in. */

@@ -915,6 +915,7 @@ export interface MapIndex {
   high_m: [number, number, number];
   tiles: Array<MapTile>;
   columns: Array<MapColumn>;
+  color: "normalized" | "intensity" | "height";
   classes: Record<string, string>;
   class_percent: Record<string, number>;
   storeys: Array<Storey>;

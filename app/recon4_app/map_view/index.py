@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
     found = _values(tiles, names)
     sampled = np.unique(found["classification"]).tolist() if "classification" in found else []
     percent = _class_percent(tiles)
+    columns = [_column(name, found[FIELD_OF[name]], tiles) for name in names]
     return MapIndex(
         key=key,
         version=MAP_CHUNKS.version,
@@ -45,7 +47,8 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
         low_m=_xyz(low),
         high_m=_xyz(high),
         tiles=_tiles(tiles, sizes, sample),
-        columns=[_column(name, found[FIELD_OF[name]], tiles) for name in names],
+        columns=columns,
+        color=usual_color(columns),
         classes={int(code): class_name(int(code)) for code in percent or sampled},
         class_percent=percent,
         storeys=storeys(found["xyz"], found.get("normal"), walk_m),
@@ -54,6 +57,14 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
         surface=tiles.surface,
         seconds=(tiles.last_ns - tiles.first_ns) / 1e9,
     )
+
+
+def usual_color(columns: Sequence[MapColumn]) -> Literal["normalized", "intensity", "height"]:
+    """By what points are colored at first, as recordings may have no or empty intensities."""
+    varied = {one.name for one in columns if one.high - one.low > FIRST_VIEW.varied * one.scale}
+    if "normalized" in varied:
+        return "normalized"
+    return "intensity" if "intensity" in varied else "height"
 
 
 def _class_percent(tiles: TileSet) -> dict[int, float]:

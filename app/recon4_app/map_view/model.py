@@ -80,6 +80,8 @@ class MapIndex(BaseModel):
     high_m: Xyz
     tiles: list[MapTile]
     columns: list[MapColumn]
+    color: Literal["normalized", "intensity", "height"]
+    """By what the points are colored at first: not by values that are the same everywhere."""
     classes: dict[int, str]
     """Names of the classes in the map, by code."""
     class_percent: dict[int, float]

@@ -9,14 +9,10 @@ from typing import Annotated
 from urllib.parse import quote
 
 from fastapi import APIRouter, Depends, Query, Request, Response
-from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
 
-from recon4.errors import StoreError
 from recon4.live.session import CaptureSession
-from recon4.locales.coded import CodedText, at
-from recon4.review.evidence import Evidence
-from recon4.store.json_files import read_object
+from recon4.locales.coded import CodedText
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
@@ -35,6 +31,7 @@ from recon4_app.map_view.model import (
     SampleQuery,
     VolumeRequest,
 )
+from recon4_app.map_view.shown_map import ShownMap
 from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.network.behind import prefix_of
 from recon4_app.network.request_caller import CalledBy, Caller
@@ -80,20 +77,8 @@ async def read_index(
 
     With ``key`` those of an earlier map.
     """
-    slices, source = server.slices, f"map:{key}" if key else ""
-    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
-    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
-    terms = slices.terms(project_id, caller.name, source)
-    index = "index.json"
-
-    async def make(out: Path) -> None:
-        made = replace(terms, outputs={index: out})
-        await slices.run_interactive(
-            made, map_work.write_index, artifacts, index, evidence=evidence
-        )
-
-    path = await caller.wait(slices.kept(_kept_name(artifacts, evidence, "index.json"), make))
-    return await run_in_threadpool(_read_index, path)
+    shown = await ShownMap.of(server.slices, project_id, person=caller.name, key=key)
+    return await caller.wait(shown.index())
 
 
 @router.get("/walk", summary="The walk and the nodes of the graph")
@@ -218,22 +203,11 @@ async def _coarse(
 ) -> CubeFile | None:
     """The coarse points of a map; None = the browser has what it asks for."""
     _check_version(query.version)
-    slices, source = parts(caller.request).slices, f"map:{key}"
-    artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
+    slices = parts(caller.request).slices
+    shown = await ShownMap.of(slices, project_id, person=caller.name, key=key)
     if caller.request.headers.get("if-none-match") == _kept_headers(key, query)["ETag"]:
         return None
-    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, source)
-    terms = slices.terms(project_id, caller.name, source)
-    name = "coarse.bin"
-
-    async def make(out: Path) -> None:
-        made = replace(terms, outputs={name: out})
-        await slices.run_interactive(
-            made, map_work.write_coarse, artifacts, query.stored, name, evidence=evidence
-        )
-
-    kept = slices.kept(_kept_name(artifacts, evidence, f"{query.stored}.bin"), make)
-    return CubeFile(await caller.wait(kept), query.stored)
+    return await caller.wait(shown.coarse(query.stored))
 
 
 def _kept_headers(key: str, query: SampleQuery) -> dict[str, str]:
@@ -257,19 +231,3 @@ def _check_parts(rows: tuple[tuple[int, int, int], ...]) -> None:
         raise BadRequest(CodedText("chunk-invalid", limit=MAP_CHUNKS.max_chunk_points, got=got))
     if len(rows) > MAP_CHUNKS.max_parts:
         raise BadRequest(CodedText("chunks-too-many", limit=MAP_CHUNKS.max_parts, got=len(rows)))
-
-
-def _kept_name(artifacts: dict[str, str], evidence: Evidence | None, ending: str) -> str:
-    """Name of a file made once per map; what was made of an approved map has a name of its own."""
-    folder = Path(artifacts["map"])
-    level = Path(artifacts.get("level", "")).name[:16]
-    checked = evidence.manifests["map"][:16] if evidence else "draft"
-    return f"{folder.name}-{level}-{checked}-map{MAP_CHUNKS.version}-{ending}"
-
-
-def _read_index(path: Path) -> MapIndex:
-    try:
-        record = read_object(path, max_bytes=MAP_CHUNKS.max_index_bytes)
-        return MapIndex.model_validate(record)
-    except ValidationError as error:
-        raise StoreError(at(path.name, str(error))) from error

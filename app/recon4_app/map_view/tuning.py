@@ -8,7 +8,7 @@ from msgspec import Struct
 class MapChunkTuning(Struct, frozen=True, kw_only=True):
     """Points as they are sent."""
 
-    version: int = 5
+    version: int = 6
     """Part of the names of kept files and of ETags: layout of index, sample and chunks."""
     sample_points: int = 60_000
     """Points of the coarsest sample of the whole map, which is sent first."""
@@ -48,6 +48,8 @@ class FirstViewTuning(Struct, frozen=True, kw_only=True):
     """Points of a sample of a tile that tell how far apart its points are."""
     usual_percent: tuple[float, float] = (2.0, 98.0)
     """Ends of a color scale, among the values of the sample [%]."""
+    varied: float = 1.5
+    """Values within as many of their steps are the same everywhere."""
     extent_percent: tuple[float, float] = (0.5, 99.5)
     """Ends of the extent that the camera shows: few stray points do not decide it [%]."""
     margin: float = 0.02

@@ -302,6 +302,12 @@ class Slices:
         """Run work that may take minutes, or reads a user's file, in a separate child process."""
         return await self._pool.run_background(Lane.SURVEY, terms, function, *args, **kwargs)
 
+    async def run_ahead(
+        self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
+    ) -> T:
+        """Run work for which nobody waits yet, in a separate child process."""
+        return await self._pool.run_background(Lane.AHEAD, terms, function, *args, **kwargs)
+
     async def kept(self, name: str, make: Callable[[Path], Any]) -> Path:
         """A cached file, made once per map."""
         path = self._kept / name

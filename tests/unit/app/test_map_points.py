@@ -8,7 +8,8 @@ import pytest
 from recon4.mapping.tiles import TileSet
 from recon4.store.project import read_artifacts
 from recon4_app.map_view import index, points
-from recon4_app.map_view.index import _extent, _values, storeys, surfaces_m2
+from recon4_app.map_view.index import _extent, _values, storeys, surfaces_m2, usual_color
+from recon4_app.map_view.model import MapColumn
 from recon4_app.map_view.points import _shown_order, encoded, read_shown
 from recon4_app.map_view.tuning import FIRST_VIEW
 from tests.project_builder import build_project
@@ -126,3 +127,13 @@ def test_a_large_map_is_known_by_some_of_its_tiles(tiles, monkeypatch):
     for name in ("xyz", "intensity"):
         usual = [np.percentile(found[name], (10, 50, 90), axis=0) for found in (few, all_of_it)]
         assert usual[1] == pytest.approx(usual[0], rel=0.1, abs=0.3)
+
+
+def test_values_that_are_the_same_everywhere_are_not_shown_at_first():
+    def column(name, low, high):
+        return MapColumn(name=name, unit="", offset=0.0, scale=0.0625, low=low, high=high)
+
+    intensity = column("intensity", 3.0, 90.0)
+    assert usual_color([intensity, column("normalized", 1.0, 40.0)]) == "normalized"
+    assert usual_color([intensity, column("normalized", 0.0, 0.0625)]) == "intensity"
+    assert usual_color([column("intensity", 0.0, 0.0625)]) == "height"

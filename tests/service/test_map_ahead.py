@@ -1,0 +1,51 @@
+"""What the page *Map* reads first is made before somebody asks for it."""
+
+import time
+
+import pytest
+
+from tests.deadlines import HANG_S
+from tests.project_builder import build_project
+from tests.served import served
+
+FIRST = {"index.json", "xyz.bin", "normalized.bin"}
+
+
+def projects(root):
+    build_project(root / "office", points=1000)
+
+
+server = served(projects, fresh=True, worker_module="tests.service.finishing_worker")
+
+
+def made(server):
+    """Kinds of the files that are kept of maps."""
+    kept = server.app.state.parts.settings.state / "slices"
+    return {path.name.rpartition("-")[2] for path in kept.glob("*-map*")}
+
+
+@pytest.fixture
+def prepared(server):
+    def wait():
+        end_s = time.monotonic() + HANG_S
+        while made(server) != FIRST:
+            assert time.monotonic() < end_s, made(server)
+            time.sleep(0.05)
+
+    return wait
+
+
+def test_by_the_page_of_a_project_that_has_a_map(server, prepared):
+    assert not made(server)
+    assert server.get("/projects/office/").status_code == 200
+    prepared()
+    index = server.get("/api/projects/office/map").json()
+    assert index["color"] == "normalized"
+
+
+def test_by_a_job_that_has_made_a_map(server, prepared, tmp_path):
+    recording = tmp_path / "recording"
+    recording.mkdir()
+    job = server.start("fresh", recording)
+    server.wait(job, lambda view: view["job"]["state"] == "succeeded")
+    prepared()
