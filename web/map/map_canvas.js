@@ -233,7 +233,7 @@ export class MapCanvas {
   #refine(/** @type {Drawing} */ drawing) {
     const began = performance.now();
     if (!this.#refining) {
-      const queue = this.#parts(drawing, this.pace.resting, true);
+      const queue = this.#parts(drawing, this.pace.resting);
       this.#refining = { queue, next: 0, late: false };
       this.#begin(drawing, this.#fine);
     }
@@ -266,17 +266,16 @@ export class MapCanvas {
   }
 
   /**
-   * Sets what is drawn of the maps within a budget.
+   * Sets what is drawn of the maps within a budget; what is missing of it is read.
    * @param {Drawing} drawing
    * @param {number} budget
-   * @param {boolean} reads whether what is missing is read
    */
-  #parts({ camera, planes }, budget, reads = false) {
+  #parts({ camera, planes }, budget) {
     const sides = this.#sides();
     const view = { camera, screen: this.screen, planes, budget: budget / sides.length };
     return sides.flatMap(({ tiles, nodes }) => {
       const counts = this.#differences ? nodes.map(() => 0) : choose(nodes, view).counts;
-      if (reads) tiles.want(counts, camera);
+      if (this.#refines) tiles.want(counts, camera);
       return tiles.show(counts);
     });
   }
