@@ -26,7 +26,7 @@ from recon4_app.compute_pool.process import ChildFailed
 from recon4_app.compute_pool.tuning import FAIRNESS
 from recon4_app.errors import AppError, ComputeFailed, TooMany
 from tests import pool_functions as work
-from tests.deadlines import BUSY_S
+from tests.deadlines import BUSY_S, HANG_S
 from tests.service.running import wait_for
 
 EVE = Terms(person="Eve")
@@ -228,7 +228,7 @@ def test_work_ends_when_its_client_leaves(root, kind):
         await asyncio.to_thread(
             wait_for, lambda: not alive(pid), "its child ends", max_s=10.0 + BUSY_S
         )
-        await asyncio.wait_for(idle(pool.queues[Lane.SURVEY]), 10.0)
+        await asyncio.wait_for(idle(pool.queues[Lane.SURVEY]), HANG_S)
 
     in_pool(root, leave)
 
@@ -240,7 +240,7 @@ def test_a_call_cancelled_before_its_first_step_gives_its_slot_back(root):
         asked.cancel()
         with pytest.raises(asyncio.CancelledError):
             await asked
-        await asyncio.wait_for(idle(pool.queues[Lane.SIGN]), 10.0)
+        await asyncio.wait_for(idle(pool.queues[Lane.SIGN]), HANG_S)
         return await pool.run_background(Lane.SIGN, EVE, work.identity, 3)
 
     assert in_pool(root, leave_at_once)[0] == 3

@@ -15,6 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from recon4_app.access.people import LOCAL, Person, Role
 from recon4_app.errors import TooMany
 from recon4_app.network.streams import StreamLimits, Streams
+from tests.deadlines import HANG_S
 from tests.served import served
 from tests.service.secure import secure_server
 
@@ -97,15 +98,15 @@ def test_a_viewer_with_live_streams_does_not_lock_the_operator_out(server):
         for _ in range(8):
             live = stack.enter_context(server.websocket("/api/live/stream", vera))
             live.send('{"have": {}}')
-            assert '"none"' in live.recv(timeout=10.0)
+            assert '"none"' in live.recv(timeout=HANG_S)
         ninth = stack.enter_context(server.websocket("/api/live/stream", vera))
         with pytest.raises(ConnectionClosed) as closed:
-            ninth.recv(timeout=10.0)
+            ninth.recv(timeout=HANG_S)
         assert closed.value.rcvd.code == 4429
         assert closed.value.rcvd.reason == "you have 8 live streams open: close one and try again"
         operator = stack.enter_context(server.websocket("/api/live/stream", otto))
         operator.send('{"have": {}}')
-        assert '"none"' in operator.recv(timeout=10.0)
+        assert '"none"' in operator.recv(timeout=HANG_S)
 
 
 def test_event_streams_of_a_person_are_bounded_and_come_free(server):

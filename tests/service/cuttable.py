@@ -8,6 +8,8 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from tests.deadlines import HANG_S
+
 
 class Cuttable:
     """Forwards every connection to a port of this computer, until it is cut."""
@@ -98,5 +100,5 @@ def cuttable(port: int) -> Iterator[Cuttable]:
         yield link
     finally:
         link._loop.call_soon_threadsafe(link._stop.set)
-        thread.join(10.0)
+        thread.join(HANG_S)
         link._loop.close()

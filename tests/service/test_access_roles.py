@@ -17,6 +17,7 @@ from recon4_app.access.routes_check import check_declared, declared
 from recon4_app.main import create_app
 from recon4_app.settings import ServerSettings
 from recon4_app.viewer.browser_messages import KINDS
+from tests.deadlines import HANG_S
 from tests.served import office, served
 from tests.service.running import SLOW, recording_with_gate, wait_for
 from tests.service.secure import ROLES, secure_server
@@ -198,7 +199,7 @@ def test_of_all_messages_viser_knows_a_viewers_browser_may_only_send_those_of_lo
 def test_a_session_above_its_rate_limit_gets_retry_after(server):
     async def many(cookies):
         options = {"base_url": server.url, "verify": server.trust(), "cookies": cookies}
-        async with httpx.AsyncClient(**options, timeout=60.0) as client:  # on a busy computer, too
+        async with httpx.AsyncClient(**options, timeout=HANG_S) as client:
             return await asyncio.gather(*(client.get("/api/me") for _ in range(300)))
 
     with server.signed_in("vera") as client, server.signed_in("otto") as other:

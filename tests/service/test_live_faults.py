@@ -42,6 +42,7 @@ from recon4.store.project import read_artifacts
 from recon4.units import HOUR_US
 from recon4_app.errors import Conflict
 from recon4_app.live.current_capture import CurrentCapture
+from tests.deadlines import HANG_S
 from tests.loopback import an_address
 from tests.service.running import wait_for
 
@@ -108,7 +109,7 @@ def serving(root, address):
     ) as process:
         try:
             url = process.stdout.readline().split()[2]
-            with httpx.Client(base_url=url.rstrip("/"), timeout=60.0) as client:
+            with httpx.Client(base_url=url.rstrip("/"), timeout=HANG_S) as client:
                 yield client
         finally:
             process.kill()

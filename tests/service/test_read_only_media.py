@@ -129,7 +129,7 @@ def test_a_server_shows_read_only_media_and_changes_nothing(media):
         assert first.startswith("Serving at "), process.stderr.read()
         note = process.stdout.readline()
         url = first.split()[2].rstrip("/")
-        with httpx.Client(base_url=url, timeout=60) as client:
+        with httpx.Client(base_url=url, timeout=HANG_S) as client:
             cards = client.get("/api/projects").json()
             notices = client.get("/api/server").json()["notices"]
             thumbnail = client.get("/api/projects/office/thumbnail")

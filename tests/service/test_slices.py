@@ -94,7 +94,7 @@ def test_of_several_image_requests_of_a_page_the_latest_is_answered(server):
 
     def one(k):
         body = ask(page="p1", plane=Z1 | {"z_m": 1.0 + k / 10})
-        answers[k] = httpx.post(f"{server.url}{BASE}/image", json=body, timeout=60.0)
+        answers[k] = httpx.post(f"{server.url}{BASE}/image", json=body, timeout=HANG_S)
 
     threads = [threading.Thread(target=one, args=(k,)) for k in range(8)]
     for thread in threads:

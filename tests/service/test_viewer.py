@@ -15,6 +15,7 @@ from recon4.model.events import EdgeTried, NodesPlaced, StageChanged, VerdictsCh
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4_app.jobs.events import EventWriter
 from recon4_app.viewer.page import SHIMS
+from tests.deadlines import HANG_S
 from tests.processes import viewer_process
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread
@@ -198,7 +199,7 @@ def test_a_viewer_above_the_limit_is_rejected_and_the_others_stay(root):
         viewing(server.url) as second,
     ):
         with viewing(server.url) as third, pytest.raises(ConnectionClosed) as closed:
-            third.socket.recv(timeout=10.0)
+            third.socket.recv(timeout=HANG_S)
         assert closed.value.rcvd.code == 4429
 
         for client in (first, second):

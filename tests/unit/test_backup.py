@@ -15,6 +15,7 @@ from recon4.errors import ConfigError, StoreError
 from recon4.progress import Silent
 from recon4.store.hashing import files_below, hash_file, hash_json
 from tests.benchmarks.flips import make, make_server_state
+from tests.deadlines import HANG_S
 
 NOT_COPIED = (".lock", ".seals.lock", ".changes.lock", "seals.json", "audit.room")
 
@@ -153,6 +154,6 @@ def test_a_database_that_is_being_written_is_copied_consistently(tmp_path):
         counts = [copied_counts(root, tmp_path / f"r{number}") for number in range(5)]
     finally:
         stop.set()
-        writer.join(30.0)
+        writer.join(HANG_S)
 
     assert all(a == b > 0 for a, b in counts)

@@ -15,6 +15,7 @@ from recon4.cli.main import app, main
 from recon4.cli.overview import HEADINGS
 from recon4.settings import preset, to_json
 from recon4.system.doctor import examine
+from tests.deadlines import HANG_S
 from tests.unit.store.small_pipeline import run_all
 
 ROOT = Path(__file__).parents[2]
@@ -208,7 +209,7 @@ def test_a_stopped_command_exits_with_128_plus_the_signal_and_names_it(stop):
     ) as child:
         assert child.stdout.readline() == b"running\n"
         child.send_signal(stop)
-        _, err = child.communicate(timeout=20)
+        _, err = child.communicate(timeout=HANG_S)
 
     assert child.returncode == 128 + stop
     assert err == f"recon4: stopped by {stop.name}\n".encode()

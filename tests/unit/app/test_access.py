@@ -13,6 +13,7 @@ from recon4_app.access.login.sessions import LIVES, form_token
 from recon4_app.access.middleware import session as session_middleware
 from recon4_app.access.people import ASSIGNABLE, Role
 from recon4_app.errors import Conflict, NotFound, Refused, WeakPassword, WrongPassword
+from tests.deadlines import HANG_S
 
 PASSWORD = "three green owls dance"
 HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")
@@ -76,7 +77,7 @@ def test_a_socket_outlives_no_session_even_if_a_cancellation_is_lost(access, clo
 
     async def open_socket():
         monitor = session_middleware.SessionMonitor(access, session, {"type": "websocket"})
-        async with asyncio.timeout(10.0):
+        async with asyncio.timeout(HANG_S):
             await monitor.run(loses_one, asyncio.Event().wait, send)
 
     asyncio.run(open_socket())

@@ -16,6 +16,7 @@ from recon4_app.live import phone as phones
 from recon4_app.live.capture import Capture
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.phone import Phone
+from tests.deadlines import HANG_S
 from tests.live_messages import pose
 
 POINTS = 400_000
@@ -77,7 +78,7 @@ def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(current_ca
             await asyncio.sleep(0.05)
         for client in clients[1:]:
             client.leave()
-        async with asyncio.timeout(20.0):
+        async with asyncio.timeout(HANG_S):
             return clients, await asyncio.gather(*running, return_exceptions=True)
 
     clients, ends = asyncio.run(ten_phones())
@@ -121,7 +122,7 @@ def test_a_stream_cancelled_while_it_sends_ends(current_capture):
     async def one_phone():
         client = SignedOut(current_capture)
         client.running = asyncio.create_task(client.run())
-        await asyncio.wait({client.running}, timeout=5.0)
+        await asyncio.wait({client.running}, timeout=HANG_S)
         return client.running.cancelled(), len(client.received)
 
     assert asyncio.run(one_phone()) == (True, 1)

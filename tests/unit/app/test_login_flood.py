@@ -12,6 +12,7 @@ from recon4_app.access.login.login_service import LoginOrigin
 from recon4_app.access.people import Role
 from recon4_app.access.tuning import BACKOFF, LOGINS
 from recon4_app.errors import TooMany, WrongPassword
+from tests.deadlines import HANG_S
 
 PASSWORD = "three green owls dance"
 
@@ -37,12 +38,12 @@ def test_a_flood_from_many_addresses_waits_in_few_threads_and_the_owner_gets_in(
     threads = [threading.Thread(target=attack, args=(k,)) for k in range(2, 102)]
     for thread in threads:
         thread.start()
-    refused = [outcomes.get(timeout=60.0) for _ in range(100 - LOGINS.waiting_logins)]
+    refused = [outcomes.get(timeout=HANG_S) for _ in range(100 - LOGINS.waiting_logins)]
     monkeypatch.setattr(logins, "_fits", lambda name, password: password == PASSWORD)
     logins.prove("Anna", PASSWORD, origin(1, home))  # while the others wait
     gate.set()
     for thread in threads:
-        thread.join(60.0)
+        thread.join(HANG_S)
 
     assert set(refused) == {TooMany}
     assert [outcomes.get_nowait() for _ in range(LOGINS.waiting_logins)] == [WrongPassword] * 8
@@ -81,7 +82,9 @@ def users(root, *words):
 
 
 def ended(processes, text=""):
-    found = [(process.communicate(text, timeout=240), process.returncode) for process in processes]
+    found = [
+        (process.communicate(text, timeout=HANG_S), process.returncode) for process in processes
+    ]
     assert not [one for one in found if "Traceback" in one[0][1]], found
     return [code for _, code in found]
 
@@ -94,7 +97,7 @@ def test_processes_that_change_people_at_once_leave_one_admin_and_one_account(tm
     both = [users(tmp_path, "disable", name) for name in ("anna", "emma")]
     disabled = ended(both)
     audit = users(tmp_path, "audit")
-    log, _ = audit.communicate(timeout=240)
+    log, _ = audit.communicate(timeout=HANG_S)
 
     assert first == [0] and sorted(added) == [0, 1] and sorted(disabled) == [0, 1]
     assert audit.returncode == 0 and "chain whole" in log

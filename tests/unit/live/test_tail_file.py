@@ -14,6 +14,7 @@ from recon4.recording.ingest import LiveSource, ingest
 from recon4.recording.sources import Sources
 from recon4.settings import preset
 from recon4.store.frames import FrameStore
+from tests.deadlines import HANG_S
 from tests.unit.recording.packet_builders import spin
 from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture
 
@@ -86,7 +87,7 @@ def test_a_growing_capture_gives_the_frames_of_the_finished_file(tmp_path, make)
 
     def write():
         for cut in [*cuts, size]:
-            assert growth.awaited.acquire(timeout=60.0)
+            assert growth.awaited.acquire(timeout=HANG_S)
             growth.reached(cut)
         growth.complete()
 

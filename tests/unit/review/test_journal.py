@@ -21,6 +21,7 @@ from recon4.review.journal import (
     read_decided,
     read_rows,
 )
+from tests.deadlines import HANG_S
 from tests.unit.review.test_decisions import correction, decide
 
 
@@ -70,7 +71,7 @@ def test_an_append_after_an_outdated_row_is_rejected(tmp_path):
 
 def test_writers_at_once_lose_nothing(tmp_path):
     people = ["Eva", "Jan", "Ada", "Max"]
-    together = Barrier(len(people), timeout=20.0)
+    together = Barrier(len(people), timeout=HANG_S)
 
     def write(who):
         for k in range(20):

@@ -18,6 +18,7 @@ from recon4.model.samples import ImuSamples
 from recon4.store.arrays import save_record
 from recon4.store.earlier_frames import EARLIER_INDEX
 from recon4.store.frames import POINTS, FrameStore, FrameWriter, open_frames
+from tests.deadlines import HANG_S
 
 
 def multiframe(frame_id, count, rng):
@@ -261,7 +262,7 @@ except NoSpace as error:
     sys.exit(0 if "cannot write" in str(error) else 3)
 sys.exit(4)
 """
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, timeout=HANG_S)
 
     assert done.returncode == 0, done.stderr.decode()
 

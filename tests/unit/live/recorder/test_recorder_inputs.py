@@ -9,6 +9,7 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.live.recorder.ports import check_sources, open_ports, wanted_ports
 from recon4.model.rig import load_rig, parse_rig
+from tests.deadlines import HANG_S
 
 
 def test_a_port_in_use_is_named_with_what_it_is_for(session):
@@ -16,7 +17,7 @@ def test_a_port_in_use_is_named_with_what_it_is_for(session):
     taken.bind((session.address, 2368))
     command = [sys.executable, "-m", "recon4.live.recorder.process", str(session.project)]
 
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
     taken.close()
 
     assert done.returncode == 1

@@ -26,6 +26,7 @@ from recon4.model.serial_device import SerialDevice, parse_serial_device
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
 from recon4.system.processes import process_identity
+from tests.deadlines import HANG_S
 from tests.service.running import wait_for
 from tests.unit.live.recorder import recorder_of_a_terminal
 from tests.unit.live.recorder.recorder_process import recording
@@ -213,7 +214,7 @@ def test_the_opener_ends_with_a_recorder_that_was_killed(tmp_path):
     )
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
 
-    text, _ = process.communicate(timeout=60)  # the pipe closes when both have ended
+    text, _ = process.communicate(timeout=HANG_S)  # the pipe closes when both have ended
 
     assert process.returncode == -signal.SIGKILL
     wait_for(lambda: not process_identity(int(text)), "the opener lives on")
@@ -230,7 +231,7 @@ def test_a_recorder_whose_rig_names_another_terminal_does_not_start(session, ter
     rig_with(session, f"{path}:9600")
     command = [sys.executable, "-m", "recon4.live.recorder.process", str(session.project)]
 
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=HANG_S)
 
     assert done.returncode == 1
     assert "expected DEVICE:BAUD with a serial device" in done.stderr
