@@ -123,7 +123,7 @@ def test_an_exported_file_that_changed_since_it_was_chosen_is_refused_in_words(
     says = {"altered": "is not the file that was exported", "removed": "was removed since"}
     assert (row["state"], row["made"]) == ("failed", None)
     assert row["note"].startswith(f"office-map.pcd {says[how]}")
-    assert not list(JobFolder(server.root / ".recon4/jobs" / waiting).made.iterdir())
+    assert not JobFolder(server.root / ".recon4/jobs" / waiting).made.exists()
     gone = server.post(BASE, json=delivery(exports=[exported["id"]]))
     assert how == "altered" or (gone.status_code, gone.json()["code"]) == (404, "export-gone")
 

@@ -136,8 +136,11 @@ class JobFolder:
         write_json(self.path / "request.json", request)
 
     def sweep(self) -> None:
-        """Remove the temporary files of a worker that has ended."""
+        """Remove the temporary files of a worker that has ended, and what it made in part."""
         shutil.rmtree(self.temporary, ignore_errors=True)
+        outcome = self.outcome()
+        if outcome is None or outcome.made is None:
+            shutil.rmtree(self.made, ignore_errors=True)
         (self.path / "room").unlink(missing_ok=True)
         sweep_unfinished(self.path)
 

@@ -133,6 +133,15 @@ class Inputs:
     targets: TargetOrder | None = None
     """Only look for survey targets in the map; the other inputs are not used."""
 
+    @property
+    def kind(self) -> JobKind:
+        """What the job does."""
+        if self.compare:
+            return JobKind.COMPARE
+        if self.targets:
+            return JobKind.TARGETS
+        return JobKind.EXPORT if self.export else JobKind.PROCESS
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
@@ -161,11 +170,7 @@ class Job:
     @property
     def kind(self) -> JobKind:
         """What it does."""
-        if self.inputs.compare:
-            return JobKind.COMPARE
-        if self.inputs.targets:
-            return JobKind.TARGETS
-        return JobKind.EXPORT if self.inputs.export else JobKind.PROCESS
+        return self.inputs.kind
 
     @property
     def over(self) -> bool:

@@ -1,8 +1,8 @@
 """Time without progress after which a worker counts as hung.
 
 Stages that read files of users report every unit, so the server's setting applies to them as it is.
-Later stages compute on our own artifacts: a solver with a bounded number of iterations, or writing
-a large artifact, may report nothing for longer.
+Later stages, and jobs that make something of a finished map, compute on our own artifacts: a solver
+with a bounded number of iterations, or writing a large artifact, may report nothing for longer.
 Time in which the worker was ready to run but other programs had the processors does not count: on a
 busy computer a worker at low priority gets hardly any time, and to end it would not help.
 """
@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from recon4.store.stage import SAVING
 from recon4.system.processes import waited_for_processor_s
+from recon4_app.jobs.model import JobKind
 from recon4_app.jobs.run_progress import AFTER
 from recon4_app.jobs.status import JobStatus
 from recon4_app.jobs.tuning import SILENCE
@@ -22,10 +23,11 @@ COMPUTING = frozenset({"graph", "verification", "review", "refine", "level", "ma
 """Stages, and pieces of work in any stage."""
 
 
-def allowed_silence_s(status: JobStatus, hung_after_s: float) -> float:
+def allowed_silence_s(kind: JobKind, status: JobStatus, hung_after_s: float) -> float:
     """Seconds without progress after which a worker at this point is killed."""
     running = {row.stage for row in status.stages if row.state == "running"}
-    return hung_after_s * (SILENCE.computing_factor if COMPUTING & {*running, status.what} else 1.0)
+    computes = kind is not JobKind.PROCESS or COMPUTING & {*running, status.what}
+    return hung_after_s * (SILENCE.computing_factor if computes else 1.0)
 
 
 @dataclass(slots=True)

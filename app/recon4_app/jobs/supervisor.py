@@ -298,10 +298,14 @@ class Supervisor:
             folder.kill()
         elif job.id in self._hung:
             folder.kill()  # it had one polling interval to log where it hangs
-        elif silent_s > allowed_silence_s(self._tail(job).status, self._settings.hung_after_s):
+        elif silent_s > self._allowed_silence_s(job):
             self._hung[job.id] = silent_s
             log.warning("worker %s made no progress for %.0f s: killed", job.id, silent_s)
             folder.kill(signal.SIGABRT)  # it writes the stack of every thread to its log
+
+    def _allowed_silence_s(self, job: Job) -> float:
+        status = self._tail(job).status
+        return allowed_silence_s(job.kind, status, self._settings.hung_after_s)
 
     def _ended(self, job: Job, outcome: Outcome | None, code: int | None) -> Job:
         """The job after its worker is gone."""
@@ -322,9 +326,12 @@ class Supervisor:
             "stage": status.stage,
             "what": status.what,
         }
+        again, died = "worker-continues", "worker-died"
+        if job.kind is not JobKind.PROCESS:
+            again, died = "map-worker-continues", "map-worker-died"
         if job.attempt < self._settings.max_job_attempts:
-            return job.to(JobState.QUEUED, note=CodedText("worker-continues", **about))
-        note = CodedText("worker-died", attempts=job.attempt, **about)
+            return job.to(JobState.QUEUED, note=CodedText(again, **about))
+        note = CodedText(died, attempts=job.attempt, **about)
         return job.to(JobState.FAILED, finished=now(), note=note)
 
 

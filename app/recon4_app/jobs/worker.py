@@ -23,6 +23,7 @@ from recon4.system.stopping import end_process
 from recon4_app.jobs.events import EventWriter
 from recon4_app.jobs.folder import JobFolder, Outcome, failure
 from recon4_app.jobs.limits import prepare_worker, worker_policy
+from recon4_app.jobs.model import JobKind
 from recon4_app.jobs.reason import reason_of
 from recon4_app.jobs.space import refuse_if_full
 
@@ -55,7 +56,8 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         events = EventWriter(folder.path)
         made = work(folder, events)
     except Cancelled as stop:
-        note = coded(stop)
+        processes = folder.request().inputs.kind is JobKind.PROCESS
+        note = coded(stop) if processes else CodedText("job-stopped-early")
         return Outcome(state="cancelled", note=str(note), reason=reason_of(note))
     except (RecordingError, ConfigError) as error:
         return failure(text_of(error), startable=is_project(folder.request().project))

@@ -9,6 +9,8 @@ job-row-damaged = diese Zeile von jobs.sqlite ist beschädigt: { $detail }
 job-disk-full = beim Schreiben von { $file } wurde die Platte voll; Platz schaffen und erneut starten: nichts Fertiges ist verloren
 worker-continues = der Rechenprozess { EXIT($how, $number) }, { PLACE($stage, $what) }; es geht nach der letzten fertigen Stufe weiter
 worker-died = der Rechenprozess endete { $attempts }-mal: zuletzt { EXIT($how, $number) }, { PLACE($stage, $what) }; vielleicht ist die Aufzeichnung beschädigt oder zu groß für diesen Rechner: das Protokoll ansehen, dann fortsetzen
+map-worker-continues = der Rechenprozess { EXIT($how, $number) }, { PLACE($stage, $what) }; er beginnt von vorn
+map-worker-died = der Rechenprozess endete { $attempts }-mal: zuletzt { EXIT($how, $number) }, { PLACE($stage, $what) }; vielleicht ist die Karte beschädigt oder zu groß für diesen Rechner: das Projekt prüfen, dann neu starten
 
 ## Exporte und Vergleiche
 

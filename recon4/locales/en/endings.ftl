@@ -9,6 +9,8 @@ job-row-damaged = this row of jobs.sqlite is damaged: { $detail }
 job-disk-full = no space left on the disk while writing { $file }; make room and start again: nothing that was finished is lost
 worker-continues = the worker { EXIT($how, $number) }, { PLACE($stage, $what) }; it continues after the last finished stage
 worker-died = the worker died { $attempts } times: last it { EXIT($how, $number) }, { PLACE($stage, $what) }; perhaps the recording is damaged or too large for this computer: see the log, then resume
+map-worker-continues = the worker { EXIT($how, $number) }, { PLACE($stage, $what) }; it begins again
+map-worker-died = the worker died { $attempts } times: last it { EXIT($how, $number) }, { PLACE($stage, $what) }; perhaps the map is damaged or too large for this computer: verify the project, then start again
 
 ## Exports and comparisons
 

@@ -7,12 +7,13 @@ from dataclasses import replace
 import pytest
 
 from recon4.errors import Cancelled, ConfigError, NoSpace
+from recon4.export.options import ExportOptions
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH, ROOT
 from recon4.locales.texts import messages_of
 from recon4.store.atomic import raise_if_full, write_text
 from recon4_app.jobs.folder import JobFolder, Limits
-from recon4_app.jobs.model import Inputs, Job, JobState
+from recon4_app.jobs.model import ExportOrder, Inputs, Job, JobState
 from recon4_app.jobs.status import JobStatus, StageStatus
 from recon4_app.jobs.store import JobStore
 from recon4_app.jobs.supervisor import exit_reason
@@ -137,6 +138,23 @@ def test_how_a_worker_ended_is_said_with_the_name_of_a_signal():
     assert ", in Compiling; perhaps" in text
     other = CodedText("worker-continues", how="SIGHUP", number=1, stage="", what="")
     assert other.startswith("the worker was ended [SIGHUP], before it began;")
+
+
+@pytest.mark.parametrize(
+    ("order", "kept"),
+    [({}, True), ({"export": ExportOrder(file="map.laz", options=ExportOptions())}, False)],
+)
+def test_only_what_is_processed_in_stages_is_kept_when_a_job_is_stopped(tmp_path, order, kept):
+    folder = JobFolder(tmp_path / "job")
+    limits = Limits(memory_bytes=1 << 30, reserve_bytes=0)
+    folder.prepare(Inputs(recordings=(), **order), tmp_path / "walk", limits)
+
+    def work(_folder, _progress):
+        raise Cancelled(CodedText("job-stopped"))
+
+    outcome = run(folder, work)
+
+    assert outcome.state == "cancelled" and ("finished is kept" in outcome.note) is kept
 
 
 def test_the_stage_of_a_job_is_the_one_that_runs():

@@ -12,7 +12,9 @@ from contextlib import suppress
 import pytest
 
 from recon4.system.processes import first_line, waited_for_processor_s
-from recon4_app.jobs.silence import SilenceClock
+from recon4_app.jobs.model import JobKind
+from recon4_app.jobs.silence import SilenceClock, allowed_silence_s
+from recon4_app.jobs.status import JobStatus
 from tests.service.running import wait_for
 
 SPIN = "import os; os.sched_setaffinity(0, {int(__import__('sys').argv[1])})\nwhile True: pass"
@@ -83,3 +85,10 @@ def test_a_child_that_says_nothing_has_failed_after_its_own_time():
 
 def test_a_child_that_ends_without_a_line_has_failed_at_once():
     assert asyncio.run(line_of("pass", within_s=60.0)) == b""
+
+
+def test_a_worker_that_reads_only_a_finished_map_may_be_silent_for_longer():
+    reading, computing = (
+        allowed_silence_s(kind, JobStatus(), 120.0) for kind in (JobKind.PROCESS, JobKind.EXPORT)
+    )
+    assert (reading, computing) == (120.0, 1200.0)
