@@ -145,9 +145,11 @@ def show_checked(path: Path, *, as_json: bool, accept: bool = False) -> None:
         raise typer.BadParameter(CodedText("accept-projects"))
 
     confine_command()
+    from recon4.cli.terminal import watcher
     from recon4.delivery.check import check_file
 
-    found = check_file(path)
+    with watcher() as progress:
+        found = check_file(path, progress=progress)
     if as_json:
         write_json(found)
     else:

@@ -13,6 +13,7 @@ from recon4.delivery.pdf_signature import SignedBy, signatures_in
 from recon4.delivery.tuning import DELIVERIES
 from recon4.errors import CorruptFile, StoreError, UnknownFormat
 from recon4.locales.coded import CodedText
+from recon4.progress import Progress, Silent
 from recon4.review.signature import fingerprint
 from recon4.review.trusted_keys import TrustedKeys, UnknownSigner, trusted_for
 from recon4.untrusted.bounded import open_regular
@@ -43,12 +44,15 @@ class CheckedFile:
         return not (self.altered or self.missing or self.added or self.doubt)
 
 
-def check_file(path: Path, trusted: TrustedKeys | None = None) -> CheckedFile:
+def check_file(
+    path: Path, trusted: TrustedKeys | None = None, *, progress: Progress | None = None
+) -> CheckedFile:
     """Verify a delivery (ZIP, or the folder that it was unpacked to) or a PDF.
 
     Args:
         path: The file or folder.
         trusted: Whose signatures count; None = of the place where it lies (`trusted_for`).
+        progress: Counts the bytes that are read.
 
     Raises:
         ConfigError: If a PDF is given and the extra ``pdf`` is not installed.
@@ -56,18 +60,19 @@ def check_file(path: Path, trusted: TrustedKeys | None = None) -> CheckedFile:
         StoreError: If its manifest is damaged or was changed after it was signed.
         UnknownFormat: If it is something else.
     """
+    trusted, watch = trusted or trusted_for(path), progress or Silent()
     if path.is_dir():
-        return _check_folder(path, trusted or trusted_for(path))
+        return _check_folder(path, trusted, watch)
     with open_regular(path) as file:
         head = file.read(len(_ZIP))
     if head == _PDF:
-        return _check_pdf(path, trusted or trusted_for(path))
+        return _check_pdf(path, trusted)
     if head == _ZIP:
-        return _check_zip(path, trusted or trusted_for(path))
+        return _check_zip(path, trusted, watch)
     raise UnknownFormat(CodedText("check-unknown", file=path.name))
 
 
-def _check_zip(path: Path, trusted: TrustedKeys) -> CheckedFile:
+def _check_zip(path: Path, trusted: TrustedKeys, progress: Progress) -> CheckedFile:
     with open_zip(path) as (archive, entries):
         if MANIFEST not in entries:
             raise CorruptFile(CodedText("check-no-manifest", file=path.name, manifest=MANIFEST))
@@ -75,14 +80,15 @@ def _check_zip(path: Path, trusted: TrustedKeys) -> CheckedFile:
         blocks = blocks_of(archive, entries[MANIFEST], most=limit, where=path.name)
         manifest = read_manifest(b"".join(blocks))
         found: dict[str, str | None] = {}
+        _start(progress, manifest)
         for name, listed in manifest.files.items():
             if name in entries:
                 stored = blocks_of(archive, entries[name], most=listed.bytes, where=path.name)
-                found[name] = _hash(stored)
+                found[name] = _hash(stored, progress)
         return _judged(manifest, found, set(entries), trusted=trusted)
 
 
-def _check_folder(folder: Path, trusted: TrustedKeys) -> CheckedFile:
+def _check_folder(folder: Path, trusted: TrustedKeys, progress: Progress) -> CheckedFile:
     """An unpacked delivery; links are files that do not belong there."""
     with open_regular(folder / MANIFEST) as file:
         manifest = read_manifest(file.read(DELIVERIES.max_manifest_bytes))
@@ -92,10 +98,15 @@ def _check_folder(folder: Path, trusted: TrustedKeys) -> CheckedFile:
         if path.is_symlink() or not path.is_dir()
     }
     found: dict[str, str | None] = {}
+    _start(progress, manifest)
     for name in manifest.files:
         if name in there and not unsafe_name(name) and not (folder / name).is_symlink():
-            found[name] = _hash(_blocks(folder / name))
+            found[name] = _hash(_blocks(folder / name), progress)
     return _judged(manifest, found, there, trusted=trusted)
+
+
+def _start(progress: Progress, manifest: DeliveryManifest) -> None:
+    progress.start("compare", sum(one.bytes for one in manifest.files.values()), "B")
 
 
 def _judged(
@@ -156,12 +167,13 @@ def _named(public_key: str, trusted: TrustedKeys) -> tuple[str, str]:
     return f"{visible(key.name)}, key {fingerprint(public_key)}", ""
 
 
-def _hash(blocks: Iterator[bytes]) -> str | None:
+def _hash(blocks: Iterator[bytes], progress: Progress) -> str | None:
     """SHA-256; None if the file cannot be read, or is longer than it was."""
     digest = hashlib.sha256()
     try:
         for block in blocks:
             digest.update(block)
+            progress.advance(len(block))
     except (CorruptFile, StoreError):
         return None
     return digest.hexdigest()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
@@ -45,7 +45,8 @@ def export_file(
     state = WRITTEN_AS_DRAFT if options.draft else approval_state(project, keys)
     path = folder / f"{project.name}-{kind.name}"
     points, text = write_kind(project, kind, path, wanted=wanted, progress=progress)
-    return ExportedFile.of(path, text, state, map_key=keys["map"], points=points)
+    made = ExportedFile.of(path, text, state, map_key=keys["map"], progress=progress)
+    return replace(made, points=points)
 
 
 def write_layers_file(

@@ -10,7 +10,8 @@ import recon4
 from recon4.errors import ConfigError
 from recon4.export.options import ExportOptions
 from recon4.locales.coded import CodedText, StoredText
-from recon4.store.hashing import FileDigest
+from recon4.progress import Progress
+from recon4.store.hashing import hash_shown
 from recon4.untrusted.names import visible
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ class ExportedFile:
 
     @classmethod
     def of(
-        cls, path: Path, text: str, state: ApprovalState, *, map_key: str, points: int = 0
+        cls, path: Path, text: str, state: ApprovalState, *, map_key: str, progress: Progress
     ) -> ExportedFile:
         """The record of a file that was just written.
 
@@ -80,19 +81,17 @@ class ExportedFile:
             text: What is in it, in words.
             state: Approval of the map.
             map_key: Artifact of the map.
-            points: Points in it; 0 = it has none.
+            progress: Counts the bytes that are hashed.
         """
-        digest = FileDigest.of(path)
         return cls(
             name=path.name,
-            bytes=digest.size,
-            sha256=digest.sha256,
+            bytes=path.stat().st_size,
+            sha256=hash_shown(path, progress),
             text=text,
             approval=state.text,
             approval_line=state.line,
             map_key=map_key,
             recon4=recon4.__version__,
-            points=points,
         )
 
 

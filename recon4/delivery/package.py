@@ -20,11 +20,12 @@ from recon4.delivery.kinds import KINDS
 from recon4.delivery.made_files import MadeFile, copy_made, named, refuse_other_maps
 from recon4.delivery.manifest import MANIFEST, DeliveredFile, DeliveryManifest, manifest_text
 from recon4.delivery.pdf_signature import Organization
+from recon4.delivery.readme import classes_line, crs_line, file_line, spaced
 from recon4.delivery.report_files import (
     ReportWish,
     checked_approval,
     said_state,
-    write_html,
+    write_client_html,
     write_pdf,
 )
 from recon4.delivery.tuning import DELIVERIES
@@ -45,7 +46,7 @@ from recon4.review.signature import public_key_of
 from recon4.review.state import read_summary
 from recon4.store.atomic import atomic_file, raise_if_full, write_text
 from recon4.store.formats import FORMATS
-from recon4.store.hashing import FileDigest
+from recon4.store.hashing import hash_shown
 from recon4.store.json_files import read_object
 from recon4.store.project import read_artifacts
 from recon4.untrusted.limits import LIMITS
@@ -119,23 +120,22 @@ def deliver(project: Path, out: Path, wish: DeliveryWish, *, progress: Progress)
         StoreError: If there is no map yet, or a file cannot be written or reads back wrong.
     """
     _refuse(out, wish)
-    map_ = _open(project, wish)
+    map_ = _open(project, wish, progress)
     signed = map_.approval is not None and wish.key is not None
     with _folder_beside(out) as folder:
-        _write_files(folder, map_, wish, progress=progress)
+        listed = _write_files(folder, map_, wish, progress=progress)
         texts = words(wish.language)
         _refuse_changed(map_)
         _write_readme(folder, map_, wish, texts=texts, name=out.name)
         names = sorted(path.name for path in folder.iterdir())
-        listed = {one: _digest(folder / one) for one in names}
+        listed = {one: listed.get(one) or _digest(folder / one, progress) for one in names}
         key = wish.key if signed else None
         text = manifest_text(_manifest(map_, listed), key)
         write_text(folder / MANIFEST, text)
         with atomic_file(out) as temporary:
             packed = [README, MANIFEST, *(n for n in names if n != README)]
             _pack(folder, packed, temporary, progress=progress)
-            progress.start("compare", 0, "files")
-            _compare(check_file(temporary), listed)
+            _compare(check_file(temporary, progress=progress), listed)
     return Delivered(tuple(names), out.stat().st_size, signed, map_.state)
 
 
@@ -164,11 +164,11 @@ def _refuse(out: Path, wish: DeliveryWish) -> None:
         raise ConfigError(CodedText("deliver-license", license=wish.license.name))
 
 
-def _open(project: Path, wish: DeliveryWish) -> _Map:
+def _open(project: Path, wish: DeliveryWish, progress: Progress) -> _Map:
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise StoreError(CodedText("deliver-no-map", project=str(project)))
-    state, approval = checked_approval(project, draft=False)
+    state, approval = checked_approval(project, draft=False, progress=progress)
     refuse_other_maps(wish.made, artifacts["map"].name, state.text)
     evidence = approval.evidence if approval else None
     options = ExportOptions(crs=wish.crs)
@@ -200,15 +200,23 @@ def _refuse_changed(map_: _Map) -> None:
         raise StoreError(CodedText("deliver-map-changed"))
 
 
-def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Progress) -> None:
-    """The exports, each compared with the map, and the reports that list them."""
+def _write_files(
+    folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Progress
+) -> dict[str, DeliveredFile]:
+    """Write the exports, each compared with the map, and the reports that list them.
+
+    Returns:
+        The exports.
+    """
     draft = map_.approval is None
+    listed = {}
     for name in wish.files:
         _write_export(name, folder / name, map_, crs=wish.crs, progress=progress)
+        listed[name] = _digest(folder / name, progress)
     for name, made in map_.made.items():
         copy_made(made, folder / name, progress=progress)
-    files = (*wish.files, *map_.made)
-    rows = [Row(name, FileDigest.of(folder / name).sha256) for name in files]
+        listed[name] = DeliveredFile(made.made.bytes, made.made.sha256)  # compared by the copy
+    rows = [Row(name, one.sha256) for name, one in listed.items()]
     if wish.license is not None:
         shutil.copyfile(wish.license, folder / LICENSE)
     key = wish.certificate or wish.key
@@ -216,7 +224,8 @@ def _write_files(folder: Path, map_: _Map, wish: DeliveryWish, *, progress: Prog
     progress.advance(0)  # a request to stop counts before the long work
     report = ReportWish(language=wish.language, draft=draft, key=key, files=rows)
     write_pdf(map_.project, folder / REPORT_PDF, report)
-    write_html(map_.project, folder / REPORT_HTML, draft=draft)
+    write_client_html(map_.project, folder / REPORT_HTML, report)
+    return listed
 
 
 def _write_export(name: str, path: Path, map_: _Map, *, crs: str, progress: Progress) -> None:
@@ -243,9 +252,8 @@ def _manifest(map_: _Map, listed: dict[str, DeliveredFile]) -> DeliveryManifest:
     )
 
 
-def _digest(path: Path) -> DeliveredFile:
-    found = FileDigest.of(path)
-    return DeliveredFile(found.size, found.sha256)
+def _digest(path: Path, progress: Progress) -> DeliveredFile:
+    return DeliveredFile(path.stat().st_size, hash_shown(path, progress))
 
 
 def _heights(project: Path, wish: DeliveryWish, texts: Words) -> str:
@@ -259,30 +267,28 @@ def _heights(project: Path, wish: DeliveryWish, texts: Words) -> str:
     return texts(f"heights.{height_system(crs, controlled=controlled)}", crs=visible(crs))
 
 
-def _spaced(count: int) -> str:
-    return f"{count:,}".replace(",", " ")
-
-
 def _write_readme(folder: Path, map_: _Map, wish: DeliveryWish, *, texts: Words, name: str) -> None:
     """What is in the delivery and how it is checked, in plain words."""
     summary = read_summary(map_.project) or {}
-    kinds = {REPORT_PDF: "report_pdf", REPORT_HTML: "report_html", LICENSE: "license"}
-    points = _spaced(len(map_.export.tiles))
+    tiles = map_.export.tiles
     lines = [texts("readme.title", title=visible(str(summary.get("name", "")))), ""]
+    today = datetime.now(UTC).date().isoformat()
+    lines.append(texts("readme.made", day=today, version=recon4.__version__))
     lines.append(texts("readme.state", state=said_state(map_.state, texts)))
-    crs = wish.crs or str(summary.get("crs") or "") or texts("front.crs_local")
-    lines.append(texts("readme.crs", crs=visible(crs)))
+    lines.append(crs_line(wish.crs or str(summary.get("crs") or ""), texts))
     lines.append(texts("readme.heights", heights=_heights(map_.project, wish, texts)))
     lines += ["", texts("readme.what"), ""]
-    for one in sorted(path.name for path in folder.iterdir()):
+    others = sorted(path.name for path in folder.iterdir())
+    for one in sorted(others, key=lambda one: (one != REPORT_PDF, one != REPORT_HTML)):
         made = map_.made.get(one)
-        stem = (made.kind if made else one).partition(".")[0]
-        kind = kinds.get(one, {"map": "cloud"}.get(stem, stem))
-        count = _spaced(made.made.points) if made else points
-        line = f"  {one:<16} {texts(f'readme.{kind}', points=count)}"
-        chosen = made.chosen if made else ""
-        lines.append(line + (f" {texts('readme.chosen', options=chosen)}" if chosen else ""))
-    lines.append(f"  {MANIFEST:<16} {texts('readme.manifest')}")
+        kind, count = (made.kind, made.made.points) if made else (one, len(tiles))
+        chosen = texts("readme.chosen", options=made.chosen) if made and made.chosen else ""
+        lines.append(f"{file_line(one, kind, points=count, texts=texts)} {chosen}".rstrip())
+    lines.append(file_line(MANIFEST, MANIFEST, points=0, texts=texts))
+    if any(one.startswith("map") for one in others):
+        lines += ["", classes_line(tiles.class_counts(), texts)]
+        if tiles.strays:
+            lines.append(texts("readme.left_out", points=spaced(tiles.strays)))
     lines += ["", texts("readme.check", name=name), "", texts("readme.check_by_hand"), ""]
     if map_.approval is not None and wish.key is not None:
         lines.append(texts("readme.signed", key=public_key_of(wish.key)))

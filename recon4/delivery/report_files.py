@@ -11,6 +11,7 @@ from recon4.delivery.pdf_signature import Organization, sign_pdf
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
+from recon4.progress import Progress, Silent
 from recon4.report.assessment import Assessment, assess
 from recon4.report.client import ClientReport, Row, Section, Signature, Table
 from recon4.report.client_front import shown
@@ -127,8 +128,15 @@ def write_html(root: Path, path: Path, *, draft: bool = False) -> WrittenReport:
     return WrittenReport(state, signed=False)
 
 
-def checked_approval(root: Path, *, draft: bool) -> tuple[ApprovalState, Approval | None]:
+def checked_approval(
+    root: Path, *, draft: bool, progress: Progress | None = None
+) -> tuple[ApprovalState, Approval | None]:
     """The approval of the latest results, whose bytes are compared with it.
+
+    Args:
+        root: The project folder.
+        draft: Without an approval, whether or not there is one.
+        progress: Counts the bytes that are compared.
 
     Raises:
         Altered: If it is not what was approved, or the approval is not to be trusted.
@@ -144,8 +152,12 @@ def checked_approval(root: Path, *, draft: bool) -> tuple[ApprovalState, Approva
     for name in (SUMMARY, HTML):
         if name in approval.issued:
             approval.check_issued_file(root / name)
-    for stage, folder in artifacts.items():
-        approval.evidence.artifact(stage, folder).check_all()
+    watch = progress or Silent()
+    checked = [approval.evidence.artifact(*one) for one in artifacts.items()]
+    sizes = (file.size for one in checked for file in one.files.values())
+    watch.start("approvals", sum(sizes), "B")
+    for one in checked:
+        one.check_all(watch.advance)
     return latest_state(root), approval
 
 

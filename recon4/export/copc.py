@@ -108,7 +108,8 @@ def export_copc(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".copc.laz")
-    source, watch = PointSource.of(map_, output, selection), progress or Silent()
+    watch = progress or Silent()
+    source = PointSource.of(map_, output, selection, progress=watch)
     header = las_header(source, scale_m=OCTREE.step_m)
     header.are_points_compressed = True
     meant = PointAccount(crs=crs_text(header))
@@ -123,7 +124,7 @@ def export_copc(
             chunks = _write(file, header, files, times_s=times_s, progress=watch)
         source.seal(temporary)
         with reading_las(path.name):
-            _check(temporary, chunks, header, meant=meant)
+            _check(temporary, chunks, header, meant=meant, progress=watch)
     return meant.count
 
 
@@ -200,13 +201,16 @@ def _info(
     return _INFO.pack(*center, half_m, 2.0 * half_m / 2**OCTREE.side_bits, *place, *times_s)
 
 
-def _check(path: Path, chunks: list[_Chunk], header: Any, *, meant: PointAccount) -> None:
+def _check(
+    path: Path, chunks: list[_Chunk], header: Any, *, meant: PointAccount, progress: Progress
+) -> None:
     """Read every node back, and compare all with what was written and meant.
 
     Raises:
         StoreError: If it differs.
     """
     found = PointAccount()
+    progress.start("compare", meant.count, "points")
     with path.open("rb") as file:
         read = laspy.CopcReader(file)
         found.crs = crs_text(read.header)
@@ -220,6 +224,7 @@ def _check(path: Path, chunks: list[_Chunk], header: Any, *, meant: PointAccount
             if chunk.points and zlib.crc32(packed.data) != chunk.crc:
                 raise StoreError(CodedText("reread-node", file=path.name, key=str(chunk.key)))
             add_records(found, packed.view(header.point_format.dtype()), read.header)
+            progress.advance(chunk.points)
     listed = sum(node.point_count for node in read.root_page.entries.values())
     if not found.count == listed == read.header.point_count:
         raise StoreError(

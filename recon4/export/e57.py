@@ -50,7 +50,7 @@ def export_e57(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
                 _write_scan(image, data, _Scan(number, rows, scans, sorted_.origins[number]))
                 progress.advance(len(rows))
             image.close()
-            _check(path, dict(sorted_.files), source)
+            _check(path, dict(sorted_.files), source, progress=progress)
         except libe57.E57Exception as error:
             reason = str(error).partition("\n")[0]  # it goes on for a page
             raise StoreError(CodedText("e57-not-written", reason=reason)) from error
@@ -163,7 +163,7 @@ def _guid(of: str) -> str:
     return f"{{{uuid.uuid5(uuid.NAMESPACE_URL, f'recon4 {of}')}}}"
 
 
-def _check(path: Path, files: dict[int, Path], source: PointSource) -> None:
+def _check(path: Path, files: dict[int, Path], source: PointSource, *, progress: Progress) -> None:
     """Read every scan back and compare it with what was written.
 
     Raises:
@@ -172,6 +172,7 @@ def _check(path: Path, files: dict[int, Path], source: PointSource) -> None:
     import pye57
 
     count = 0
+    progress.start("compare", source.count, "points")
     with pye57.E57(str(path)) as file:
         crs = file.root["coordinateMetadata"].value()
         if crs != source.crs:
@@ -193,6 +194,7 @@ def _check(path: Path, files: dict[int, Path], source: PointSource) -> None:
                         CodedText("reread-scan-field", file=path.name, name=name, index=index)
                     )
             count += len(expected)
+            progress.advance(len(expected))
     if count != source.count:
         raise StoreError(
             CodedText("reread-points", file=path.name, got=count, expected=source.count)

@@ -41,7 +41,7 @@ from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.mapping.threads import Each, InThreads
 from recon4.mapping.tiles import TileSet
-from recon4.progress import Progress
+from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
 
 
@@ -128,8 +128,9 @@ def export_laz(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
-    source = PointSource.of(map_, output, selection)
-    return _export(source, path, progress, whole=True)
+    watch = progress or Silent()
+    source = PointSource.of(map_, output, selection, progress=watch)
+    return _export(source, path, watch, whole=True)
 
 
 def export_map_laz(
@@ -142,10 +143,10 @@ def export_map_laz(
     """
     check_name(path, ".laz")
     source = PointSource.of(map_, output)
-    return _export(source, path, progress, whole=False)
+    return _export(source, path, progress or Silent(), whole=False)
 
 
-def _export(source: PointSource, path: Path, progress: Progress | None, *, whole: bool) -> int:
+def _export(source: PointSource, path: Path, progress: Progress, *, whole: bool) -> int:
     """Write and check a file; ``whole`` = all of its points are expanded again."""
     with ThreadPoolExecutor(LAZ.workers) as pool, atomic_file(path) as temporary:
         each = InThreads(pool)
@@ -160,7 +161,7 @@ def _export(source: PointSource, path: Path, progress: Progress | None, *, whole
             _check_bytes(temporary, file.written, path.name)
         source.seal(temporary)
         with reading_las(path.name):
-            _check(temporary, meant, path.name, each=each if whole else None)
+            _check(temporary, meant, path.name, each=each if whole else None, progress=progress)
     return meant.count
 
 
@@ -248,7 +249,9 @@ def _check_bytes(path: Path, written: Mapping[int, tuple[int, int]], name: str) 
             raise StoreError(CodedText("reread-longer", name=name, at=at))
 
 
-def _check(path: Path, meant: PointAccount, name: str, *, each: Each | None) -> None:
+def _check(
+    path: Path, meant: PointAccount, name: str, *, each: Each | None, progress: Progress
+) -> None:
     """Read points back, and compare with what was meant.
 
     Args:
@@ -257,6 +260,7 @@ def _check(path: Path, meant: PointAccount, name: str, *, each: Each | None) -> 
         name: Of the file, for errors.
         each: Threads for all points; None = the first ones of each batch, to which the checksums
             belong.
+        progress: Counts the points that were compared.
 
     Raises:
         StoreError: If the file differs.
@@ -269,7 +273,7 @@ def _check(path: Path, meant: PointAccount, name: str, *, each: Each | None) -> 
             found = stated
             _check_first(file, meant.sums, name)
         else:
-            found = _account_of_all(file, each)
+            found = _account_of_all(file, each, progress)
             stated.classes, stated.sums = found.classes, found.sums
     rounded_m = LAZ.scale_m / 2.0 + REREAD.bounds_m
     for one in (stated, found):
@@ -290,11 +294,13 @@ def _check_first(file: Any, sums: Sequence[int], name: str) -> None:
             raise StoreError(CodedText("reread-from", name=name, first=first))
 
 
-def _account_of_all(file: Any, each: Each) -> PointAccount:
+def _account_of_all(file: Any, each: Each, progress: Progress) -> PointAccount:
     """Account for all points of a file."""
     found = PointAccount(crs=crs_text(file.header))
+    progress.start("compare", file.header.point_count, "points")
     for points in file.chunk_iterator(LAZ.together):
         _account(found, points.array, file.header, each=each)
+        progress.advance(len(points))
     return found
 
 

@@ -147,7 +147,7 @@ def write_map(map_: MapToExport, path: Path, *, progress: Progress) -> int:
         StoreError: If the file cannot be written, or reads back wrong.
     """
     if write_scans := SCANS.get(path.suffix.lower()):
-        source = PointSource.of(map_.tiles, map_.output, map_.selection)
+        source = PointSource.of(map_.tiles, map_.output, map_.selection, progress=progress)
         with atomic_file(path) as temporary:
             return write_scans(source, temporary, _nodes(map_), progress=progress)
     write = cloud_writer(path)

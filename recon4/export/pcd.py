@@ -17,7 +17,7 @@ from recon4.export.tuning import PCD, REREAD
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
-from recon4.progress import Progress
+from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
 
 _FIELDS = (
@@ -57,7 +57,7 @@ def export_pcd(
         StoreError: If the file cannot be written (`NoSpace`: disk full) or reads back wrong.
     """
     check_name(path, ".pcd")
-    source = _lying(PointSource.of(map_, output, selection))
+    source = _lying(PointSource.of(map_, output, selection, progress=progress))
     names = [source.intensity, "normal", "ring", "frame_id", "t_ns"]
     row, absolute = np.dtype(list(_FIELDS)), is_absolute(source.tiles.first_ns)
     meant = PointAccount(crs=source.crs_line)
@@ -74,7 +74,7 @@ def export_pcd(
                 meant.add_stored(rows)
         check_size(temporary, len(head) + source.count * row.itemsize, path.name)
         source.seal(temporary)
-        again = account_of_rows(temporary, row, offset=source.offset)
+        again = account_of_rows(temporary, row, progress or Silent(), offset=source.offset)
         meant.compare(again, path.name, within_m=_rounded_m(meant, source.offset))
     return meant.count
 

@@ -14,7 +14,7 @@ from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import REREAD
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
-from recon4.progress import Progress
+from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
 
 _PROPERTIES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
@@ -58,13 +58,14 @@ def export_ply(
         StoreError: If the file cannot be written (`NoSpace`: disk full) or reads back wrong.
     """
     check_name(path, ".ply")
-    source = PointSource.of(map_, output, selection)
+    watch = progress or Silent()
+    source = PointSource.of(map_, output, selection, progress=watch)
     tiles = source.tiles
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
     absolute = is_absolute(tiles.first_ns)
     meant = PointAccount(crs=source.crs_line)
-    stream = source.blocks([*fields, "normal", "t_ns"], progress)
+    stream = source.blocks([*fields, "normal", "t_ns"], watch)
     with atomic_file(path) as temporary:
         head = _head(row, source.count, meant.crs)
         with temporary.open("wb") as file:
@@ -76,7 +77,7 @@ def export_ply(
                 meant.add_stored(rows)
         check_size(temporary, len(head) + source.count * row.itemsize, path.name)
         source.seal(temporary)
-        again = account_of_rows(temporary, row, offset=np.zeros(3))
+        again = account_of_rows(temporary, row, watch, offset=np.zeros(3))
         meant.compare(again, path.name, within_m=REREAD.bounds_m)
     return meant.count
 

@@ -77,7 +77,11 @@ class PointSource:
 
     @staticmethod
     def of(
-        map_: Path | TileSet, output: OutputCrs, selection: PointSelection = DELIVERED
+        map_: Path | TileSet,
+        output: OutputCrs,
+        selection: PointSelection = DELIVERED,
+        *,
+        progress: Progress | None = None,
     ) -> PointSource:
         """A map to be written. Of a part of it the points are counted first.
 
@@ -85,12 +89,13 @@ class PointSource:
             map_: Artifact of the stage ``map``, or what is open of it.
             output: CRS of the file; by default the shift by the map's origin in its own.
             selection: Which points are written.
+            progress: Who watches while they are counted.
 
         Raises:
             ConfigError: If the map or the selection has no points.
         """
         source = PointSource.uncounted(map_, output, selection)
-        return source if selection.is_whole else source._counted()
+        return source if selection.is_whole else source._counted(progress or Silent())
 
     @staticmethod
     def uncounted(
@@ -113,10 +118,11 @@ class PointSource:
         count = len(tiles) + (tiles.strays if selection.left_out else 0)
         return PointSource(tiles, transform, crs, offset, selection, count, seal)
 
-    def _counted(self) -> PointSource:
+    def _counted(self, progress: Progress) -> PointSource:
         """The same with the number of points that are selected, and their middle."""
         count, low, high = 0, np.full(3, np.inf), np.full(3, -np.inf)
-        for block in self._selected([], Silent()):
+        progress.start("points", self.count, "points")
+        for block in self._selected([], progress):
             count += len(block.xyz)
             # Column by column: along the rows of a narrow array NumPy takes five times as long.
             low = np.minimum(low, [column.min() for column in block.xyz.T])

@@ -53,7 +53,8 @@ def export_ptx(source: PointSource, path: Path, scans: ScanPoses, *, progress: P
                     part = _numbers(rows[first : first + POINT_EXPORT.block])
                     np.savetxt(text, part, fmt="%.5f %.5f %.5f %.6f")
                 progress.advance(len(rows))
-        _check(path, [(poses[number], file) for number, file in sorted_.files])
+        progress.start("compare", source.count, "points")
+        _check(path, [(poses[number], file) for number, file in sorted_.files], progress)
     return source.count
 
 
@@ -79,7 +80,7 @@ def _numbers(rows: NDArray[Any]) -> Array:
     )  # no negative zeros
 
 
-def _check(path: Path, scans: list[tuple[str, Path]]) -> None:
+def _check(path: Path, scans: list[tuple[str, Path]], progress: Progress) -> None:
     """Read every scan back and compare it with what was written.
 
     Raises:
@@ -95,6 +96,7 @@ def _check(path: Path, scans: list[tuple[str, Path]]) -> None:
                 expected = _numbers(rows[first : first + POINT_EXPORT.block])
                 if not np.array_equal(found, expected):
                     raise StoreError(CodedText("reread-scan-points", file=path.name, index=index))
+                progress.advance(len(found))
         if text.read(1):
             raise StoreError(CodedText("reread-more-scans", file=path.name, count=len(scans)))
 

@@ -13,7 +13,7 @@ from recon4.export.reread import account_of_text
 from recon4.export.selection import DELIVERED, PointSelection
 from recon4.export.tuning import LAZ
 from recon4.mapping.tiles import TileSet
-from recon4.progress import Progress
+from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
 
 
@@ -45,12 +45,13 @@ def export_xyz(
         StoreError: If the file cannot be written (`NoSpace`: disk full) or reads back wrong.
     """
     check_name(path, ".xyz")
-    source = PointSource.of(map_, output, selection)
+    watch = progress or Silent()
+    source = PointSource.of(map_, output, selection, progress=watch)
     meant = PointAccount()
     with atomic_file(path) as temporary:
         with temporary.open("wb") as file:
             file.write(b"//X Y Z Intensity Classification\n")
-            for block in source.blocks([source.intensity], progress):
+            for block in source.blocks([source.intensity], watch):
                 classes, values = block.columns["classification"], block.columns[source.intensity]
                 # The nearest numbers to the decimals that are written: they read back the same.
                 xyz = np.rint(block.xyz * 1e4) / 1e4
@@ -60,5 +61,6 @@ def export_xyz(
                 meant.add(block.xyz, classes)
                 meant.add_stored(rows + 0.0)  # no negative zeros
         source.seal(temporary)
-        meant.compare(account_of_text(temporary), path.name, within_m=LAZ.scale_m)
+        found = account_of_text(temporary, watch)
+        meant.compare(found, path.name, within_m=LAZ.scale_m)
     return meant.count

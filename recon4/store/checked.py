@@ -13,7 +13,7 @@ import json
 import os
 import threading
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -85,8 +85,11 @@ class CheckedArtifact:
             raise Altered(CodedText("seal-not-in-manifest", file=_short(self.folder / name)))
         check_file(self.folder / name, expected, start, stop=stop)
 
-    def check_all(self) -> None:
+    def check_all(self, seen: Callable[[int], None] = lambda length: None) -> None:
         """Compare every file, and check that there are no others.
+
+        Args:
+            seen: Called with numbers of bytes that were compared.
 
         Raises:
             Altered: If anything differs.
@@ -95,8 +98,10 @@ class CheckedArtifact:
         for name in sorted(there ^ self.files.keys()):
             state = "seal-missing" if name in self.files else "seal-surplus"
             raise Altered(CodedText(state, file=_short(self.folder / name)))
-        for name in self.files:
-            self.check(name)
+        for name, expected in self.files.items():
+            for start in range(0, expected.size or 1, BLOCK_BYTES):
+                self.check(name, start, start + BLOCK_BYTES)
+                seen(min(BLOCK_BYTES, expected.size - start))
 
 
 def check_file(

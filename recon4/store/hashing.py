@@ -14,6 +14,8 @@ from typing import Any, NotRequired, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.progress import Progress
+
 BLOCK_BYTES = 1 << 20
 """Files are hashed as a whole and in blocks of this size, so that parts can be checked [bytes]."""
 CHAIN_START = "0" * 64
@@ -95,6 +97,12 @@ def hash_file(path: Path, seen: Callable[[int], None] | None = None) -> str:
             if seen is not None:
                 seen(len(block))
     return digest.hexdigest()
+
+
+def hash_shown(path: Path, progress: Progress) -> str:
+    """SHA-256 of a file's bytes, as hex, as a piece of work of its own."""
+    progress.start(f"hash {path.name}", path.stat().st_size, "B")
+    return hash_file(path, progress.advance)
 
 
 def hash_json(value: object) -> str:

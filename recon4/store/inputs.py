@@ -8,7 +8,7 @@ from pathlib import Path
 from recon4.errors import RecordingError
 from recon4.locales.coded import CodedText
 from recon4.progress import Progress
-from recon4.store.hashing import files_below, hash_file, hash_json
+from recon4.store.hashing import files_below, hash_json, hash_shown
 from recon4.store.ledger import Ledger
 from recon4.store.stage import Input
 from recon4.untrusted.names import is_unnameable, visible
@@ -60,7 +60,6 @@ def _hash_file(path: Path, ledger: Ledger, progress: Progress) -> str:
     known = ledger.cached_hash(path)
     if known is not None:
         return known
-    progress.start(f"hash {path.name}", path.stat().st_size, "B")
-    found = hash_file(path, progress.advance)
+    found = hash_shown(path, progress)
     ledger.remember_hash(path, found)
     return found

@@ -42,13 +42,14 @@ def compare(folder: JobFolder, progress: Progress) -> ExportedFile:
     pair = MapPair.of(open_side(project), open_side(_other_map(project, order)), align=order.align)
     found = write_comparison(pair, path, core_spacing_m=order.core_spacing_m, progress=progress)
     points = found.counts.core_points
-    return ExportedFile.of(
+    made = ExportedFile.of(
         path,
         f"{points} core points",
         latest_state(project),
         map_key=found.first.key,
-        points=points,
+        progress=progress,
     )
+    return replace(made, points=points)
 
 
 def policy(folder: JobFolder) -> Policy:

@@ -46,7 +46,7 @@ def pack(
     if before is None or read_artifacts(project).get("map") != before:
         raise StoreError(CodedText("deliver-map-changed"))
     text = f"{len(found.files)} files, {'signed' if found.signed else 'not signed'}"
-    return ExportedFile.of(out, text, found.approval, map_key=before.name)
+    return ExportedFile.of(out, text, found.approval, map_key=before.name, progress=progress)
 
 
 def readable(folder: JobFolder, asked: DeliveryOrder) -> tuple[Path, ...]:

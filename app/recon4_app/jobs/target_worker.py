@@ -46,7 +46,8 @@ def search(folder: JobFolder, progress: Progress) -> ExportedFile:
     path = folder.made / "targets.json"
     write_json(path, to_plain(found))
     text = f"{len(found.rows)} places like survey targets"
-    return ExportedFile.of(path, text, latest_state(request.project), map_key=map_folder.name)
+    state = latest_state(request.project)
+    return ExportedFile.of(path, text, state, map_key=map_folder.name, progress=progress)
 
 
 if __name__ == "__main__":

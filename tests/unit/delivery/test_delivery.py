@@ -179,11 +179,11 @@ def test_a_draft_is_delivered_as_one_and_not_signed(tmp_path):
 
 
 def test_nothing_is_left_if_an_export_reads_back_wrong(sent, tmp_path, monkeypatch):
-    def damage(path):
+    def damage(path, progress):
         data = bytearray(path.read_bytes())
         data[-4000] ^= 0xFF
         path.write_bytes(data)
-        return account_of_text(path)
+        return account_of_text(path, progress)
 
     monkeypatch.setattr(xyz, "account_of_text", damage)
     wish = DeliveryWish(files=("map.xyz",))
@@ -332,9 +332,9 @@ def test_the_key_of_the_server_is_the_one_that_is_trusted(sent):
 
 
 def test_the_readme_names_the_coordinates_of_the_files(sent, tmp_path):
-    map_ = package._open(sent / "room", DeliveryWish())
+    map_ = package._open(sent / "room", DeliveryWish(), Silent())
     for wish, said in (
-        (DeliveryWish(crs="EPSG:25832"), "Coordinates of the map: EPSG:25832."),
+        (DeliveryWish(crs="EPSG:25832"), "EPSG:25832 (ETRS89 / UTM zone 32N)."),
         (DeliveryWish(), "Coordinates of the map: local frame"),
     ):
         package._write_readme(tmp_path, map_, wish, texts=words(), name="d.zip")
@@ -343,7 +343,7 @@ def test_the_readme_names_the_coordinates_of_the_files(sent, tmp_path):
 
 
 def test_a_map_that_was_made_again_meanwhile_is_refused(sent):
-    map_ = package._open(sent / "room", DeliveryWish())
+    map_ = package._open(sent / "room", DeliveryWish(), Silent())
     package._refuse_changed(map_)
     others = dict(map_.export.artifacts) | {"map": sent / "room" / "artifacts" / "other"}
 
