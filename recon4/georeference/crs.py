@@ -231,6 +231,8 @@ def _best_transformer(origin: GeodeticOrigin, target: Any, name: str) -> Any:
             for grid in operation.grids
             if not grid.available
         ]
-        needs = f"needs the grid {', '.join(grids)}" if grids else "has no operation for this place"
-        raise GeoreferenceError(CodedText("crs-needs", name=name, needs=needs))
+        if grids:
+            several = ", ".join(grids)
+            raise GeoreferenceError(CodedText("crs-grid", name=name, grids=several, file=grids[0]))
+        raise GeoreferenceError(CodedText("crs-no-operation", name=name))
     return group.transformers[0]
