@@ -70,7 +70,7 @@ def control_points(
     write(trial_text(trial, of_terminal()))
     if trial.unseen:
         write(worded("control-not-measured", names=", ".join(trial.unseen)))
-    require_agreement(trial)
+    require_agreement(trial, of_terminal())
     if apply:
         if picks is None:
             seen = {one.id: one for one in trial.control.targets}

@@ -176,15 +176,15 @@ def forbidding(trial: ControlTrial) -> tuple[Blunder, ...]:
     return tuple(one for one in trial.blunders if not one.points or control & {*one.points})
 
 
-def require_agreement(trial: ControlTrial) -> None:
+def require_agreement(trial: ControlTrial, language: str = ENGLISH) -> None:
     """Check that the control points may place the map.
 
     Raises:
         GeoreferenceError: If they contradict each other, with what is suspected.
     """
     if found := forbidding(trial):
-        texts = " ".join(one.text for one in found)
-        raise GeoreferenceError(CodedText("site-not-put", texts=texts))
+        said = " ".join(one.said(language) for one in found)
+        raise GeoreferenceError(CodedText("site-not-put", texts=said))
 
 
 def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:

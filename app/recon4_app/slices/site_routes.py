@@ -71,7 +71,14 @@ async def put_on_site(
     state = await run_in_threadpool(server.slices.survey.read, project_id)
     terms = server.slices.terms(project_id, caller.name)
     data = await caller.wait(
-        server.slices.run_background(terms, site_work.site_control_of, artifacts, state, system.crs)
+        server.slices.run_background(
+            terms,
+            site_work.site_control_of,
+            artifacts,
+            state,
+            system.crs,
+            language=caller.language,
+        )
     )
     control = decode_record(data, SiteControl)
     await run_in_threadpool(server.slices.survey.keep_seen, project_id, control)

@@ -84,14 +84,14 @@ def try_site(artifacts: Artifacts, state: ControlState, crs: str, *, language: s
     )
 
 
-def site_control_of(artifacts: Artifacts, state: ControlState, crs: str) -> bytes:
+def site_control_of(artifacts: Artifacts, state: ControlState, crs: str, *, language: str) -> bytes:
     """The control points as an input of a run, a `SiteControl`: JSON, for `decode_record`.
 
     Raises:
         GeoreferenceError: If the points place no map, or contradict each other.
     """
     trial = _try(artifacts, state, crs)
-    require_agreement(trial)
+    require_agreement(trial, language)
     return msgspec.json.encode(to_plain(trial.control))
 
 
