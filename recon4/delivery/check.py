@@ -134,7 +134,7 @@ def _judged(
 def _check_pdf(path: Path, trusted: TrustedKeys) -> CheckedFile:
     signatures = signatures_in(path)
     if not signatures:
-        return CheckedFile(doubt="it is not signed: a draft, or not of recon4")
+        return CheckedFile(doubt=CodedText("check-pdf-not-signed"))
     broken = [one for one in signatures if not one.intact]
     if broken or len(signatures) > 1:
         why = broken[0].why if broken else "it is signed more than once"
@@ -146,10 +146,7 @@ def _check_pdf(path: Path, trusted: TrustedKeys) -> CheckedFile:
 def _pdf_signer(one: SignedBy, trusted: TrustedKeys) -> tuple[str, str]:
     if one.public_key:
         return _named(one.public_key, trusted)
-    return "", (
-        f"the signature is intact; it is by the certificate of {one.name}, SHA-256 "
-        f"{one.certificate}: compare this with what the signer tells you"
-    )
+    return "", CodedText("check-pdf-certificate", name=one.name, sha256=one.certificate)
 
 
 def _signer(signature: Mapping[str, str] | None, trusted: TrustedKeys) -> tuple[str, str]:
