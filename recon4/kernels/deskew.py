@@ -57,3 +57,30 @@ def place_sensor_points(
             )
             if want_origin:
                 out_origin[n, i] = origin
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def move_with_frames(
+    xyz: NDArray[np.float32],
+    frame_id: NDArray[np.uint32],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    out: NDArray[np.float32],
+) -> None:
+    """Move points with their multiframes.
+
+    Args:
+        xyz: Points from an origin [m], float32 (N, 3).
+        frame_id: Multiframe of each, uint32 (N,).
+        R: Rotations of the multiframes about the origin of the map, float64 (F, 3, 3).
+        t: Their shifts [m], float64 (F, 3).
+        origin: In the map [m], float64 (3,).
+        out: Receives the points from the same origin, float32 (N, 3).
+    """
+    for n in range(len(xyz)):
+        k = frame_id[n]
+        x, y, z = xyz[n, 0] + origin[0], xyz[n, 1] + origin[1], xyz[n, 2] + origin[2]
+        for i in range(3):
+            at = R[k, i, 0] * x + R[k, i, 1] * y + R[k, i, 2] * z + t[k, i]
+            out[n, i] = at - origin[i]

@@ -206,8 +206,25 @@ class PackedColumns:
 
         return self.kept.get((name, block), make)
 
-    def _unpack(self, name: str, block: int, *, rows: Rows, out: NDArray[Any]) -> None:
-        """Unpack a field of a block to some rows."""
+    def blocks(self, start: int, stop: int) -> Iterator[tuple[int, int]]:
+        """Numbers of the blocks that some rows are in, each with the first of these rows."""
+        for block, rows in self._blocks(slice(start, stop)):
+            yield block, rows.start + (int(self.index["stop"][block - 1]) if block else 0)
+
+    def unpacked(self, block: int, names: Sequence[str]) -> Columns:
+        """Some fields of a block as they are packed, in spatial order: not ``t_ns``."""
+        found = _room(names, self._count(block))
+        every = np.arange(self._count(block), dtype=np.int32)
+        for name, values in found.items():
+            self._unpack(name, block, rows=every, out=values)
+        return found
+
+    def packed(self, name: str, block: int) -> PackedField:
+        """A field of a block as it is stored.
+
+        Raises:
+            StoreError: If it cannot be read.
+        """
         where = f"{self.folder.name}/{name}.zst"
         first, stop = self._bytes(name, block)
         try:
@@ -218,8 +235,12 @@ class PackedColumns:
             raise StoreError(f"{where} cannot be read: {error.strerror}") from error
         width = int(self.index["width"][block, self.fields.index(name)])
         step = self.position_step_m if name == "xyz" else FIELD_PACKING[name].step
-        packed = PackedField(data, width, step)
-        unpack(name, packed, rows=rows, out=out, where=f"{where}: block {block}")
+        return PackedField(data, width, step)
+
+    def _unpack(self, name: str, block: int, *, rows: Rows, out: NDArray[Any]) -> None:
+        """Unpack a field of a block to some rows."""
+        where = f"{self.folder.name}/{name}.zst: block {block}"
+        unpack(name, self.packed(name, block), rows=rows, out=out, where=where)
 
     def _check(self, name: str, block: int, checked: CheckedArtifact | None) -> None:
         if checked is not None:

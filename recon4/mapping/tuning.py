@@ -231,6 +231,21 @@ class TileTuning(Struct, frozen=True, kw_only=True):
 TILES = TileTuning()
 
 
+class CarryTuning(Struct, frozen=True, kw_only=True):
+    """Which maps are carried along with decisions. Study: docs/studies/speed.md."""
+
+    bent_m: float = 0.004
+    """Across a surface, a point may move by this otherwise than what is around: the step at which
+    the refinement stops [m] …"""
+    bent_ratio: float = 0.01
+    """… but for this ratio of the points."""
+    around_m: float = 0.5
+    """Edge of the cubes that move together [m]: about the window of a surface."""
+
+
+CARRY = CarryTuning()
+
+
 class VoxelRunTuning(Struct, frozen=True, kw_only=True):
     """Runs of records that are merged."""
 

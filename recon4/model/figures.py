@@ -249,6 +249,9 @@ class MapFigures(Figures, frozen=True, kw_only=True):
     """The same of the points as measured; None = the points lie there."""
     corrections: tuple[CorrectedClass, ...] = ()
     """Of classes by people, in the order in which they apply."""
+    bent_ratio: float | None = None
+    """Of a map that decisions carried along: ratio of points that left their surface; None = it was
+    made by itself."""
 
 
 class ClassFigures(Figures, frozen=True, kw_only=True):

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from recon4.model.figures import ClassFigures, Figures, MapFigures
 from recon4.review.decisions import StandingCorrection
 from recon4.settings.reads import IntensityReads, MapReads, ReadsNothing
+from recon4.store.hashing import hash_json
 from recon4.store.input_contents import files_of
-from recon4.store.stage import Stage, StageContext
+from recon4.store.stage import Artifact, Input, Stage, StageContext
 from recon4.workflows.workflow import Run
 
 if TYPE_CHECKING:
+    from recon4.mapping.carry import CarriedTo
     from recon4.workflows.publish import Results
 
 POSES = ("trajectory.npz",)
@@ -22,6 +25,16 @@ SIGHT = (*POSES, "mirrors.npz")
 """What `CLASSES` reads of it."""
 PLACE = (*POSES, "uncertainty.npz", "georeference.json")
 """What `MAP` reads of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class UndecidedMap:
+    """The map without decisions."""
+
+    made: Path
+    """Artifact of the stage ``map``."""
+    level: Path
+    """Artifact of the stage ``level`` that it was made of; only `POSES` are read of it."""
 
 
 def make_map(run: Run, to_trajectory: Callable[[Run], None], **measurements: str) -> None:
@@ -37,7 +50,31 @@ def make_map(run: Run, to_trajectory: Callable[[Run], None], **measurements: str
     run.stage(INTENSITY, **points, level=files_of(seen, POSES))
     run.stage(CLASSES, **points, level=files_of(seen, SIGHT))
     made = {"intensity": "intensity", "classes": "classes"}
-    run.stage(MAP, **points, **run.corrections, **made, level=run.files("level", PLACE))
+    given = run.corrections or _undecided(run, seen, to_trajectory, **measurements)
+    run.stage(MAP, **points, **given, **made, level=run.files("level", PLACE))
+
+
+def _undecided(
+    run: Run, seen: Artifact, to_trajectory: Callable[[Run], None], **measurements: str
+) -> dict[str, Input]:
+    """Input of the stage ``map``: the map without decisions, if these hardly move it.
+
+    Where people corrected classes there is none: corrections apply to the places of the map.
+
+    Args:
+        run: Its stage ``level`` is there.
+        seen: As `Run.seen` found it.
+        to_trajectory: See `make_map`.
+        measurements: See `make_map`.
+    """
+    if seen.key == run.runner.runs["level"].artifact.key:
+        return {}
+    aside = Run(run.runner.aside())
+    to_trajectory(aside)
+    make_map(aside, to_trajectory, **measurements)
+    made = aside.runner.runs["map"].artifact
+    key = hash_json([made.key, files_of(seen, POSES).key])
+    return {"undecided": Input(key, UndecidedMap(made.folder, seen.folder))}
 
 
 def map_results() -> Results[Any]:
@@ -100,15 +137,16 @@ def _classes(
 def _map(
     context: StageContext[MapReads],
     *,
-    frames: Path,
-    odometry: Path,
     level: Path,
     intensity: Path,
     classes: Path,
-    calibration: Path | None = None,
     corrections: tuple[StandingCorrection, ...] = (),
+    undecided: UndecidedMap | None = None,
+    **points: Path,
 ) -> MapFigures:
     from recon4.mapping.build import MapInputs, MapMeans, build_map
+    from recon4.mapping.carry import CarriedTo
+    from recon4.mapping.tiles import TileSet
     from recon4.orders.confined import workers_of_this_process
     from recon4.sandbox.freed_memory import return_freed_memory
     from recon4.store.arrays import load_intensity_table, load_trajectory
@@ -118,28 +156,43 @@ def _map(
     from recon4.workflows.map_figures import map_figures, write_map_laz
     from recon4.workflows.result_files import covariances_of
 
-    store = open_frames(frames, calibration, odometry)
+    store = open_frames(points["frames"], points.get("calibration"), points["odometry"])
     covariances_at = covariances_of(level)
     trajectory = load_trajectory(level / "trajectory.npz")
+    covariances = None if covariances_at is None else covariances_at(store.t_mid_ns)
     placed = corrections_in(corrections, trajectory)
-    inputs = MapInputs(
-        store,
-        trajectory,
-        load_intensity_table(intensity / "table.npz"),
-        covariances=None if covariances_at is None else covariances_at(store.t_mid_ns),
-        classes=StoredClasses.open(classes),
-        corrections=placed.volumes,
-    )
-    tiles = build_map(
-        inputs,
-        context.out,
-        settings=context.settings.map,
-        progress=context.progress,
-        means=MapMeans(workers_of_this_process()),
-    )
+    to = CarriedTo(store.rig, trajectory, store.t_mid_ns, covariances)
+    bent_ratio = _carried(context, undecided, to) if undecided else None
+    if bent_ratio is None:
+        inputs = MapInputs(
+            store,
+            trajectory,
+            load_intensity_table(intensity / "table.npz"),
+            covariances=covariances,
+            classes=StoredClasses.open(classes),
+            corrections=placed.volumes,
+        )
+        build_map(
+            inputs,
+            context.out,
+            settings=context.settings.map,
+            progress=context.progress,
+            means=MapMeans(workers_of_this_process()),
+        )
     return_freed_memory()
     write_map_laz(context.out, level, progress=context.progress)
-    return map_figures(tiles, placed)
+    return map_figures(TileSet.open(context.out), placed, bent_ratio)
+
+
+def _carried(
+    context: StageContext[MapReads], undecided: UndecidedMap, to: CarriedTo
+) -> float | None:
+    """Carry the map without decisions along: its `bent_ratio`; None = it has to be made again."""
+    from recon4.mapping.carry import carry_map
+    from recon4.store.arrays import load_trajectory
+
+    before = load_trajectory(undecided.level / "trajectory.npz")
+    return carry_map(undecided.made, before, to, out=context.out, progress=context.progress)
 
 
 INTENSITY: Stage[IntensityReads, Figures] = Stage(

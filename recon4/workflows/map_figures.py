@@ -14,8 +14,16 @@ from recon4.progress import Progress
 from recon4.workflows.corrected_classes import CorrectionsInMap, corrected
 
 
-def map_figures(tiles: TileSet, corrections: CorrectionsInMap) -> MapFigures:
-    """Figures of a map with the corrections of classes that it was made with."""
+def map_figures(
+    tiles: TileSet, corrections: CorrectionsInMap, bent_ratio: float | None
+) -> MapFigures:
+    """Figures of a map.
+
+    Args:
+        tiles: The map.
+        corrections: Of classes, that it was made with.
+        bent_ratio: Of a map that decisions carried along.
+    """
     low, high = (tuple(corner.tolist()) for corner in tiles.bounds_m)
     return MapFigures(
         points=len(tiles),
@@ -27,6 +35,7 @@ def map_figures(tiles: TileSet, corrections: CorrectionsInMap) -> MapFigures:
             plane_thickness(tiles.as_measured()) if tiles.surface == "fitted" else None
         ),
         corrections=corrected(corrections, tiles.notes.corrected),
+        bent_ratio=bent_ratio,
     )
 
 

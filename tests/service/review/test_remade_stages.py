@@ -6,10 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from recon4.geometry.se3 import SE3
 from recon4.georeference.tuning import HOLD
-from recon4.model.figures import LevelFigures, RefineFigures
+from recon4.mapping import carry
+from recon4.mapping.tiles import TileSet
+from recon4.mapping.tuning import CARRY
+from recon4.model.figures import LevelFigures, MapFigures, RefineFigures
 from recon4.model.pose_graph import Verdict
 from recon4.pipeline import remake
 from recon4.pose_graph.files import load_graph
@@ -84,6 +88,10 @@ def carried(root):
     return read_figures(read_artifacts(root)["refine"], RefineFigures).carried
 
 
+def bent_ratio(root):
+    return read_figures(read_artifacts(root)["map"], MapFigures).bent_ratio
+
+
 def held(root):
     return read_figures(read_artifacts(root)["level"], LevelFigures).held
 
@@ -135,6 +143,18 @@ def test_what_scans_see_stays_where_a_decision_moves_the_map_by_centimeters(offi
         recipe = read_manifest(after[name])["recipe"]["inputs"]
         is_seen = recipe["level"] == files_of(undecided, given).key
         assert is_seen == (name == "classes")
+    assert 0.0 < bent_ratio(office) <= CARRY.bent_ratio
+    assert read_manifest(after["map"])["recipe"]["inputs"]["undecided"]
+    assert len(TileSet.open(after["map"])) == len(TileSet.open(before["map"]))
+
+
+def test_a_map_that_a_decision_bends_by_centimeters_is_made_again(office, monkeypatch):
+    monkeypatch.setattr(carry, "CARRY", replace(CARRY, bent_ratio=1e-4))
+    append(office, off_by(0.03, office))
+    remake(office)
+
+    assert bent_ratio(office) is None
+    assert read_figures(read_artifacts(office)["map"], MapFigures).points > 0
 
 
 @pytest.mark.study
