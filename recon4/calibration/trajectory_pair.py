@@ -70,15 +70,26 @@ class TrajectoryPair:
     @property
     def report_lines(self) -> tuple[str, ...]:
         """What the trajectories show, for the terminal."""
-        turn, shift = np.rad2deg(self.residual_rad[self.used]), 1e3 * self.residual_m[self.used]
+        turn, shift = self.residual_rad[self.used], 1e3 * self.residual_m[self.used]
         x, y, z = 1e3 * self.sd_m
         return (
-            f"{self.used.mean():.0%} of {len(self.used)} motions agree; half of them to "
-            f"{np.median(turn):.2f}° and {np.median(shift):.0f} mm",
-            f"mount known to ± {np.rad2deg(self.sd_rad.max()):.2f}° and ± {x:.0f}, {y:.0f}, "
-            f"{z:.0f} mm (x, y, z of the first sensor)",
-            f"clock: {1e3 * self.offset_s:+z.1f} ± {1e3 * self.sd_offset_s:.1f} ms at the middle "
-            f"of the walk, drift {1e6 * self.rate:+z.0f} ± {1e6 * self.sd_rate:.0f} µs a second",
+            CodedText(
+                "motions-agree",
+                share=float(self.used.mean()),
+                motions=len(self.used),
+                turn_rad=float(np.median(turn)),
+                shift_mm=float(np.median(shift)),
+            ),
+            CodedText(
+                "mount-of-trajectories", sd_rad=float(self.sd_rad.max()), x_mm=x, y_mm=y, z_mm=z
+            ),
+            CodedText(
+                "clock-of-trajectories",
+                offset_ms=1e3 * self.offset_s,
+                sd_ms=1e3 * self.sd_offset_s,
+                rate_us=1e6 * self.rate,
+                sd_us=1e6 * self.sd_rate,
+            ),
         )
 
 

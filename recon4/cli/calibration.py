@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from recon4.cli.confinement import compile_first, confine_command, result_folder
-from recon4.cli.terminal import write
+from recon4.cli.terminal import say, write
 from recon4.errors import CalibrationError, ConfigError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, said
+from recon4.locales.languages import of_terminal
 
 if TYPE_CHECKING:
     from recon4.workflows.calibration_methods import MethodResult
@@ -63,15 +65,30 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     sources = Sources(tuple(recordings), load_rig(rig), imu, gnss)
     with watcher() as progress:
         found = methods.calibrate_by(choice, sources, folder, progress=progress)
-    write("\n".join(found.report_lines))
+    write("\n".join(_lines(found, of_terminal())))
     page = out.with_suffix(".html")
     report = methods.calibration_report(method, found, sources, folder=folder)
     write_calibration_page(page, report)
-    write(f"page    {page}")
+    say("calibrated-page", page=str(page))
     _write(found, out)
 
 
+def _lines(found: MethodResult, language: str) -> Iterator[str]:
+    from recon4.findings.witnesses.rig import rig_findings
+    from recon4.findings.wording import whole_text
+    from recon4.report.client_words import words
+    from recon4.report.rig import row_cells
+
+    for row in found.rows:
+        name, change, status = row_cells(row, words(language))
+        yield f"{name:<28} {change:>22}  {status}".rstrip()
+    yield from (said(line, language) for line in found.report_lines)
+    if found.figures is not None:
+        yield from (whole_text(one, language) for one in rig_findings(found.figures))
+
+
 def _write(found: MethodResult, out: Path) -> None:
+    from recon4.cli.terminal import in_terminal
     from recon4.model.rig import format_rig
     from recon4.store.atomic import atomic_file
 
@@ -79,7 +96,7 @@ def _write(found: MethodResult, out: Path) -> None:
         raise CalibrationError(CodedText("out-not-written", out=out.name, outcome=found.outcome))
     with atomic_file(out) as temporary:
         temporary.write_text(format_rig(found.rig), "utf-8")
-    write(f"{found.outcome}\n{out}")
+    write(f"{in_terminal(found.outcome)}\n{out}")
 
 
 def assignments_of(word: str) -> list[str]:

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.cli.terminal import write
+from recon4.cli.terminal import say, worded, write
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText, text_of
 
 if TYPE_CHECKING:
     from recon4.model.class_corrections import ClassCorrection, Reclassified
     from recon4.review.correction_files import ListedCorrection
+    from recon4.review.decisions import StandingCorrection
 
 classify = typer.Typer()
 
@@ -54,7 +55,7 @@ def classify_points(
 
 
 def _list(project: Path) -> None:
-    from recon4.review.class_corrections import corrections_in_map, described, not_in_map
+    from recon4.review.class_corrections import corrections_in_map, not_in_map
     from recon4.review.journal import read_decided
     from recon4.review.state import read_summary
     from recon4.store.project import read_artifacts
@@ -62,11 +63,31 @@ def _list(project: Path) -> None:
     read_artifacts(project)  # raises if it is no project
     decided, in_map = read_decided(project), corrections_in_map(read_summary(project))
     for one in decided.corrections:
-        write(described(one) + ("" if one.id in in_map else "  not in the map yet"))
+        write(_line(one) + ("" if one.id in in_map else f"  {worded('correction-not-in-map')}"))
     for name in not_in_map(decided, in_map).withdrawn:
-        write(f"{name}  is still in the map: it is withdrawn, or others come before it")
+        say("correction-still-in-map", correction=name)
     if not decided.corrections:
-        write("no correction of classes")
+        say("corrections-none")
+
+
+def _line(one: StandingCorrection) -> str:
+    what = one.correction.what
+    when = one.time[:16].replace("T", " ")
+    return worded(
+        "correction-standing",
+        correction=one.id,
+        points=one.correction.points,
+        to=_titles([what.to]),
+        restricted=len(what.only),
+        only=_titles(what.only),
+        who=f"{one.who}, {when}{f': {one.why}' if one.why else ''}",
+    )
+
+
+def _titles(classes: Sequence[int]) -> str:
+    from recon4.model.class_corrections import titles_of
+
+    return ", ".join(worded("named-class", title=title) for title in titles_of(classes))
 
 
 def _correct(project: Path, path: Path, *, apply: bool) -> None:
@@ -87,7 +108,6 @@ def _counted(
     Raises:
         ConfigError: If one of them changes no point.
     """
-    from recon4.model.class_corrections import titles_of
     from recon4.review.class_corrections import corrections_in_map, not_in_map, try_correction
     from recon4.review.decisions import fold
     from recon4.review.journal import read_rows
@@ -106,9 +126,14 @@ def _counted(
                 CodedText("classify-refused", where=one.where, text=trial.refused.text)
             )
         assert trial.correction is not None
-        now = ", ".join(f"{count} {title}" for title, count in trial.now.items())
-        to = titles_of([what.to])[0]
-        write(f"{one.where}: {trial.points} points, now: {now} -> {to}")
+        now = ";".join(f"{title}:{count}" for title, count in trial.now.items())
+        say(
+            "correction-tried",
+            where=one.where,
+            points=trial.points,
+            now=now,
+            to=_titles([what.to]),
+        )
         made.append(trial.correction)
     return made, len(rows)
 
@@ -121,7 +146,7 @@ def _resolved(
     Raises:
         ConfigError: If nothing is there.
     """
-    from recon4.model.class_corrections import Reclassified, titles_of
+    from recon4.model.class_corrections import Reclassified
     from recon4.review.class_corrections import propose_alike
 
     if isinstance(one.what, Reclassified):
@@ -133,10 +158,11 @@ def _resolved(
             CodedText("classify-refused", where=one.where, text=text_of(error))
         ) from error
     chosen = [each for each in found.clusters if each.difference <= one.what.most_different]
-    write(f"{one.where}: {len(chosen)} of {titles_of([found.of])[0]} alike")
+    say("correction-alike", where=one.where, count=len(chosen), of=_titles([found.of]))
     for each in chosen:
         x, y, z = ((a + b) / 2.0 for a, b in zip(each.low_m, each.high_m, strict=True))
-        write(f"  x {x:.2f}  y {y:.2f}  z {z:.2f} m  {each.points} points, {each.difference:.2f}")
+        place = f"x {x:.2f}  y {y:.2f}  z {z:.2f} m"
+        say("alike-at", place=place, points=each.points, difference=each.difference)
     return found.reclassified(one.what.picked.to, most_different=one.what.most_different)
 
 
@@ -150,7 +176,6 @@ def _note(project: Path, made: Sequence[tuple[ClassCorrection, str]], seen: int)
 
 
 def _withdraw(project: Path, ids: Sequence[str], *, apply: bool) -> None:
-    from recon4.review.class_corrections import described
     from recon4.review.decisions import Decision, DecisionKind
     from recon4.review.journal import append, read_decided
 
@@ -162,7 +187,7 @@ def _withdraw(project: Path, ids: Sequence[str], *, apply: bool) -> None:
             CodedText("classify-unknown", unknown=", ".join(unknown), there=", ".join(there))
         )
     for one in chosen:
-        write(f"withdraw {described(there[one])}")
+        say("correction-withdrawn", what=_line(there[one]))
         if apply:
             append(project, Decision(kind=DecisionKind.WITHDRAW, who=getuser(), withdraws=one))
     if apply:

@@ -115,7 +115,7 @@ def evaluate(  # noqa: PLR0913 - options of a command
 
         table = _marker_table(*markers, choice=parse_choice(columns, unit), limits=limits)
         record["markers"] = table
-        texts.append(residual_text(table))
+        texts.append(residual_text(table, of_terminal()))
     if patch:
         density = _patch_density(result, patch)
         record["patch"] = density
@@ -161,7 +161,8 @@ def _marker_table(
         m.name: MeasuredPosition(np.nan_to_num(m.xyz_m), np.eye(3)[np.isfinite(m.xyz_m)])
         for m in read_markers(measured, partial=True, choice=choice)
     }
-    return residuals(points, positions, ControlContext(limits=parse_limits(limits)))
+    context = ControlContext(limits=parse_limits(limits), language=of_terminal())
+    return residuals(points, positions, context)
 
 
 def _patch_density(project: Path, text: str) -> Density:

@@ -13,7 +13,7 @@ import typer
 from recon4.cli.confinement import confine_command
 from recon4.cli.exports import DraftOption
 from recon4.cli.slices import ProjectArgument, numbers
-from recon4.cli.terminal import say_approval, write
+from recon4.cli.terminal import in_terminal, say, say_approval, write
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
 
@@ -43,7 +43,7 @@ def plan(
     opened = _open(project, file, crs, draft=draft)
     from recon4.products.write import ProductOptions
 
-    write(_made("plan", opened, file, options=ProductOptions(storey=storey)))
+    _make("plan", opened, file, options=ProductOptions(storey=storey))
 
 
 @products.command("orthophoto")
@@ -70,7 +70,7 @@ def orthophoto(
         x1, y1, x2, y2, *depth = numbers(of, 5 if of.count(",") == 4 else 4)
         options = replace(options, storey="", line=(x1, y1, x2, y2))
         options = replace(options, depth_m=depth[0]) if depth else options
-    write(_made("orthophoto", opened, file, options=options))
+    _make("orthophoto", opened, file, options=options)
 
 
 @products.command("terrain")
@@ -98,7 +98,7 @@ def terrain_of(
         options = (
             replace(options, interval_m=spacing) if lines else replace(options, cell_m=spacing)
         )
-    write(_made("terrain", opened, file, options=options))
+    _make("terrain", opened, file, options=options)
 
 
 @products.command("volume")
@@ -117,7 +117,7 @@ def volume_of(
     from recon4.api.maps import open_map
 
     opened = open_map(project, crs=crs)
-    write(_volume(opened, polygon, surface=_surface(surface), base=base))
+    write(in_terminal(_volume(opened, polygon, surface=_surface(surface), base=base)))
 
 
 def _surface(name: str) -> TerrainKind:
@@ -137,11 +137,11 @@ def _open(project: Path, file: Path, crs: str, *, draft: bool = False) -> Opened
     return opened
 
 
-def _made(kind: ProductKind, opened: OpenedMap, file: Path, *, options: ProductOptions) -> str:
+def _make(kind: ProductKind, opened: OpenedMap, file: Path, *, options: ProductOptions) -> None:
     from recon4.products.write import ProductSource, write_product
 
     source = ProductSource(opened.tiles, opened.frame, opened.stamp)
-    return f"{write_product(kind, source, file, options=options)}\nin {file}"
+    say("written", file=str(file), what=write_product(kind, source, file, options=options))
 
 
 def _volume(opened: OpenedMap, polygon: str, *, surface: TerrainKind, base: float | None) -> str:

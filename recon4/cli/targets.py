@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.cli.terminal import write
+from recon4.cli.terminal import worded, write
+from recon4.locales.languages import of_terminal
+from recon4.locales.numbers import localized
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -73,27 +75,25 @@ def _found(project: Path, radii_m: list[float]) -> TargetList:
 
 def _lines(found: TargetList, asked: bool) -> list[str]:
     """A table of the targets, and what is open."""
-    lines = ["point      kind          x          y          z    σ mm  off mm  agreement"]
+    lines = [worded("listed-targets-head")]
     for row in found.rows:
         x, y, z = row.p_map
+        kind = worded("named-target", kind=row.kind)
         off = "" if row.off_m is None else f"{1e3 * row.off_m:.1f}"
-        lines.append(
-            f"{row.id or '-':<10} {row.kind:<7} {x:10.3f} {y:10.3f} {z:10.3f} "
-            f"{1e3 * row.sd_m:7.1f} {off:>7} {row.agreement:10.2f}"
-            f"{'  ambiguous' if row.ambiguous else ''}"
-        )
+        figures = f"{x:10.3f} {y:10.3f} {z:10.3f} {1e3 * row.sd_m:7.1f} {off:>7}"
+        doubt = f"  {worded('listed-targets-open')}" if row.ambiguous else ""
+        figures = localized(f"{figures} {row.agreement:10.2f}", of_terminal())
+        lines.append(f"{row.id or '-':<10} {kind:<7} {figures}{doubt}")
     if found.rows:
-        lines.append("σ is that of the points of a target; errors of the trajectory come on top")
+        lines.append(worded("listed-targets-sigma"))
     if asked and found.rmse_m is None:
-        lines.append("no three surveyed points agree with targets of the map")
+        lines.append(worded("listed-targets-no-three"))
     elif found.rmse_m is not None:
         count = sum(bool(row.id) for row in found.rows)
-        lines.append(f"{count} points named, {1e3 * found.rmse_m:.1f} mm off after a rigid fit")
+        lines.append(worded("listed-targets-named", count=count, off_mm=1e3 * found.rmse_m))
     if found.missing:
-        lines.append(f"not found in the map: {', '.join(found.missing)}")
+        lines.append(worded("listed-targets-missing", points=", ".join(found.missing)))
     doubtful = [row.id for row in found.rows if row.ambiguous]
     if doubtful:
-        lines.append(
-            f"ambiguous: {', '.join(doubtful)}; other names fit as well, as if they were exchanged"
-        )
+        lines.append(worded("listed-targets-ambiguous", points=", ".join(doubtful)))
     return lines

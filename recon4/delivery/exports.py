@@ -96,9 +96,10 @@ def write_kind(
         points = write_map(map_, path, progress=progress)
         return points, points_text(points, len(map_.tiles), map_.tiles.strays)
     if kind.name.startswith("poses"):
-        return 0, f"{export_poses(project, path, draft=wanted.options.draft)} poses"
+        poses = export_poses(project, path, draft=wanted.options.draft)
+        return 0, CodedText("poses-all", poses=poses)
     if kind.name.startswith("findings"):
-        return 0, f"{export_findings(project, path)} findings"
+        return 0, CodedText("findings-all", findings=export_findings(project, path))
     if kind.name == "layers.gpkg":
         return 0, _write_layers(project, path, wanted, progress=progress)
     return 0, _write_product(kind, path, wanted, progress=progress)

@@ -65,7 +65,8 @@ def write_layers(project: Path, path: Path, source: LayerSource, *, progress: Pr
     )
     created = str((read_summary(project) or {}).get("created") or "1970-01-01T00:00:00")
     write_geopackage(path, layers, place, changed=f"{created[:19]}.000Z")
-    return ", ".join(f"{one.title}: {len(one.features)}" for one in layers)
+    counted = ";".join(f"{one.title}:{len(one.features)}" for one in layers)
+    return CodedText("layers-made", layers=counted)
 
 
 def _trajectory(walk: Trajectory) -> FeatureLayer:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import CodedText
 from recon4.mapping.tiles import TileSet
 from recon4.products.curves import CurvedFace, curved_faces
 from recon4.products.faces import Face, fit_faces
@@ -69,11 +70,16 @@ class FloorPlan:
     def text(self) -> str:
         """Figures of the storey in words."""
         storey, kinds = self.storey, [hole.kind for hole in self.openings]
-        return (
-            f"storey {storey.name}: floor at {storey.floor_m:.2f} m, {storey.area_m2:.0f} m² seen; "
-            f"{self.wall_length_m:.1f} m of faces of walls (rms {1e3 * self.rms_m:.1f} mm), "
-            f"{kinds.count('door')} doors and {kinds.count('window')} windows in them, "
-            f"{len(self.columns)} columns"
+        return CodedText(
+            "plan-made",
+            storey=storey.name,
+            floor_m=storey.floor_m,
+            area_m2=storey.area_m2,
+            walls_m=self.wall_length_m,
+            rms_mm=1e3 * self.rms_m,
+            doors=kinds.count("door"),
+            windows=kinds.count("window"),
+            columns=len(self.columns),
         )
 
 

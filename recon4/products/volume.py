@@ -34,10 +34,14 @@ class Volume:
     @property
     def text(self) -> str:
         """All figures in words."""
-        return (
-            f"{self.above_m3:.2f} m³ above and {self.below_m3:.2f} m³ below the plane "
-            f"(1 σ of the difference {self.sd_m3:.2f} m³); area {self.area_m2:.2f} m², "
-            f"of these {self.unseen_m2:.2f} m² not seen; base at {self.base_m:.3f} m"
+        return CodedText(
+            "volume-made",
+            above_m3=self.above_m3,
+            below_m3=self.below_m3,
+            sd_m3=self.sd_m3,
+            area_m2=self.area_m2,
+            unseen_m2=self.unseen_m2,
+            base_m=self.base_m,
         )
 
 

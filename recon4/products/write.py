@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, joined
 from recon4.mapping.tiles import TileSet
 from recon4.products.drawing import DRAWINGS, DrawingNotes, DrawnShape, DrawnTitle, write_drawing
 from recon4.products.fitted_plans import FittedPlans
@@ -114,7 +114,7 @@ def _write_plan(source: ProductSource, path: Path, options: ProductOptions) -> s
     if not any(plan.walls for plan in plans):
         raise ConfigError(CodedText("plan-no-wall"))
     _draw(shapes, path, source, titles=[plan_title(plan) for plan in plans])
-    return "\n".join(plan.text for plan in plans)
+    return joined(plan.text for plan in plans)
 
 
 def _write_orthophoto(source: ProductSource, path: Path, options: ProductOptions) -> str:
@@ -130,7 +130,9 @@ def _write_orthophoto(source: ProductSource, path: Path, options: ProductOptions
     made = orthophoto(source.tiles, plane, pixel_m=options.pixel_m, length_m=length_m)
     _raster(made.raster, path, source)
     height, width = made.raster.pixels.shape[:2]
-    return f"{width} x {height} pixels of {options.pixel_m} m, {100 * made.seen:.0f} % seen"
+    return CodedText(
+        "orthophoto-made", width=width, height=height, pixel_m=options.pixel_m, seen=made.seen
+    )
 
 
 def _write_terrain(source: ProductSource, path: Path, options: ProductOptions) -> str:
@@ -144,10 +146,16 @@ def _write_terrain(source: ProductSource, path: Path, options: ProductOptions) -
         if not lines:
             raise ConfigError(CodedText("contours-none", interval_m=options.interval_m))
         _draw(list(contour_shapes(lines, up_m)), path, source)
-        return f"{len(lines)} contours, {options.interval_m} m apart"
+        return CodedText("contours-made", count=len(lines), apart_m=options.interval_m)
     _raster(made.raster(up_m), path, source, relief=made)
     seen = float(made.seen.sum()) * options.cell_m**2
-    return f"{made.grid.width} x {made.grid.height} cells of {options.cell_m} m, {seen:.0f} m² seen"
+    return CodedText(
+        "terrain-made",
+        width=made.grid.width,
+        height=made.grid.height,
+        cell_m=options.cell_m,
+        seen_m2=seen,
+    )
 
 
 def up_to_crs(made: Terrain, frame: MapFrame) -> float:

@@ -12,7 +12,7 @@ from recon4.report.beams import beam_charts, beam_rows
 from recon4.report.chart_groups import framed
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.html import environment
-from recon4.report.rig import rig_charts, rig_rows
+from recon4.report.rig import RigRow, rig_charts, rig_rows
 from recon4.report.tuning import CALIBRATION_PAGE
 from recon4.store.atomic import write_text
 
@@ -38,8 +38,9 @@ class CalibrationPage:
     outcome: str
     figures: CalibrationFigures | None = None
     """Of the method joint."""
+    rows: Sequence[RigRow] = ()
+    """Of the other methods, as their lines."""
     report_lines: tuple[str, ...] = ()
-    """Of the other methods."""
     slices: Sequence[CloudSlice] = ()
 
 
@@ -56,7 +57,7 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
             title=page.title,
             method=page.method,
             outcome=page.outcome,
-            rows=rig_rows(page.figures),
+            rows=rig_rows(page.figures) or page.rows,
             charts=framed(rig_charts(page.figures)),
             beams=beam_rows(page.figures),
             beam_charts=framed(beam_charts(page.figures)),

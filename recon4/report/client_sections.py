@@ -20,7 +20,7 @@ from recon4.report.client_drawings import MapDrawings, charts_on_paper
 from recon4.report.client_front import accuracy_rows, grouped, shown
 from recon4.report.client_words import Words
 from recon4.report.html import changed_settings
-from recon4.report.rig import RigRow, origin_rows, rig_outcome, rig_rows
+from recon4.report.rig import origin_rows, rig_outcome, rig_rows, row_cells
 from recon4.report.rows import imported_rows, placed_rows
 from recon4.report.tuning import CLIENT_REPORT
 
@@ -81,7 +81,7 @@ def _sensors(assessed: Assessment, words: Words) -> Section:
     tables: tuple[Table, ...] = ()
     if found := rig_rows(results.calibration):
         head = (words("row.sensor"), "", "")
-        cells = tuple(_rig_cells(one, words) for one in found)
+        cells = tuple(row_cells(one._replace(name=shown(one.name)), words) for one in found)
         tables = (Table(head=head, rows=cells, texts=(2,)),)
     outcome = rig_outcome(results.calibration, words.language)
     return Section(
@@ -339,12 +339,6 @@ def _making(assessed: Assessment, words: Words) -> Section:
             Row(shown(one.name), one.sha256) for one in facts.inputs[: CLIENT_REPORT.most_files]
         ),
     )
-
-
-def _rig_cells(one: RigRow, words: Words) -> tuple[str, ...]:
-    sensor, *rest = shown(one.name).split(" ")
-    name = " ".join([sensor, *map(words.term, rest)])
-    return name, words.decimal(one.change), words.term(one.status)
 
 
 def _rows(pairs: Sequence[tuple[str, str]], words: Words) -> list[Row]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ from recon4.locales.languages import ENGLISH
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
+from recon4.report.client_words import Words
 from recon4.report.figures import BLUE, GRAY, ORANGE, Chart, add_bars
 from recon4.report.tuning import RIG_CHARTS
 
@@ -35,7 +36,26 @@ class RigRow(NamedTuple):
 
 def rig_rows(found: CalibrationFigures | None) -> list[RigRow]:
     """What the recording says of each parameter of the rig."""
-    return [_row(one) for one in found.parameters] if found else []
+    return parameter_rows(found.parameters) if found else []
+
+
+def parameter_rows(found: Iterable[ParameterFigures]) -> list[RigRow]:
+    """A row for each parameter, of sensors or of single beams."""
+    return [_row(one) for one in found]
+
+
+def change_text(change: float, sd: float | None, unit: str) -> str:
+    """A change with its sign, standard deviation if known, and unit, as ``+0.120 ± 0.010 °``."""
+    factor, shown_unit = DISPLAY_UNITS[unit]
+    deviation = "" if sd is None else f" ± {number(sd, 3, factor)}"
+    return f"{factor * change:+z.3f}{deviation} {shown_unit}"
+
+
+def row_cells(one: RigRow, words: Words) -> tuple[str, str, str]:
+    """Name, change and status in a language."""
+    sensor, *rest = one.name.split(" ")
+    name = " ".join([sensor, *map(words.term, rest)])
+    return name, words.decimal(one.change), words.term(one.status)
 
 
 def rig_outcome(found: CalibrationFigures | None, language: str = ENGLISH) -> str:
@@ -86,9 +106,7 @@ def rig_charts(found: CalibrationFigures | None) -> list[tuple[str, str]]:
 
 
 def _row(one: ParameterFigures) -> RigRow:
-    factor, unit = DISPLAY_UNITS[one.unit]
-    sd = "" if one.sd is None else f" ± {number(one.sd, 3, factor)}"
-    return RigRow(_name(one), f"{factor * one.change:+z.3f}{sd} {unit}", one.status)
+    return RigRow(_name(one), change_text(one.change, one.sd, one.unit), one.status)
 
 
 def _name(one: ParameterFigures) -> str:

@@ -16,7 +16,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.alike import Alike, PickedThing
 from recon4.model.class_corrections import ClassCorrection, Reclassified, titles_of
 from recon4.model.trajectory import Trajectory
-from recon4.review.decisions import Decided, StandingCorrection
+from recon4.review.decisions import Decided
 from recon4.store.arrays import load_trajectory
 from recon4.untrusted.typed import as_type
 
@@ -133,14 +133,3 @@ def _trajectory(artifacts: Mapping[str, Path]) -> Trajectory:
 def _placed(before: Sequence[ClassCorrection], trajectory: Trajectory) -> list[Reclassified]:
     placed = (place_correction(one, trajectory).what for one in before)
     return [one for one in placed if one is not None]
-
-
-def described(one: StandingCorrection) -> str:
-    """A correction in a line, for the terminal."""
-    what = one.correction.what
-    only = f", only {', '.join(titles_of(what.only))}" if what.only else ""
-    why = f": {one.why}" if one.why else ""
-    return (
-        f"{one.id}  {one.correction.points} points -> {titles_of([what.to])[0]}{only}  "
-        f"({one.who}, {one.time[:16].replace('T', ' ')}{why})"
-    )

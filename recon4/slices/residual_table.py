@@ -8,6 +8,11 @@ from dataclasses import astuple
 
 from recon4.evaluation.table import text_table
 from recon4.export.cells import safe_cell
+from recon4.locales.coded import CodedText
+from recon4.locales.languages import ENGLISH
+from recon4.locales.numbers import localized
+from recon4.locales.texts import Shown
+from recon4.recording.tables.column_names import Role
 from recon4.slices.residuals import ControlReport, Residual, ResidualStatistics
 
 UNKNOWN = "–"
@@ -52,26 +57,49 @@ def residual_csv(report: ControlReport, *, comment: str = "") -> str:
     return out.getvalue()
 
 
-def residual_text(report: ControlReport) -> str:
-    """The residuals in centimeters, each limit, and the verdict."""
+def residual_text(report: ControlReport, language: str = ENGLISH) -> str:
+    """The residuals in centimeters, each limit, and the verdict.
+
+    Args:
+        report: The table, made in this language.
+        language: Of the text.
+    """
+
+    def say(code: str, **values: Shown) -> str:
+        return CodedText(code, **values).said(language)
+
+    def cm(value: float | None) -> str:
+        return localized(UNKNOWN if value is None else f"{100.0 * value:.1f}", language)
+
+    def role(of: Role) -> str:
+        return say("named-role", role=of)
+
     rows = [
         (
-            f"{row.id} ({row.role})",
-            *(_cm(d) for d in (row.east_m, row.north_m, row.d2_m, row.up_m, row.d3_m)),
+            f"{row.id} ({role(row.role)})",
+            *(cm(d) for d in (row.east_m, row.north_m, row.d2_m, row.up_m, row.d3_m)),
         )
         for row in report.rows
     ]
     lines = [
-        (f"{one.label} ({f.role})", str(one.points), _cm(one.value_m), _cm(one.limit_m), one.text)
+        (
+            f"{one.label} ({role(f.role)})",
+            str(one.points),
+            cm(one.value_m),
+            cm(one.limit_m),
+            one.text,
+        )
         for f in report.figures
         for one in f.requirements
     ]
+    head = ("dX cm", "dY cm", "H cm", "dZ cm", say("residuals-total"))
+    limits = (say("residuals-limit"), say("residuals-points"), "cm", say("residuals-limit-cm"), "")
     texts = [
-        text_table(("Marker", "dX cm", "dY cm", "H cm", "dZ cm", "total cm"), rows),
-        text_table(("Limit", "points", "cm", "limit cm", ""), lines) if lines else "",
-        f"not measured: {', '.join(report.missing)}" if report.missing else "",
+        text_table((say("residuals-marker"), *head), rows),
+        text_table(limits, lines) if lines else "",
+        say("control-not-measured", names=", ".join(report.missing)) if report.missing else "",
         report.verdict.text,
-        f"limits: {report.limits}",
+        say("residuals-limits", limits=report.limits),
         report.hint,
     ]
     return "\n".join(text for text in texts if text)
@@ -92,7 +120,3 @@ def _axes(f: ResidualStatistics, name: str) -> list[str]:
 
 def _meters(value: float | None) -> str:
     return UNKNOWN if value is None else f"{value:.4f}"
-
-
-def _cm(value: float | None) -> str:
-    return UNKNOWN if value is None else f"{100.0 * value:.1f}"

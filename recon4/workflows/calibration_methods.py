@@ -30,18 +30,16 @@ from recon4.calibration.slices import slice_points
 from recon4.calibration.trajectory_pair import align_trajectories
 from recon4.calibration.tuning import CalibrationTuning, EntropyTuning
 from recon4.errors import CalibrationError, ConfigError
-from recon4.findings.witnesses.rig import agreement, rig_findings
-from recon4.findings.wording import text_of, whole_text
 from recon4.geometry.se3 import SE3, Array
 from recon4.locales.coded import CodedText
-from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.rig import Rig
 from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.sources import Sources
 from recon4.report.calibration_page import CalibrationPage, CloudSlice
-from recon4.report.rig import DISPLAY_UNITS
+from recon4.report.rig import RigRow, change_text, parameter_rows, rig_outcome
 from recon4.report.tuning import CALIBRATION_PAGE
 from recon4.settings import Settings, override, preset
 from recon4.settings.reads import CalibrationReads, part_of
@@ -57,8 +55,10 @@ class MethodResult:
     rig: Rig | None
     """None = nothing to write."""
     outcome: str
+    rows: tuple[RigRow, ...] = ()
+    """Parameters with their changes."""
     report_lines: tuple[str, ...] = ()
-    """Table for the terminal."""
+    """What else the method found, in sentences."""
     figures: CalibrationFigures | None = None
     """Of the method joint."""
 
@@ -156,6 +156,7 @@ def calibration_report(
         method=method,
         outcome=found.outcome,
         figures=found.figures,
+        rows=found.rows,
         report_lines=() if found.figures else found.report_lines,
         slices=slices,
     )
@@ -170,13 +171,8 @@ def _joint(task: _Task) -> MethodResult:
     figures, rig = calibrate_recording(
         task.sources, task.folder, settings=chosen, progress=task.progress
     )
-    report_lines = (
-        *_table(figures.parameters),
-        *_table(figures.beams),
-        *map(whole_text, rig_findings(figures)),
-    )
-    outcome = text_of(agreement(figures.outcome, figures.statuses))
-    return MethodResult(rig, outcome, report_lines, figures)
+    rows = parameter_rows((*figures.parameters, *figures.beams))
+    return MethodResult(rig, rig_outcome(figures), tuple(rows), figures=figures)
 
 
 def _maps(task: _Task) -> MethodResult:
@@ -186,7 +182,8 @@ def _maps(task: _Task) -> MethodResult:
     parameters = calibrated_parameters(
         rig, reference=reference, with_imu=False, settings=chosen.calibration
     )
-    report_lines, reads = [], part_of(chosen, CalibrationReads)
+    report_lines: list[str] = []
+    reads = part_of(chosen, CalibrationReads)
     for row in parameters.lidars:
         found = align_maps(walk, walk.frames.rig, row, reference=reference, settings=reads)
         if found is None:
@@ -209,12 +206,16 @@ def _maps(task: _Task) -> MethodResult:
             )
         rig = with_mount(rig, row, found.T_body_sensor)
         report_lines.append(
-            f"{rig.sensors[row].name}: {found.windows} windows, scatter "
-            f"{np.rad2deg(found.scatter_rad):.2f}° {1e3 * found.scatter_m:.0f} mm"
+            CodedText(
+                "calibrated-windows",
+                sensor=rig.sensors[row].name,
+                windows=found.windows,
+                scatter_rad=found.scatter_rad,
+                scatter_mm=1e3 * found.scatter_m,
+            )
         )
-    changed = parameters.between(walk.frames.rig, rig)
-    report_lines = _changes(parameters.listed, changed) + report_lines
-    return MethodResult(rig, "calibrated by maps", tuple(report_lines))
+    rows = _changes(parameters.listed, parameters.between(walk.frames.rig, rig))
+    return MethodResult(rig, CodedText("calibrated-by-maps"), rows, tuple(report_lines))
 
 
 def _profiler_entropy(task: _Task, walk: RecordedWalk) -> MethodResult:
@@ -222,13 +223,10 @@ def _profiler_entropy(task: _Task, walk: RecordedWalk) -> MethodResult:
     points = profiler_walk(walk.frames, walk.trajectory)
     task.progress.start("calibration", 0, "evaluations")
     found = calibrate_profiler(points, parameters, progress=task.progress.advance)
-    report_lines = _changes(parameters.listed, found.change)
-    note = (
-        f"{len(found.costs)} evaluations; {100.0 * (1.0 - found.costs[-1]):.1f} % fewer occupied "
-        "cubes than in the step before; the height of the profiler is not observable on a level "
-        "floor"
-    )
-    return MethodResult(found.rig, "calibrated by entropy", (*report_lines, note))
+    rows = _changes(parameters.listed, found.change)
+    fewer = 1.0 - found.costs[-1]
+    note = CodedText("calibrated-profiler", evaluations=len(found.costs), fewer=fewer)
+    return MethodResult(found.rig, CodedText("calibrated-by-entropy"), rows, (note,))
 
 
 def _entropy(task: _Task) -> MethodResult:
@@ -247,9 +245,10 @@ def _entropy(task: _Task) -> MethodResult:
     found = calibrate_by_entropy(
         windows, rig, parameters, settings=settings, progress=task.progress.advance
     )
-    report_lines = _changes(parameters.listed, found.change)
-    cost = f"cost {found.costs[0]:.4f} -> {found.costs[-1]:.4f} in {len(found.costs)} evaluations"
-    return MethodResult(found.rig, "calibrated by entropy", (*report_lines, cost))
+    rows = _changes(parameters.listed, found.change)
+    first, last = found.costs[0], found.costs[-1]
+    cost = CodedText("calibrated-cost", first=first, last=last, evaluations=len(found.costs))
+    return MethodResult(found.rig, CodedText("calibrated-by-entropy"), rows, (cost,))
 
 
 def _gravity(task: _Task) -> MethodResult:
@@ -262,15 +261,14 @@ def _gravity(task: _Task) -> MethodResult:
     if len(pairs) < 2:
         raise CalibrationError(CodedText("calibrate-gravity", count=len(pairs)))
     found = align_gravity(pairs.normal_body, pairs.force_imu)
-    report_lines = [
-        f"inclination {k + 1}: residual {np.rad2deg(residual):.2f}°"
+    report_lines = tuple(
+        CodedText("calibrated-inclination", number=k + 1, residual_rad=float(residual))
         for k, residual in enumerate(found.residual_rad)
-    ]
+    )
     if not found.heading_observable:
-        text = "the inclinations are all alike: the rotation about gravity is not observable"
-        return MethodResult(None, text, tuple(report_lines))
+        return MethodResult(None, CodedText("gravity-all-alike"), (), report_lines)
     turned = replace(rig, T_body_imu=SE3(found.R_body_imu, rig.T_body_imu.t))
-    return MethodResult(turned, "calibrated by gravity", tuple(report_lines))
+    return MethodResult(turned, CodedText("calibrated-by-gravity"), (), report_lines)
 
 
 def _pairs(task: _Task) -> MethodResult:
@@ -284,30 +282,27 @@ def _pairs(task: _Task) -> MethodResult:
     if found.contradictory:
         # Poses of two worlds: only their motions compare.
         found = hand_eye(pairs, before_m=rig.sensors[names[name]].T_body_sensor.t)
-    report_lines = tuple(
-        f"pair {k + 1}: residual {np.rad2deg(turn):.3f}° {1e3 * shift:.1f} mm"
+    report_lines: tuple[str, ...] = tuple(
+        CodedText(
+            "calibrated-pair", number=k + 1, turn_rad=float(turn), shift_mm=float(1e3 * shift)
+        )
         for k, (turn, shift) in enumerate(zip(found.residual_rad, found.residual_m, strict=True))
     )
     if found.contradictory:
-        return MethodResult(None, "the pairs of poses contradict each other", report_lines)
+        return MethodResult(None, CodedText("pairs-contradictory"), (), report_lines)
     report_lines += _known_to(found)
     # The tracked marker is the body frame of the rig: T_marker_sensor is T_body_sensor.
     mounted = with_mount(rig, names[name], found.T_marker_sensor)
-    outcome = f"mount of {name!r} from {len(found.residual_m)} pairs"
-    return MethodResult(mounted, outcome, report_lines)
+    outcome = CodedText("calibrated-by-pairs", sensor=name, count=len(found.residual_m))
+    return MethodResult(mounted, outcome, (), report_lines)
 
 
 def _known_to(found: PairAlignment) -> tuple[str, ...]:
     """What the pairs show of a mount, and what they do not."""
     x, y, z = 1e3 * found.sd_m
-    known = (
-        f"known to ± {np.rad2deg(found.sd_rad):.3f}° and ± {x:.1f}, {y:.1f}, {z:.1f} mm (x, y, z)"
-    )
+    known = CodedText("mount-known", sd_rad=float(found.sd_rad), x_mm=x, y_mm=y, z_mm=z)
     along = (", ".join(f"{part:+z.2f}" for part in direction) for direction in found.unknown)
-    return known, *(
-        f"not observable: the position along ({direction}) stays as in the rig file"
-        for direction in along
-    )
+    return known, *(CodedText("mount-not-observable", along=direction) for direction in along)
 
 
 def _trajectories(task: _Task) -> MethodResult:
@@ -334,8 +329,8 @@ def _trajectories(task: _Task) -> MethodResult:
         clock_rate_ppm=first.clock_rate_ppm + 1e6 * rate,
     )
     sensors = [clocked if sensor.name == second.name else sensor for sensor in mounted.sensors]
-    outcome = f"mount and clock of {second.name!r} against {first.name!r} from their trajectories"
-    return MethodResult(replace(mounted, sensors=tuple(sensors)), outcome, found.report_lines)
+    outcome = CodedText("calibrated-by-trajectories", second=second.name, first=first.name)
+    return MethodResult(replace(mounted, sensors=tuple(sensors)), outcome, (), found.report_lines)
 
 
 _METHODS: dict[str, Callable[[_Task], MethodResult]] = {
@@ -380,20 +375,6 @@ def _reference(rig: Rig, settings: Settings) -> int:
     return reference
 
 
-def _table(rows: tuple[ParameterFigures, ...]) -> list[str]:
-    report_lines = []
-    for row in rows:
-        factor, unit = DISPLAY_UNITS[row.unit]
-        sd = "" if row.sd is None else f" ± {factor * row.sd:.3f}"
-        name = " ".join(part for part in (row.sensor, row.quantity, row.axis) if part)
-        change = f"{factor * row.change:+9.3f}{sd:<10} {unit:<3}"
-        report_lines.append(f"{name:<28} {change} {row.status}")
-    return report_lines
-
-
-def _changes(listed: tuple[Parameter, ...], change: Array) -> list[str]:
-    report_lines = []
-    for parameter, value in zip(listed, change, strict=True):
-        factor, unit = DISPLAY_UNITS[parameter.unit]
-        report_lines.append(f"{parameter.name:<28} {factor * value:+9.3f} {unit}")
-    return report_lines
+def _changes(listed: tuple[Parameter, ...], change: Array) -> tuple[RigRow, ...]:
+    pairs = zip(listed, change, strict=True)
+    return tuple(RigRow(one.name, change_text(value, None, one.unit), "") for one, value in pairs)

@@ -22,7 +22,7 @@ MADE = re.compile(
     r"|[A-Z][A-Z0-9-]+$"
 )
 """Names that code puts together, of findings and counts; their own tests compare them."""
-NAMED = re.compile(r'\bNAMED\(\$\w+, of: "([a-z-]+)"\)')
+NAMED = re.compile(r'\b(?:NAMED|COUNTED)\(\$\w+, of: "([a-z-]+)"\)')
 """Of names that texts put together."""
 WORD = re.compile(r"[\w-]+")
 PREFIX = re.compile(

@@ -246,3 +246,95 @@ doubles-found = { $count ->
     [one] { $count } doppelte Wand
    *[other] { $count } doppelte Wände
  } in { $patches } Flächen, die zweimal gesehen wurden
+
+## recon4 plan, orthophoto, terrain, volume
+
+plan-made = Geschoss { $storey }: Boden auf { DECIMAL($floor_m, digits: 2) } m, { DECIMAL($area_m2, digits: 0) } m² gesehen; { DECIMAL($walls_m, digits: 1) } m Wandflächen (rms { DECIMAL($rms_mm, digits: 1) } mm), darin { $doors ->
+    [one] { $doors } Tür
+   *[other] { $doors } Türen
+ } und { $windows } Fenster, { $columns ->
+    [one] { $columns } Stütze
+   *[other] { $columns } Stützen
+ }
+orthophoto-made = { $width } x { $height } Pixel von { SIGNIFICANT($pixel_m, digits: 6) } m, { PERCENT($seen, digits: 0) } gesehen
+contours-made = { $count ->
+    [one] { $count } Höhenlinie
+   *[other] { $count } Höhenlinien
+ }, { SIGNIFICANT($apart_m, digits: 6) } m Abstand
+terrain-made = { $width } x { $height } Zellen von { SIGNIFICANT($cell_m, digits: 6) } m, { DECIMAL($seen_m2, digits: 0) } m² gesehen
+volume-made = { DECIMAL($above_m3, digits: 2) } m³ über und { DECIMAL($below_m3, digits: 2) } m³ unter der Ebene (1 σ der Differenz { DECIMAL($sd_m3, digits: 2) } m³); Fläche { DECIMAL($area_m2, digits: 2) } m², davon { DECIMAL($unseen_m2, digits: 2) } m² nicht gesehen; Ebene auf { DECIMAL($base_m, digits: 3) } m
+layers-made = { COUNTED($layers, of: "gpkg") }
+gpkg-trajectory = Trajektorie
+gpkg-control-and-check-points = Pass- und Kontrollpunkte
+gpkg-findings = Befunde
+gpkg-stretches-of-findings = Strecken von Befunden
+gpkg-notes = Notizen
+gpkg-double-walls = Doppelwände
+
+## recon4 classify
+
+named-class = { NAMED($title, of: "class") }
+corrections-none = keine Korrektur von Klassen
+correction-not-in-map = noch nicht in der Karte
+correction-still-in-map = { $correction }  ist noch in der Karte: zurückgenommen, oder andere stehen davor
+correction-standing = { $correction }  { $points } Punkte -> { $to }{ $restricted ->
+    [0] {""}
+   *[other] , nur { $only }
+ }  ({ $who })
+correction-withdrawn = zurücknehmen: { $what }
+correction-tried = { $where }: { $points } Punkte, jetzt: { COUNTED($now, of: "class") } -> { $to }
+correction-alike = { $where }: { $count } Ähnliche der Klasse { $of }
+alike-at = {"  "}{ $place }  { $points } Punkte, { DECIMAL($difference, digits: 2) }
+
+## recon4 targets
+
+named-target = { NAMED($kind, of: "survey-target") }
+survey-target-plate = Platte
+survey-target-board = Tafel
+survey-target-sphere = Kugel
+listed-targets-head = Punkt      Art           x          y          z    σ mm  ab mm   Übereinstimmung
+listed-targets-open = mehrdeutig
+listed-targets-sigma = σ ist die der Punkte einer Zielmarke; Fehler der Trajektorie kommen hinzu
+listed-targets-no-three = keine drei vermessenen Punkte passen zu Zielmarken der Karte
+listed-targets-named = { $count ->
+    [one] { $count } Punkt
+   *[other] { $count } Punkte
+ } benannt, nach starrer Anpassung { DECIMAL($off_mm, digits: 1) } mm Abweichung
+listed-targets-missing = in der Karte nicht gefunden: { $points }
+listed-targets-ambiguous = mehrdeutig: { $points }; andere Namen passen ebenso, als wären sie vertauscht
+
+## recon4 calibrate
+
+calibrated-page = Seite   { $page }
+calibrated-by-maps = kalibriert durch Karten
+calibrated-by-entropy = kalibriert durch Entropie
+calibrated-by-gravity = kalibriert durch die Schwerkraft
+calibrated-by-pairs = Einbau von { QUOTED($sensor) } aus { $count ->
+    [one] { $count } Paar
+   *[other] { $count } Paaren
+ }
+calibrated-by-trajectories = Einbau und Uhr von { QUOTED($second) } gegen { QUOTED($first) } aus ihren Trajektorien
+gravity-all-alike = alle Neigungen sind gleich: die Drehung um die Schwerkraft ist nicht beobachtbar
+pairs-contradictory = die Paare von Posen widersprechen einander
+calibrated-windows = { $sensor }: { $windows } Fenster, Streuung { DEGREES($scatter_rad, digits: 2) } { DECIMAL($scatter_mm, digits: 0) } mm
+calibrated-profiler = { $evaluations } Auswertungen; { PERCENT($fewer, digits: 1) } weniger belegte Würfel als im Schritt davor; die Höhe des Profilers ist auf ebenem Boden nicht beobachtbar
+calibrated-cost = Kosten { DECIMAL($first, digits: 4) } -> { DECIMAL($last, digits: 4) } in { $evaluations } Auswertungen
+calibrated-inclination = Neigung { $number }: Residuum { DEGREES($residual_rad, digits: 2) }
+calibrated-pair = Paar { $number }: Residuum { DEGREES($turn_rad, digits: 3) } { DECIMAL($shift_mm, digits: 1) } mm
+mount-known = bekannt auf ± { DEGREES($sd_rad, digits: 3) } und ± { DECIMAL($x_mm, digits: 1) }, { DECIMAL($y_mm, digits: 1) }, { DECIMAL($z_mm, digits: 1) } mm (x, y, z)
+mount-not-observable = nicht beobachtbar: die Position entlang ({ $along }) bleibt wie in der Rig-Datei
+motions-agree = { PERCENT($share, digits: 0) } von { $motions } Bewegungen stimmen überein; die Hälfte davon auf { DEGREES($turn_rad, digits: 2) } und { DECIMAL($shift_mm, digits: 0) } mm
+mount-of-trajectories = Einbau bekannt auf ± { DEGREES($sd_rad, digits: 2) } und ± { DECIMAL($x_mm, digits: 0) }, { DECIMAL($y_mm, digits: 0) }, { DECIMAL($z_mm, digits: 0) } mm (x, y, z des ersten Sensors)
+clock-of-trajectories = Uhr: { DECIMAL($offset_ms, digits: 1, sign: 1) } ± { DECIMAL($sd_ms, digits: 1) } ms in der Mitte der Begehung, Drift { DECIMAL($rate_us, digits: 0, sign: 1) } ± { DECIMAL($sd_us, digits: 0) } µs je Sekunde
+
+## recon4 evaluate --markers
+
+named-role = { NAMED($role, of: "marker-role") }
+marker-role-control = Passpunkt
+marker-role-check = Kontrollpunkt
+residuals-marker = Marke
+residuals-total = gesamt cm
+residuals-limit = Grenze
+residuals-points = Punkte
+residuals-limit-cm = Grenze cm
+residuals-limits = Grenzen: { $limits }

@@ -246,3 +246,101 @@ doubles-found = { $count ->
     [one] { $count } double wall
    *[other] { $count } double walls
  } in { $patches } patches seen twice
+
+## recon4 plan, orthophoto, terrain, volume
+
+plan-made = storey { $storey }: floor at { DECIMAL($floor_m, digits: 2) } m, { DECIMAL($area_m2, digits: 0) } m² seen; { DECIMAL($walls_m, digits: 1) } m of faces of walls (rms { DECIMAL($rms_mm, digits: 1) } mm), { $doors ->
+    [one] { $doors } door
+   *[other] { $doors } doors
+ } and { $windows ->
+    [one] { $windows } window
+   *[other] { $windows } windows
+ } in them, { $columns ->
+    [one] { $columns } column
+   *[other] { $columns } columns
+ }
+orthophoto-made = { $width } x { $height } pixels of { SIGNIFICANT($pixel_m, digits: 6) } m, { PERCENT($seen, digits: 0) } seen
+contours-made = { $count ->
+    [one] { $count } contour
+   *[other] { $count } contours
+ }, { SIGNIFICANT($apart_m, digits: 6) } m apart
+terrain-made = { $width } x { $height } cells of { SIGNIFICANT($cell_m, digits: 6) } m, { DECIMAL($seen_m2, digits: 0) } m² seen
+volume-made = { DECIMAL($above_m3, digits: 2) } m³ above and { DECIMAL($below_m3, digits: 2) } m³ below the plane (1 σ of the difference { DECIMAL($sd_m3, digits: 2) } m³); area { DECIMAL($area_m2, digits: 2) } m², of these { DECIMAL($unseen_m2, digits: 2) } m² not seen; base at { DECIMAL($base_m, digits: 3) } m
+layers-made = { COUNTED($layers, of: "gpkg") }
+gpkg-trajectory = trajectory
+gpkg-control-and-check-points = control and check points
+gpkg-findings = findings
+gpkg-stretches-of-findings = stretches of findings
+gpkg-notes = notes
+gpkg-double-walls = double walls
+
+## recon4 classify
+
+named-class = { NAMED($title, of: "class") }
+corrections-none = no correction of classes
+correction-not-in-map = not in the map yet
+correction-still-in-map = { $correction }  is still in the map: it is withdrawn, or others come before it
+correction-standing = { $correction }  { $points } points -> { $to }{ $restricted ->
+    [0] {""}
+   *[other] , only { $only }
+ }  ({ $who })
+correction-withdrawn = withdraw { $what }
+correction-tried = { $where }: { $points } points, now: { COUNTED($now, of: "class") } -> { $to }
+correction-alike = { $where }: { $count } of { $of } alike
+alike-at = {"  "}{ $place }  { $points } points, { DECIMAL($difference, digits: 2) }
+
+## recon4 targets
+
+named-target = { NAMED($kind, of: "survey-target") }
+survey-target-plate = plate
+survey-target-board = board
+survey-target-sphere = sphere
+listed-targets-head = point      kind          x          y          z    σ mm  off mm  agreement
+listed-targets-open = ambiguous
+listed-targets-sigma = σ is that of the points of a target; errors of the trajectory come on top
+listed-targets-no-three = no three surveyed points agree with targets of the map
+listed-targets-named = { $count ->
+    [one] { $count } point
+   *[other] { $count } points
+ } named, { DECIMAL($off_mm, digits: 1) } mm off after a rigid fit
+listed-targets-missing = not found in the map: { $points }
+listed-targets-ambiguous = ambiguous: { $points }; other names fit as well, as if they were exchanged
+
+## recon4 calibrate
+
+calibrated-page = page    { $page }
+calibrated-by-maps = calibrated by maps
+calibrated-by-entropy = calibrated by entropy
+calibrated-by-gravity = calibrated by gravity
+calibrated-by-pairs = mount of { QUOTED($sensor) } from { $count ->
+    [one] { $count } pair
+   *[other] { $count } pairs
+ }
+calibrated-by-trajectories = mount and clock of { QUOTED($second) } against { QUOTED($first) } from their trajectories
+gravity-all-alike = the inclinations are all alike: the rotation about gravity is not observable
+pairs-contradictory = the pairs of poses contradict each other
+calibrated-windows = { $sensor }: { $windows ->
+    [one] { $windows } window
+   *[other] { $windows } windows
+ }, scatter { DEGREES($scatter_rad, digits: 2) } { DECIMAL($scatter_mm, digits: 0) } mm
+calibrated-profiler = { $evaluations } evaluations; { PERCENT($fewer, digits: 1) } fewer occupied cubes than in the step before; the height of the profiler is not observable on a level floor
+calibrated-cost = cost { DECIMAL($first, digits: 4) } -> { DECIMAL($last, digits: 4) } in { $evaluations } evaluations
+calibrated-inclination = inclination { $number }: residual { DEGREES($residual_rad, digits: 2) }
+calibrated-pair = pair { $number }: residual { DEGREES($turn_rad, digits: 3) } { DECIMAL($shift_mm, digits: 1) } mm
+mount-known = known to ± { DEGREES($sd_rad, digits: 3) } and ± { DECIMAL($x_mm, digits: 1) }, { DECIMAL($y_mm, digits: 1) }, { DECIMAL($z_mm, digits: 1) } mm (x, y, z)
+mount-not-observable = not observable: the position along ({ $along }) stays as in the rig file
+motions-agree = { PERCENT($share, digits: 0) } of { $motions } motions agree; half of them to { DEGREES($turn_rad, digits: 2) } and { DECIMAL($shift_mm, digits: 0) } mm
+mount-of-trajectories = mount known to ± { DEGREES($sd_rad, digits: 2) } and ± { DECIMAL($x_mm, digits: 0) }, { DECIMAL($y_mm, digits: 0) }, { DECIMAL($z_mm, digits: 0) } mm (x, y, z of the first sensor)
+clock-of-trajectories = clock: { DECIMAL($offset_ms, digits: 1, sign: 1) } ± { DECIMAL($sd_ms, digits: 1) } ms at the middle of the walk, drift { DECIMAL($rate_us, digits: 0, sign: 1) } ± { DECIMAL($sd_us, digits: 0) } µs a second
+
+## recon4 evaluate --markers
+
+named-role = { NAMED($role, of: "marker-role") }
+marker-role-control = control
+marker-role-check = check
+residuals-marker = Marker
+residuals-total = total cm
+residuals-limit = Limit
+residuals-points = points
+residuals-limit-cm = limit cm
+residuals-limits = limits: { $limits }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from recon4.cli.main import main
+from recon4.locales.languages import ENGLISH, ENVIRONMENT
 from recon4.mapping.tiles import TileSet
 from recon4.model.classes import PointClass
 from recon4.pipeline import remake
@@ -140,7 +141,9 @@ def test_another_person_who_corrected_meanwhile_is_not_overtaken(server, root):
     assert "Jan changed corrections of classes meanwhile (withdraw)" in answer.json()["detail"]
 
 
-def test_a_list_is_counted_in_a_shell_after_what_is_not_in_the_map_yet(root, capsys, tmp_path):
+def test_a_list_is_counted_in_a_shell_after_what_is_not_in_the_map_yet(
+    root, capsys, tmp_path, monkeypatch
+):
     listed = tmp_path / "c.csv"
     listed.write_text(
         "shape,x,y,z,radius,to,only\nsphere,0,0,0,1000,high vegetation,\n"
@@ -154,7 +157,12 @@ def test_a_list_is_counted_in_a_shell_after_what_is_not_in_the_map_yet(root, cap
     assert code == 0
     assert said[0].startswith(f"c.csv, line 2: {points} points, now: ")
     assert said[0].endswith(" -> high vegetation")
-    assert said[1] == f"c.csv, line 3: {points} points, now: {points} high vegetation -> moving"
+    assert said[1] == f"c.csv, line 3: {points} points, now: high vegetation ({points}) -> moving"
+    monkeypatch.setenv(ENVIRONMENT, "de")
+    assert main(["classify", str(root), str(listed)]) == 0
+    (_, german) = capsys.readouterr().out.splitlines()
+    assert german.endswith(f": {points} Punkte, jetzt: hoher Bewuchs ({points}) -> bewegt")
+    monkeypatch.setenv(ENVIRONMENT, ENGLISH)
     assert main(["classify", str(root), "--undo", "ab"]) == 1
     assert main(["classify", str(root)]) == 0
     assert "no correction of classes" in capsys.readouterr().out

@@ -23,6 +23,7 @@ from recon4.calibration.window import cut_window
 from recon4.cli.main import main
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, so3_exp
+from recon4.locales.languages import ENGLISH, ENVIRONMENT
 from recon4.model.rig import format_rig, load_rig
 from tests import scanned_room
 from tests.unit.calibration.conftest import SETTINGS, mounted
@@ -226,17 +227,21 @@ def test_a_lidar_upside_down_is_among_the_first_mounts(dance):
     assert min(off[:3]) < 3.0
 
 
-def test_the_command_writes_a_mount_from_pairs(tmp_path, capsys):
+def test_the_command_writes_a_mount_from_pairs(tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv(ENVIRONMENT, ENGLISH)  # the option sets it
     marker = poses()
     sensor = marker @ MOUNT
     rows = np.column_stack([marker.t, marker.quat_xyzw(), sensor.t, sensor.quat_xyzw()])
     np.savetxt(tmp_path / "pairs.csv", rows)
     code = main(
-        ["calibrate", str(tmp_path / "pairs.csv"), "--rig", "single-vlp16", "--method", "pairs",
-         "--out", str(tmp_path / "new.toml")]
+        ["--language", "de", "calibrate", str(tmp_path / "pairs.csv"), "--rig", "single-vlp16",
+         "--method", "pairs", "--out", str(tmp_path / "new.toml")]
     )  # fmt: skip
 
-    assert code == 0, capsys.readouterr()
+    said = capsys.readouterr()
+    assert code == 0, said
+    assert said.out.startswith("Paar 1: Residuum 0,000° 0,0 mm\n")
+    assert "\nEinbau von 'lidar' aus " in said.out
     found = load_rig(tmp_path / "new.toml").sensors[0].T_body_sensor
     np.testing.assert_allclose(found.t, MOUNT.t, atol=1e-6)
 

@@ -14,6 +14,7 @@ from recon4.export.options import ExportOptions
 from recon4.findings.wording import said
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.site_grid import SiteGrid
+from recon4.locales.coded import said as in_language
 from recon4.model.finding import Finding, Level
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.site_control import SITE_GRID, SeenTarget, SiteControl
@@ -122,7 +123,8 @@ def test_gdal_reads_every_layer_of_a_map_in_a_site_grid(project, tmp_path):
     assert columns["kind"].tolist() == [str(WEAK.kind), str(WHOLE.kind)]
     assert [one is None for one in wkb] == [False, True]
     assert len(_points(_read(path, "finding_stretches")[1][0])) > 2
-    assert made.text.startswith("trajectory: 1, control and check points: 1, findings: 2")
+    assert made.text.startswith("trajectory (1), control and check points (1), findings (2)")
+    assert in_language(made.text, "de").startswith("Trajektorie (1), Pass- und Kontrollpunkte (1)")
 
 
 def test_the_same_map_gives_the_same_bytes_and_another_system_other_ones(project, tmp_path):

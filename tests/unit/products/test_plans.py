@@ -9,6 +9,7 @@ import pytest
 from pyproj import CRS
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import said
 from recon4.products import floor_plan
 from recon4.products.drawing import DrawingLayer, DrawingNotes, DrawnShape, write_drawing
 from recon4.products.floor_plan import draw_plan
@@ -241,10 +242,11 @@ def test_a_curved_wall_is_an_arc_in_a_dxf(start, sweep, tmp_path):
 
 def test_geojson_says_what_each_line_is(rooms, tmp_path):
     path = tmp_path / "plan.geojson"
-    write_product(
+    text = write_product(
         "plan", ProductSource(rooms, PLACED, None), path, options=ProductOptions(storey="0")
     )
 
+    assert "1 window in them" in text and ", darin 1 Tür und 1 Fenster, " in said(text, "de")
     record = json.loads(path.read_text())
     assert record["crs"]["properties"]["name"] == "urn:ogc:def:crs:EPSG::32633"
     layers = [one["properties"]["layer"] for one in record["features"]]

@@ -8,6 +8,7 @@ import pytest
 import rasterio
 
 from recon4.errors import ConfigError, NoSpace
+from recon4.locales.coded import said
 from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
@@ -88,10 +89,11 @@ def test_the_ground_is_without_car_and_tree_and_empty_where_nothing_was_seen(gro
 
 def test_heights_are_read_by_gdal_in_the_crs(meadow, tmp_path):
     path = tmp_path / "dtm.tif"
-    write_product(
+    text = write_product(
         "terrain", ProductSource(meadow, PLACED, None), path, options=ProductOptions(cell_m=0.5)
     )
 
+    assert " cells of 0.5 m, " in text and " Zellen von 0,5 m, " in said(text, "de")
     with rasterio.open(path) as read:
         heights = read.read(1, masked=True)
         place = read.index(UTM_M[0] + 3.2, UTM_M[1] + 3.2)

@@ -58,6 +58,8 @@ def test_what_was_not_measured_is_a_dash_in_every_file():
     assert "points,check,3,0,0" in table
     assert "<td>2.0</td><td>–</td><td>–</td><td>–</td><td>–</td><td>2.0</td>" in sheet
     assert residual_text(found).splitlines()[2].split()[2:] == ["2.0", "–", "–", "–", "–"]
+    german = residual_text(found, "de").splitlines()
+    assert german[0].split()[0] == "Marke" and german[2].split()[1:3] == ["(Kontrollpunkt)", "2,0"]
 
 
 def test_one_horizontal_component_is_judged_alone_against_its_part_of_the_limit():
