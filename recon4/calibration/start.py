@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.calibration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.calibration.mount_search import without_others
 from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.tuning_methods import START
@@ -14,6 +13,7 @@ from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
+from recon4.registration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.settings.reads import CalibrationReads
 from recon4.units import STANDARD_GRAVITY_M_S2
 

@@ -43,23 +43,6 @@ class GravityAlignmentTuning(Struct, frozen=True, kw_only=True):
 GRAVITY_ALIGNMENT = GravityAlignmentTuning()
 
 
-class GyroAlignmentTuning(Struct, frozen=True, kw_only=True):
-    """IMU against LiDARs by their turn rates."""
-
-    min_intervals: int = 20
-    """Fewer intervals in which the body turns show nothing."""
-    min_rate_rad_s: float = 0.03
-    """A body that turns less shows nothing."""
-    sure: float = 0.97
-    """Left-handed axes must explain this part: any noise makes a sign likely."""
-    largest_clock_s: float = 0.5
-    clock_step_s: float = 0.005
-    """Largest error of the clock that is searched for, and the step of the search [s]."""
-
-
-GYRO_ALIGNMENT = GyroAlignmentTuning()
-
-
 class LineEntropyTuning(Struct, frozen=True, kw_only=True):
     """Mount and clock of a profiler by the sharpness of the map."""
 

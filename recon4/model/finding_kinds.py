@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 16
+AUDIT_VERSION = 17
 """Raise it when witnesses find something else in the same walk, or in another order: then finished
 projects are audited again."""
 
@@ -52,6 +52,7 @@ class FindingKind(StrEnum):
     IMU_SATURATED = "IMU-SATURATED"
     IMU_GRAVITY = "IMU-GRAVITY"
     IMU_UPSIDE_DOWN = "IMU-UPSIDE-DOWN"
+    IMU_TURNED = "IMU-TURNED"
     IMU_FORCES_REVERSED = "IMU-FORCES-REVERSED"
     IMU_GYRO_SCALE = "IMU-GYRO-SCALE"
     IMU_GYRO_ROTATION = "IMU-GYRO-ROTATION"

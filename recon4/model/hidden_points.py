@@ -1,4 +1,4 @@
-"""Points of multiframes that later stages do not see, and what the odometry repairs of an IMU."""
+"""Points of multiframes that later stages do not see."""
 
 from __future__ import annotations
 
@@ -12,8 +12,6 @@ from recon4.model.multiframe import Multiframe
 
 MOVING_POINTS = "moving.npz"
 """In the folder of the stage ``odometry``: points on moving objects, if they are left out."""
-FORCES_REVERSED = "forces_reversed.npz"
-"""In the same folder: why the sign of all accelerations is turned, if it is."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

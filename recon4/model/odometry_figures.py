@@ -64,6 +64,19 @@ class ImuFault(msgspec.Struct, frozen=True, kw_only=True):
     """Of the body; empty = all."""
 
 
+class ImuTurn(msgspec.Struct, frozen=True, kw_only=True):
+    """An IMU that is mounted otherwise than its rig says; its samples were turned."""
+
+    angle_rad: float
+    """Angle of the rotation against the rig."""
+    explained: float
+    """Part of the turns of the LiDARs that its gyroscope measures by the rig, below 1 …"""
+    explained_turned: float
+    """… and turned, 0..1."""
+    rpy_deg: tuple[float, float, float]
+    """Its right mount on the body [°]."""
+
+
 class TurnDoubt(msgspec.Struct, frozen=True, kw_only=True):
     """A stretch of the walk in which the LiDARs hardly observe a turn of the body."""
 
@@ -154,6 +167,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Whether the IMU was used."""
     imu_choice: ImuChoice | None = None
     """Which samples of it; None = there is none, or of an earlier version."""
+    imu_turn: ImuTurn | None = None
+    """How its samples were turned; None = they were not."""
     forces_reversed: float | None = None
     """Correlation of forces and motion as recorded, -1 to 0: the sign of all accelerations was
     turned. None = it was not."""

@@ -10,25 +10,18 @@ wrong sign if that measures the turns of the LiDARs.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, so3_log
 from recon4.model.frames import RecordedFrames
-from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.motion import imu_in_body
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_imu import REVERSED_FORCES
 from recon4.settings.reads import OdometryReads
-
-
-def with_opposite_forces(imu: ImuSamples) -> ImuSamples:
-    """The same samples with the sign of all accelerations turned."""
-    return replace(imu, accel_m_s2=-imu.accel_m_s2)
 
 
 def reversed_forces(frames: RecordedFrames, settings: OdometryReads) -> float | None:

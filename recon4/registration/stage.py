@@ -6,16 +6,15 @@ import dataclasses
 from pathlib import Path
 
 import numpy as np
-from msgspec.structs import replace
 
-from recon4.model.hidden_points import FORCES_REVERSED, MOVING_POINTS, HiddenPoints
+from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
+from recon4.model.imu_repair import IMU_REPAIR
 from recon4.model.odometry_figures import OdometryFigures, TurnDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.felt_motion import are_carried, carried, felt_motion, moved_back
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.pulled_motion import less_sure
-from recon4.registration.reversed_forces import reversed_forces, with_opposite_forces
 from recon4.registration.tracked_walk import EarlierWalks, WalkInputs
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
@@ -35,10 +34,11 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
             that is lost is an event.
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense), ``steps.npz`` (a row a
             multiframe), ``hypotheses.json`` (what was tried, and why one was chosen),
-            ``moving.npz`` if points on moving objects are left out, and ``forces_reversed.npz``
-            if the accelerations had the wrong sign: later stages read both.
+            ``moving.npz`` if points on moving objects are left out, and ``imu_repair.npz`` if
+            something was wrong with the IMU: later stages read both.
     """
-    recording, found = _with_right_forces(recording, out)
+    if recording.repairs.repair is not None:
+        save_record(out / IMU_REPAIR, recording.repairs.repair)
     choice = choose_walk(recording)
     hypothesis = choice.best.hypothesis
     if hypothesis.hidden is not None:
@@ -51,18 +51,7 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     steps = choice.best.tracked.steps
     steps.update(less_sure(steps, choice.moving, with_imu=used is not None))
     _save_steps(out / "steps.npz", steps)
-    figures = _figures(recording, choice, with_imu=used is not None)
-    return replace(figures, forces_reversed=found)
-
-
-def _with_right_forces(recording: WalkInputs, out: Path) -> tuple[WalkInputs, float | None]:
-    """The recording with accelerations of the right sign, and what showed that it was wrong."""
-    found = reversed_forces(recording.frames, recording.settings)
-    if found is None or recording.frames.imu is None:
-        return recording, None
-    np.savez(out / FORCES_REVERSED, correlation=found)
-    frames = recording.frames.with_imu(with_opposite_forces(recording.frames.imu))
-    return dataclasses.replace(recording, frames=frames), found
+    return _figures(recording, choice, with_imu=used is not None)
 
 
 def carried_by_accelerometer(recording: WalkInputs, choice: Choice, imu: ImuSamples) -> Choice:
@@ -118,6 +107,8 @@ def _figures(recording: WalkInputs, choice: Choice, *, with_imu: bool) -> Odomet
         lost=tracked.score.lost,
         imu=with_imu,
         imu_choice=imu.choice if frames.imu is not None else None,
+        imu_turn=recording.repairs.turn,
+        forces_reversed=recording.repairs.forces_reversed,
         imu_faults=tracked.estimate.faults if tracked.estimate else (),
         heights=tuple(ride.doubt for ride in _rides(choice, frames.rig)) if with_imu else (),
         gnss=aided,

@@ -22,6 +22,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.frame_view import FrameView
 from recon4.registration.hypothesis import Hypothesis
 from recon4.registration.imu_estimate import ImuEstimate
+from recon4.registration.imu_repairs import NO_REPAIRS, ImuRepairs
 from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.motion import MotionState
 from recon4.registration.moving import StandingFrames, find_moving
@@ -57,6 +58,8 @@ class WalkInputs:
     """Fixes of a GNSS/INS, outdoors."""
     earlier: EarlierWalks | None = None
     """None = the rig is that of the recording."""
+    repairs: ImuRepairs = NO_REPAIRS
+    """What was repaired of the IMU of the multiframes."""
 
     def seen(self, hidden: HiddenPoints | None) -> RecordedFrames:
         """The multiframes without some points."""

@@ -85,6 +85,44 @@ class ImuLeverArmTuning(Struct, frozen=True, kw_only=True):
 IMU_LEVER_ARM = ImuLeverArmTuning()
 
 
+class GyroAlignmentTuning(Struct, frozen=True, kw_only=True):
+    """IMU against LiDARs by their turn rates."""
+
+    min_intervals: int = 20
+    """Fewer intervals in which the body turns show nothing."""
+    min_rate_rad_s: float = 0.03
+    """A body that turns less shows nothing."""
+    sure: float = 0.97
+    """Left-handed axes must explain this part: any noise makes a sign likely."""
+    largest_clock_s: float = 0.5
+    clock_step_s: float = 0.005
+    """Largest error of the clock that is searched for, and the step of the search [s]."""
+
+
+GYRO_ALIGNMENT = GyroAlignmentTuning()
+
+
+class TurnedImuTuning(Struct, frozen=True, kw_only=True):
+    """An IMU that is mounted otherwise than its rig says."""
+
+    frames: int = 40
+    """Multiframes that the LiDARs track alone."""
+    least_explained: float = 0.9
+    """A gyroscope that is only turned measures more of their turns than this …"""
+    more_left: float = 4.0
+    """… and by its rig it misses this many times as much: 1.0 in right rigs, above 34 in turned
+    ones (docs/explanation/odometry.md)."""
+    most_sd_rad: float = 0.05
+    """A rotation that is known less is not taken: in a walk on one level about one axis [rad]."""
+    far_rad: float = 0.15
+    """The filter finds a smaller error [rad]."""
+    same_rad: float = 0.09
+    """Axes nearer than this to exchanged ones are exchanged [rad]."""
+
+
+TURNED_IMU = TurnedImuTuning()
+
+
 class ReversedForcesTuning(Struct, frozen=True, kw_only=True):
     """Accelerations with the wrong sign."""
 

@@ -27,7 +27,8 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.locales.coded import CodedText, unreadable
 from recon4.model.beams import beam_change
-from recon4.model.hidden_points import FORCES_REVERSED, MOVING_POINTS, HiddenPoints
+from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
+from recon4.model.imu_repair import IMU_REPAIR, ImuRepair
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -163,8 +164,8 @@ class FrameStore:
     """The rig whose clock offsets are in the files."""
     hidden: HiddenPoints | None = None
     """Points that are left out; None = all are there."""
-    forces_reversed: bool = False
-    """Whether the accelerations in the files have the wrong sign: ``imu`` has the right one."""
+    imu_repair: ImuRepair | None = None
+    """What is wrong with the samples in the files: ``imu`` has the right ones."""
 
     @staticmethod
     def open(
@@ -172,7 +173,7 @@ class FrameStore:
         rig: Rig | None = None,
         hidden: HiddenPoints | None = None,
         *,
-        forces_reversed: bool = False,
+        imu_repair: ImuRepair | None = None,
     ) -> FrameStore:
         """Open what a `FrameWriter` left.
 
@@ -181,7 +182,7 @@ class FrameStore:
             rig: The same sensors with calibrated mounts and clocks; None = the rig of the
                 recording. All times are given by its clocks.
             hidden: Points that are left out.
-            forces_reversed: Whether to turn the sign of all accelerations.
+            imu_repair: Of the samples of the IMU.
 
         Raises:
             StoreError: If something is missing or the files do not fit each other.
@@ -202,18 +203,16 @@ class FrameStore:
             raise StoreError(f"{folder.name}: the rates of clocks are applied when it is read")
         imu, gnss = folder / "imu.npz", folder / "gnss.npz"
         samples = _imu(imu, rig.imu_clock_offset_s - recorded.imu_clock_offset_s)
-        if forces_reversed and samples is not None:
-            samples = replace(samples, accel_m_s2=-samples.accel_m_s2)
         return FrameStore(
             folder,
             index,
             rig,
-            samples,
+            imu_repair.of(samples) if imu_repair is not None and samples is not None else samples,
             _gnss(gnss, rig.gnss_time_offset_s - recorded.gnss_time_offset_s),
             _read_report(folder / "report.json"),
             recorded,
             hidden,
-            forces_reversed,
+            imu_repair,
         )
 
     def __len__(self) -> int:
@@ -254,7 +253,7 @@ class FrameStore:
 
     def __reduce__(self) -> tuple[Any, ...]:
         rig = None if self.rig is self.recorded else self.rig
-        opened = partial(FrameStore.open, forces_reversed=self.forces_reversed)
+        opened = partial(FrameStore.open, imu_repair=self.imu_repair)
         return opened, (self.folder, rig, self.hidden)
 
     def with_rig(self, rig: Rig) -> FrameStore:
@@ -309,7 +308,7 @@ def open_frames(
         frames: Folder of the stage ``frames``.
         calibration: Folder of the stage ``calibration``; None = the rig of the recording.
         odometry: Folder of the stage ``odometry``, which knows the points on moving objects: they
-            are left out, and whether the forces are reversed. None = all is as recorded.
+            are left out, and what is wrong with the IMU. None = all is as recorded.
         with_moving: Leave no points out.
 
     Raises:
@@ -318,11 +317,12 @@ def open_frames(
     """
     path = calibration / CALIBRATED_RIG if calibration else None
     moving = odometry / MOVING_POINTS if odometry and not with_moving else None
+    repair = odometry / IMU_REPAIR if odometry else None
     return FrameStore.open(
         frames,
         load_rig(path) if path and path.is_file() else None,
         load_record(moving, HiddenPoints) if moving and moving.is_file() else None,
-        forces_reversed=odometry is not None and (odometry / FORCES_REVERSED).is_file(),
+        imu_repair=load_record(repair, ImuRepair) if repair and repair.is_file() else None,
     )
 
 

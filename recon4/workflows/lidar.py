@@ -52,18 +52,21 @@ def _odometry(
     earlier: Path | None = None,
 ) -> OdometryFigures:
     from recon4.georeference.gnss_aiding import make_gnss_aiding
+    from recon4.registration.imu_repairs import repaired_imu
     from recon4.registration.stage import earlier_walks, run_odometry
     from recon4.registration.tracked_walk import WalkInputs
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
-    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=store.imu)
+    right, repairs = repaired_imu(store, context.settings)
+    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=right.imu)
     recording = WalkInputs(
-        store,
+        right,
         context.settings,
         context.progress,
         aiding,
         earlier_walks(earlier) if earlier else None,
+        repairs,
     )
     return run_odometry(recording, context.out)
 

@@ -14,7 +14,13 @@ from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.finding import Finding, Level, Value
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_EVENED, CLOUDS_UNTIMED, import_notes
-from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault, OdometryFigures
+from recon4.model.odometry_figures import (
+    HeightDoubt,
+    ImuChoice,
+    ImuFault,
+    ImuTurn,
+    OdometryFigures,
+)
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.imu_saturation import SaturatedAxis, saturated_axes
 from recon4.registration.motion import imu_in_body
@@ -39,6 +45,8 @@ class ImuUse(Witness):
             yield finding(FindingKind.IMU_MISSING, Level.NOTE, known_to(walk))
         if figures.imu_choice is not None and figures.imu_choice.outcome in _OUTCOMES:
             yield _choice(figures.imu_choice)
+        if figures.imu_turn is not None:
+            yield _turned(figures.imu_turn)
         if figures.forces_reversed is not None:
             samples = len(walk.imu) if walk.imu is not None else 0
             values: dict[str, Value] = {"correlation": figures.forces_reversed, "samples": samples}
@@ -199,6 +207,16 @@ def _fault_values(fault: ImuFault) -> dict[str, Value]:
     way = "large" if value > 0.0 else "small"
     percent = 100.0 * value
     return {"gyroscope": True, "size": abs(value), "sd": sd, "way": way, "percent": percent}
+
+
+def _turned(turn: ImuTurn) -> Finding:
+    values: dict[str, Value] = {
+        "angle_rad": turn.angle_rad,
+        "explained": max(turn.explained, 0.0),
+        "explained_turned": turn.explained_turned,
+        "rpy_deg": ", ".join(f"{angle:g}" for angle in turn.rpy_deg),
+    }
+    return replace(finding(FindingKind.IMU_TURNED, Level.CHECK, values), sensor="IMU")
 
 
 def _choice(choice: ImuChoice) -> Finding:

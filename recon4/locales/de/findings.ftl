@@ -237,6 +237,12 @@ IMU-UPSIDE-DOWN = Träger kopfüber
     .meaning = Mit umgekehrtem Vorzeichen der Beschleunigungen oder falschem Einbau der IMU wird die Bewegung falsch vorhergesagt, und die Verfolgung geht verloren, sobald sich der Träger bewegt. Ein LiDAR, das kopfüber hängt, ist kein Fehler. Ein umgekehrtes Vorzeichen wird repariert, wo die Bewegung es zeigt: IMU-FORCES-REVERSED.
     .detection = Die mittlere Beschleunigung der Begehung ist mehr als 115° von der z-Achse des Trägers entfernt. Ein Hinweis; *prüfen*, wenn die Verfolgung verloren ging.
 
+IMU-TURNED = IMU anders eingebaut
+    .text1 = Die IMU ist anders eingebaut, als das Rig sagt, um { DEGREES($angle_rad, digits: 0) } verdreht: nach dem Rig misst ihr Kreisel { PERCENT($explained, digits: 0) } der Drehungen der LiDARs, verdreht { PERCENT($explained_turned, digits: 0) }. Alle ihre Messwerte wurden gedreht.
+    .remedy = Ihren Einbau in [imu] der Rig-Datei angeben: rpy_deg = [{ $rpy_deg }].
+    .meaning = Die Achsen der IMU sind vertauscht: sie hängt kopfüber, ihre x-Achse zeigt nach links, oder der Treiber gibt ein anderes Koordinatensystem an. Die Bewegung würde um falsche Achsen vorhergesagt.
+    .detection = Wo sich die IMU am meisten um zwei Achsen dreht, verfolgen die LiDARs 40 Multiframes allein. Eine Drehung von mehr als 9°, die auf 3° bekannt ist, lässt den Kreisel über 90 % ihrer Drehungen messen, und nach dem Rig fehlt mindestens das Vierfache.
+
 IMU-FORCES-REVERSED = Beschleunigungen umgekehrt
     .text1 = Die Beschleunigungen der IMU haben das falsche Vorzeichen: wie aufgenommen laufen sie der Bewegung entgegen, die die LiDARs messen (Korrelation { DECIMAL($correlation, digits: 2) }). Das Vorzeichen aller { COUNT($samples) } Messwerte wurde umgekehrt.
     .remedy = Es ist nichts zu tun. Andere Programme brauchen dasselbe: in Ruhe muss ein Beschleunigungsmesser +9,8 m/s² in der Achse messen, die nach oben zeigt.

@@ -241,6 +241,12 @@ IMU-UPSIDE-DOWN = Body upside down
     .meaning = With the sign of the accelerations reversed, or a wrong mount of the IMU, the motion is predicted the wrong way and tracking is lost when the body moves. A LiDAR that hangs upside down is no fault. A reversed sign is repaired where the motion shows it: IMU-FORCES-REVERSED.
     .detection = The mean acceleration of the walk is more than 115° away from the z axis of the body. A note; *check* if tracking was lost.
 
+IMU-TURNED = IMU mounted otherwise
+    .text1 = The IMU is mounted otherwise than the rig says, rotated by { DEGREES($angle_rad, digits: 0) }: by the rig its gyroscope measures { PERCENT($explained, digits: 0) } of the turns of the LiDARs, and rotated { PERCENT($explained_turned, digits: 0) }. All of its samples were rotated.
+    .remedy = Give its mount in [imu] of the rig file: rpy_deg = [{ $rpy_deg }].
+    .meaning = The axes of the IMU are exchanged: it hangs upside down, its x axis points to the left, or the driver states another frame. The motion would be predicted about wrong axes.
+    .detection = Where the IMU turns most about two axes the LiDARs track 40 multiframes alone. A rotation of more than 9° that is known to 3° makes the gyroscope measure over 90 % of their turns, and by the rig it misses at least four times as much.
+
 IMU-FORCES-REVERSED = Accelerations reversed
     .text1 = The accelerations of the IMU have the wrong sign: as recorded, they run against the motion that the LiDARs measure (correlation { DECIMAL($correlation, digits: 2) }). The sign of all { COUNT($samples) } samples was turned.
     .remedy = Nothing needs to be done. Other programs need the same: at rest, an accelerometer must measure +9.8 m/s² along the axis that points up.

@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.calibration.gyro_alignment import align_gyro
 from recon4.calibration.recorded_walk import RecordedWalk
 from recon4.calibration.start import find_start
 from recon4.calibration.window import cut_window
 from recon4.findings.witnesses.imu import fault_finding
 from recon4.geometry.se3 import so3_log
+from recon4.registration.gyro_alignment import align_gyro
 from tests.room_walks import T0_NS
 from tests.said import texts
 from tests.unit.calibration.conftest import SETTINGS, dancing

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.registration.reversed_forces import reversed_forces, with_opposite_forces
+from recon4.model.imu_repair import ImuRepair
+from recon4.registration.reversed_forces import reversed_forces
 from recon4.settings import preset
 from recon4.settings.reads import OdometryReads, part_of
 
@@ -36,7 +37,7 @@ def hanging(rig):
 
 
 def test_forces_against_the_motion_of_the_lidars_are_reversed(frames):
-    wrong = with_opposite_forces(frames.imu)
+    wrong = ImuRepair.reversed_forces().of(frames.imu)
 
     assert reversed_forces(Walk(frames, imu=wrong), SETTINGS) < -0.8
     assert reversed_forces(frames, SETTINGS) is None

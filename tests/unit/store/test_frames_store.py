@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from recon4.errors import NoSpace, StoreError
-from recon4.model.hidden_points import FORCES_REVERSED, HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
+from recon4.model.imu_repair import IMU_REPAIR, ImuRepair
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
@@ -306,12 +307,14 @@ def test_points_that_a_stage_hides_are_not_there_in_other_processes_either(writt
         assert len(store[2]) == 7
 
 
-def test_forces_that_the_odometry_turned_are_turned_wherever_its_folder_is_given(written, tmp_path):
+def test_what_the_odometry_repaired_of_an_imu_is_right_wherever_its_folder_is_given(
+    written, tmp_path
+):
     folder = written[0]
     samples = ImuSamples(np.array([1, 2], np.int64), np.ones((2, 3)), np.full((2, 3), 9.8))
     save_record(folder / "imu.npz", samples)
     (tmp_path / "odometry").mkdir()
-    (tmp_path / "odometry" / FORCES_REVERSED).touch()
+    save_record(tmp_path / "odometry" / IMU_REPAIR, ImuRepair.reversed_forces())
 
     recorded = open_frames(folder, None)
     opened = open_frames(folder, None, tmp_path / "odometry", with_moving=True)

@@ -11,11 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.calibration.tuning_methods import GYRO_ALIGNMENT
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.imu_saturation import saturated_samples
+from recon4.registration.tuning_imu import GYRO_ALIGNMENT
+
+_CLOCKS_S = np.arange(
+    -GYRO_ALIGNMENT.largest_clock_s, GYRO_ALIGNMENT.largest_clock_s, GYRO_ALIGNMENT.clock_step_s
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,8 +38,50 @@ class GyroAlignment:
     """Whether left-handed axes explain it clearly better."""
 
 
-def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlignment | None:
-    """Rotation and clock that make the turn rates of an IMU fit a trajectory.
+@dataclass(frozen=True, slots=True, eq=False)
+class ComparedTurns:
+    """Turns of a trajectory beside those of a gyroscope, for any clock offset."""
+
+    of_body: Array
+    """From one time to the next, without their mean [rad], (N, 3)."""
+    _t_s: Array
+    _measured: NDArray[np.bool_]
+    _imu_s: Array
+    _turned: Array
+
+    def of_imu(self, clock_s: float) -> Array:
+        """Of the gyroscope, without their mean: its bias [rad], (N, 3)."""
+        turned = _interpolated(self._t_s - clock_s, self._imu_s, self._turned)
+        return _centered(np.diff(turned, axis=0)[self._measured])
+
+    def aligned(self) -> GyroAlignment:
+        """Rotation and clock that explain the most."""
+        fits = [_fit(self.of_body, self.of_imu(clock)) for clock in _CLOCKS_S]
+        explained = np.array([fit[1] for fit in fits])
+        best = int(np.argmax(explained))
+        R_body_imu, _, scale, mirrored = fits[best]
+        return GyroAlignment(
+            R_body_imu=R_body_imu,
+            clock_s=float(_CLOCKS_S[best]) + _vertex(explained, best) * GYRO_ALIGNMENT.clock_step_s,
+            scale=scale,
+            explained=float(explained[best]),
+            mirrored=mirrored,
+        )
+
+    def explained_by(self, R_body_imu: Array) -> float:
+        """Part of the turning that a rotation explains with its best clock, up to 1."""
+        turns = ((self.of_body, self.of_imu(clock) @ R_body_imu.T) for clock in _CLOCKS_S)
+        return max(_squared_correlation(a, b) for a, b in turns)
+
+    def rotation_sd_rad(self, explained: float) -> float:
+        """Standard deviation of a rotation that explains so much, about its vaguest axis [rad]."""
+        squares = np.linalg.eigvalsh(self.of_body.T @ self.of_body)
+        left = (1.0 - explained) * float(squares.sum()) / self.of_body.size
+        return float(np.sqrt(left / max(squares[0] + squares[1], 1e-12)))
+
+
+def compare_turns(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> ComparedTurns | None:
+    """Turns of a trajectory beside those of a gyroscope.
 
     Args:
         trajectory: ``T_odom_body``.
@@ -56,27 +102,16 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
         return None
     R = trajectory.at(t_ns, slack_ns=margin_ns).R
     of_body = _centered(so3_log(np.swapaxes(R[:-1], -1, -2) @ R[1:])[measured])
-    t_s, known_s = (t_ns - t_ns[0]) * 1e-9, (imu.t_ns - t_ns[0]) * 1e-9
+    t_s, imu_s = (t_ns - t_ns[0]) * 1e-9, (imu.t_ns - t_ns[0]) * 1e-9
     if np.sqrt(np.mean(of_body**2)) < GYRO_ALIGNMENT.min_rate_rad_s * np.median(np.diff(t_s)):
         return None
-    turned = _integral(known_s, imu.gyro_rad_s)
-    clocks = np.arange(
-        -GYRO_ALIGNMENT.largest_clock_s, GYRO_ALIGNMENT.largest_clock_s, GYRO_ALIGNMENT.clock_step_s
-    )
-    fits = [
-        _fit(of_body, _centered(np.diff(of_imu, axis=0)[measured]))
-        for of_imu in (_interpolated(t_s - clock, known_s, turned) for clock in clocks)
-    ]
-    explained = np.array([fit[1] for fit in fits])
-    best = int(np.argmax(explained))
-    R_body_imu, _, scale, mirrored = fits[best]
-    return GyroAlignment(
-        R_body_imu=R_body_imu,
-        clock_s=float(clocks[best]) + _vertex(explained, best) * GYRO_ALIGNMENT.clock_step_s,
-        scale=scale,
-        explained=float(explained[best]),
-        mirrored=mirrored,
-    )
+    return ComparedTurns(of_body, t_s, measured, imu_s, _integral(imu_s, imu.gyro_rad_s))
+
+
+def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlignment | None:
+    """Rotation and clock that make the turn rates of an IMU fit a trajectory, if it turns."""
+    turns = compare_turns(trajectory, t_ns, imu)
+    return None if turns is None else turns.aligned()
 
 
 def _saturated(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
@@ -102,6 +137,12 @@ def _fit(of_body: Array, of_imu: Array) -> tuple[Array, float, float, bool]:
     )
     scale = energy_imu / max(float(proper.sum()), 1e-12)
     return U @ np.diag([1.0, 1.0, sign]) @ Vt, explained, scale, mirrored
+
+
+def _squared_correlation(a: Array, b: Array) -> float:
+    """Of vectors (N, 3), with the sign of their correlation, -1..1."""
+    both = float((a * b).sum())
+    return both * abs(both) / max(float((a**2).sum() * (b**2).sum()), 1e-12)
 
 
 def _centered(values: Array) -> Array:
