@@ -15,7 +15,7 @@ from recon4.products.curves import CurvedFace, curved_faces
 from recon4.products.faces import Face, fit_faces
 from recon4.products.openings import FaceOpening, OpeningKind, Rays, openings_of, sample_rays
 from recon4.products.storeys import BuildingStorey, Levels
-from recon4.products.tuning import OPENINGS, PLANS, WALL_CELLS
+from recon4.products.tuning import FACES, OPENINGS, PLANS, WALL_CELLS
 from recon4.products.wall_cells import WallCells, wall_cells
 
 if TYPE_CHECKING:
@@ -100,6 +100,8 @@ def plan_of(cells: WallCells, rays: Rays, storey: BuildingStorey) -> FloorPlan:
     curves, faces = curved_faces(fit_faces(cells), cells)
     columns, faces = _columns(faces)
     opened = [openings_of(face, cells, rays, storey=storey) for face in faces]
+    seen = [k for k in range(len(faces)) if not _is_in_wall(faces, opened, k)]
+    faces, opened = [faces[k] for k in seen], [opened[k] for k in seen]
     sections = _sections(faces, opened)
     walls = [line for face, holes in zip(faces, opened, strict=True) for line in _cut(face, holes)]
     walls += [line for k in range(len(faces)) for line in _jambs(faces, opened, k)]
@@ -116,6 +118,22 @@ def plan_of(cells: WallCells, rays: Rays, storey: BuildingStorey) -> FloorPlan:
     return FloorPlan(
         storey, walls, [*sections, *columns], columns, openings, furniture, float(np.sqrt(rms))
     )
+
+
+def _is_in_wall(faces: list[Face], opened: list[list[FaceOpening]], k: int) -> bool:
+    """Whether a face lies between both sides of a wall, away from openings: nobody can see it."""
+    ends, margin = np.array([faces[k].start, faces[k].end]), OPENINGS.jamb_m
+    sides = []
+    for other, holes in zip(faces, opened, strict=True):
+        depth = (other.start - ends) @ other.n
+        at = float(other.along(ends).mean())
+        is_behind = depth.min() > -FACES.own_m and depth.max() < PLANS.thickness_m[1]
+        is_closed = 0.0 < at < other.length_m and not any(
+            hole.start_m - margin < at < hole.end_m + margin for hole in holes
+        )
+        if other is not faces[k] and is_behind and is_closed:
+            sides.append(other)
+    return any(_thickness(a, b) is not None for a in sides for b in sides)
 
 
 def _cut(face: Face, holes: list[FaceOpening]) -> list[Array]:

@@ -83,11 +83,12 @@ WINDOW = (2.0, 3.4)
 FLOOR_M, CEILING_M = -1.5, 1.2
 
 
-def two_rooms(folder: Path, *, floor_m: float = FLOOR_M) -> TileSet:
+def two_rooms(folder: Path, *, floor_m: float = FLOOR_M, scraps_m: float | None = None) -> TileSet:
     """Rooms of 5 m x 4 m beside each other; between them a wall of 12 cm with a door.
 
     A column of 0.4 m stands in the eastern one, a cupboard of 1.8 m in the western one, whose
-    southern wall has a window with a pane 10 cm behind the face.
+    southern wall has a window with a pane 10 cm behind the face. ``scraps_m``: where along y stray
+    points fill the wall between the rooms.
     """
     made = Surfaces()
     height = CEILING_M - FLOOR_M
@@ -105,6 +106,8 @@ def two_rooms(folder: Path, *, floor_m: float = FLOOR_M) -> TileSet:
     made.sheet([WINDOW[0], -0.1, floor_m + 0.9], [1.4, 0, 0], [0, 0, 1.2], [0, 1, 0], bright=5.0)
     for edge, inward in ((DOOR[0], 1.0), (DOOR[1], -1.0)):
         made.sheet([5.0, edge, floor_m], [0.12, 0, 0], [0, 0, 2.1], [0, inward, 0])
+    if scraps_m is not None:
+        made.sheet([4.96, scraps_m, floor_m], [0.2, 0, 0], [0, 0, height], [0, 1, 0])
     _block(made, (7.0, 2.0), (7.4, 2.4), (floor_m, floor_m + height))
     _block(made, (1.0, 3.4), (2.0, 4.0), (floor_m, floor_m + 1.8))
     return made.write(folder, _walk(floor_m))

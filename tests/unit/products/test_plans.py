@@ -154,6 +154,15 @@ def test_walls_lie_where_they_are(plan):
     assert plan.rms_m < 0.005
 
 
+def test_stray_points_inside_of_a_wall_are_no_wall(plan, tmp_path):
+    tiles = two_rooms(tmp_path / "map", scraps_m=3.0)
+    levels = level_surfaces(tiles)
+    found = draw_plan(tiles, find_storeys(tiles, levels)[0], levels)
+
+    assert found.wall_length_m == pytest.approx(plan.wall_length_m, abs=0.02)
+    assert len(found.walls) == len(plan.walls)
+
+
 def test_door_window_and_column_are_found(plan):
     doors = [hole for hole in plan.openings if hole.kind == "door"]
     windows = [hole for hole in plan.openings if hole.kind == "window"]
