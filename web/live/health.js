@@ -10,6 +10,7 @@ import { chips, lidarRow, linkLost, supplies } from "./captions.js";
  */
 
 const SHORT_PX = 700;
+const NARROW_PX = 600;
 /** Kinds of the errors that are shown: their texts without numbers. */
 const shown = { errors: /** @type {Set<string>} */ (new Set()) };
 
@@ -41,8 +42,15 @@ export function drawHealth({ scene, linked, battery, drawsPoints }) {
 const lines = (/** @type {Warning[]} */ warnings) =>
   warnings.map(({ level, text }) => html`<li class=${level}>${text}</li>`);
 
+/** How many warnings there is space for: on a phone one error or two, else one, above the map. */
+function spaceFor(/** @type {Warning[]} */ warnings) {
+  if (innerWidth >= NARROW_PX) return innerHeight < SHORT_PX ? 2 : 3;
+  const errors = warnings.filter(({ level }) => level === "error");
+  return Math.min(Math.max(errors.length, 1), 2);
+}
+
 function drawWarnings(/** @type {Warning[]} */ warnings) {
-  const most = innerHeight < SHORT_PX ? 2 : 3;
+  const most = spaceFor(warnings);
   const more = warnings.length - most;
   const others = html`<li class="more">
     <button type="button" @click=${() => byId("sensors").click()}>
