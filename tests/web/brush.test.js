@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 const address = { search: "", pathname: "/projects/office/map/" };
 Object.assign(globalThis, { location: address, innerWidth: 1000 });
-const { paint, paintedVolume } = await import("../../web/map/brush.js");
+const { liftBrush, paint, paintedVolume } = await import("../../web/map/brush.js");
 const { page } = await import("../../web/map/page.js");
 const { brushVolume, noBrush, painted } = await import("../../web/slices/brush.js");
 const { parse } = await import("../../web/slices/state.js");
@@ -53,4 +53,18 @@ test("a stroke on a slice has its normal and its thickness", () => {
     ],
   );
   assert.ok(volume.path_m.length >= 5);
+});
+
+test("a second finger undoes the stroke that the first one began, and no other", () => {
+  page.brush = { radius: 0.1, strokes: [] };
+  const stage = { under: ([x, y]) => [x, y, 0], draw() {} };
+  paint([0, 0], [1, 0], { ...stage, done: true });
+  liftBrush();
+  paint([0, 5], [0.5, 5], { ...stage, done: false });
+  liftBrush();
+
+  assert.deepEqual(
+    page.brush.strokes.map(([first]) => first),
+    [[0, 0, 0]],
+  );
 });

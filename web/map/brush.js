@@ -73,8 +73,9 @@ export function paint(from, to, { under, draw, done }) {
   draw();
 }
 
-/** Ends a stroke that the system, or a second finger, interrupted. */
+/** Undoes a stroke that the system, or a second finger, interrupted: two fingers move. */
 export function liftBrush() {
+  if (pointer.at) page.brush.strokes = page.brush.strokes.slice(0, -1);
   Object.assign(pointer, { at: null, p: null });
 }
 
