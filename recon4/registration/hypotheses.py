@@ -54,6 +54,14 @@ class _Shown:
     moving: MovingFigures
 
 
+def doubts_imu(choice: Choice) -> bool:
+    """Whether a walk contradicts its IMU: tracking was lost, or not all of it is used as it is."""
+    tracked, imu = choice.best.tracked, choice.best.hypothesis.imu
+    faults = tracked.estimate.faults if tracked.estimate else ()
+    used = imu.choice.outcome in ("as recorded", "bias removed")
+    return tracked.score.lost_in_sight > 0 or bool(faults) or not used
+
+
 def choose_walk(recording: WalkInputs) -> Choice:
     """Track a recording until nothing that was shown suggests another hypothesis.
 
@@ -219,7 +227,8 @@ def _where_forces_lose(trials: Trials[TrackedWalk], first: Hypothesis) -> Iterat
     that was lost found wrong with the IMU is forgotten.
     """
     imu = first.imu.samples
-    if not trials.best.tracked.score.lost or imu is None or not np.isfinite(imu.accel_m_s2).all():
+    lost = trials.best.tracked.score.lost_in_sight
+    if not lost or imu is None or not np.isfinite(imu.accel_m_s2).all():
         return
     yield replace(
         first.with_imu(without_forces(imu)),

@@ -31,27 +31,39 @@ class ImuRepairs:
 NO_REPAIRS = ImuRepairs()
 
 
-def repaired_imu(
+def with_right_forces(
     frames: RecordedFrames, settings: OdometryReads
 ) -> tuple[RecordedFrames, ImuRepairs]:
-    """The multiframes with the right samples, and what was wrong with them.
+    """The multiframes with accelerations of the right sign, and whether it was wrong.
 
     Args:
         frames: As recorded.
         settings: Of the odometry.
     """
-    repair: ImuRepair | None = None
-    turned = turned_imu(frames, settings)
-    if turned is not None and frames.imu is not None:
-        repair = ImuRepair.turned(turned.R)
-        frames = frames.with_imu(repair.of(frames.imu))
     reversed_by = reversed_forces(frames, settings)
-    if reversed_by is not None and frames.imu is not None:
-        reverse = ImuRepair.reversed_forces()
-        frames = frames.with_imu(reverse.of(frames.imu))
-        repair = reverse if repair is None else reverse.after(repair)
-    turn = _figures(turned, frames.rig) if turned else None
-    return frames, ImuRepairs(repair, turn, reversed_by)
+    if reversed_by is None or frames.imu is None:
+        return frames, NO_REPAIRS
+    reverse = ImuRepair.reversed_forces()
+    right = frames.with_imu(reverse.of(frames.imu))
+    return right, ImuRepairs(reverse, forces_reversed=reversed_by)
+
+
+def with_right_axes(
+    frames: RecordedFrames, settings: OdometryReads
+) -> tuple[RecordedFrames, ImuRepairs]:
+    """The multiframes with the right axes and signs of the IMU, and what was wrong with them.
+
+    Args:
+        frames: As recorded.
+        settings: Of the odometry.
+    """
+    turned = turned_imu(frames, settings)
+    if turned is None or frames.imu is None:
+        return with_right_forces(frames, settings)
+    turn = ImuRepair.turned(turned.R)
+    right, forces = with_right_forces(frames.with_imu(turn.of(frames.imu)), settings)
+    repair = turn if forces.repair is None else forces.repair.after(turn)
+    return right, ImuRepairs(repair, _figures(turned, frames.rig), forces.forces_reversed)
 
 
 def _figures(turned: TurnedImu, rig: Rig) -> ImuTurn:

@@ -57,6 +57,11 @@ class Score:
     """Largest distance of a position from the walk that suggested it; None = no walk did [m]."""
 
     @property
+    def lost_in_sight(self) -> int:
+        """Multiframes that were lost although they saw something of the local map."""
+        return max(self.lost - int(np.count_nonzero(np.isnan(self.residuals_m))), 0)
+
+    @property
     def residual_m(self) -> float:
         """Residual that most multiframes stay below [m]."""
         known = np.nan_to_num(self.residuals_m, nan=TUNING.never_m)

@@ -13,7 +13,7 @@ from recon4.model.odometry_figures import OdometryFigures, TurnDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.felt_motion import are_carried, carried, felt_motion, moved_back
-from recon4.registration.hypotheses import Choice, choose_walk
+from recon4.registration.hypotheses import Choice, choose_walk, doubts_imu
 from recon4.registration.pulled_motion import less_sure
 from recon4.registration.tracked_walk import EarlierWalks, WalkInputs
 from recon4.registration.tuning import OdometryTuning
@@ -37,9 +37,13 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
             ``moving.npz`` if points on moving objects are left out, and ``imu_repair.npz`` if
             something was wrong with the IMU: later stages read both.
     """
+    choice = choose_walk(recording)
+    if recording.with_right_axes is not None and doubts_imu(choice):
+        turned = recording.with_right_axes()
+        if turned.repairs.turn is not None:
+            recording, choice = turned, choose_walk(turned)
     if recording.repairs.repair is not None:
         save_record(out / IMU_REPAIR, recording.repairs.repair)
-    choice = choose_walk(recording)
     hypothesis = choice.best.hypothesis
     if hypothesis.hidden is not None:
         save_record(out / MOVING_POINTS, hypothesis.hidden)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -60,6 +60,9 @@ class WalkInputs:
     """None = the rig is that of the recording."""
     repairs: ImuRepairs = NO_REPAIRS
     """What was repaired of the IMU of the multiframes."""
+    with_right_axes: Callable[[], WalkInputs] | None = None
+    """The same with the axes of the IMU compared with the LiDARs, which takes as long as tracking
+    a hundred multiframes; None = nobody doubts them."""
 
     def seen(self, hidden: HiddenPoints | None) -> RecordedFrames:
         """The multiframes without some points."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from recon4.model.figures import GraphFigures, RefineFigures
 from recon4.model.odometry_figures import OdometryFigures
@@ -12,6 +14,11 @@ from recon4.store.stage import Stage, StageContext
 from recon4.workflows.make_map import TO_MAP, make_map, map_results
 from recon4.workflows.stages import AUDIT, CALIBRATION, FRAMES, LEVEL, REVIEW, VERIFICATION
 from recon4.workflows.workflow import Run, Workflow
+
+if TYPE_CHECKING:
+    from recon4.model.frames import RecordedFrames
+    from recon4.registration.imu_repairs import ImuRepairs
+    from recon4.registration.tracked_walk import WalkInputs
 
 
 def before_review(run: Run) -> None:
@@ -52,21 +59,21 @@ def _odometry(
     earlier: Path | None = None,
 ) -> OdometryFigures:
     from recon4.georeference.gnss_aiding import make_gnss_aiding
-    from recon4.registration.imu_repairs import repaired_imu
+    from recon4.registration.imu_repairs import with_right_axes, with_right_forces
     from recon4.registration.stage import earlier_walks, run_odometry
     from recon4.registration.tracked_walk import WalkInputs
     from recon4.store.frames import open_frames
 
-    store = open_frames(frames, calibration)
-    right, repairs = repaired_imu(store, context.settings)
-    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=right.imu)
-    recording = WalkInputs(
-        right,
-        context.settings,
-        context.progress,
-        aiding,
-        earlier_walks(earlier) if earlier else None,
-        repairs,
+    store, settings = open_frames(frames, calibration), context.settings
+
+    def inputs(right: RecordedFrames, repairs: ImuRepairs) -> WalkInputs:
+        aiding = make_gnss_aiding(store.gnss, store.rig, settings.odometry, imu=right.imu)
+        before = earlier_walks(earlier) if earlier else None
+        return WalkInputs(right, settings, context.progress, aiding, before, repairs)
+
+    recording = replace(
+        inputs(*with_right_forces(store, settings)),
+        with_right_axes=lambda: inputs(*with_right_axes(store, settings)),
     )
     return run_odometry(recording, context.out)
 

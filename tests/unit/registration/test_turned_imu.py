@@ -1,5 +1,6 @@
 """An IMU that is mounted otherwise than its rig says is found by the turns of the LiDARs."""
 
+from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -7,7 +8,10 @@ import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.imu_repair import ImuRepair
-from recon4.registration.imu_repairs import repaired_imu
+from recon4.progress import Silent
+from recon4.registration.imu_repairs import with_right_axes
+from recon4.registration.stage import run_odometry
+from recon4.registration.tracked_walk import WalkInputs
 from recon4.registration.turned_imu import turned_imu
 from recon4.settings import preset
 from recon4.settings.reads import OdometryReads, part_of
@@ -40,9 +44,25 @@ def mounted(frames, R):
     return Walk(frames, imu=ImuRepair.turned(R.T).of(frames.imu))
 
 
+class _Asked(Exception):
+    """The axes were compared."""
+
+
+def _ask():
+    raise _Asked
+
+
+@pytest.mark.parametrize(("R", "asked"), [(np.eye(3), False), (LEFT, True)], ids=["right", "left"])
+def test_axes_are_compared_only_where_a_walk_contradicts_the_imu(frames, R, asked, tmp_path):
+    walk = WalkInputs(mounted(frames, R), SETTINGS, Silent(), with_right_axes=_ask)
+
+    with pytest.raises(_Asked) if asked else nullcontext():
+        assert run_odometry(walk, tmp_path).lost == 0
+
+
 @pytest.mark.parametrize("R", [OVER, LEFT], ids=["upside down", "x to the left"])
 def test_exchanged_axes_are_exchanged_back_exactly(frames, R):
-    right, found = repaired_imu(mounted(frames, R), SETTINGS)
+    right, found = with_right_axes(mounted(frames, R), SETTINGS)
 
     np.testing.assert_array_equal(found.repair.gyro, R)
     np.testing.assert_array_equal(right.imu.gyro_rad_s, frames.imu.gyro_rad_s)
@@ -52,7 +72,7 @@ def test_exchanged_axes_are_exchanged_back_exactly(frames, R):
 
 
 def test_the_mount_that_is_stated_is_the_right_one(frames):
-    _, found = repaired_imu(mounted(frames, LEFT), SETTINGS)
+    _, found = with_right_axes(mounted(frames, LEFT), SETTINGS)
 
     roll, pitch, yaw = np.deg2rad(found.turn.rpy_deg)
     stated = SE3.from_rpy(roll, pitch, yaw, t=[0.0] * 3).R
@@ -70,7 +90,7 @@ def test_reversed_forces_are_found_on_an_imu_that_was_turned(frames):
     walk = mounted(frames, OVER)
     walk.imu = replace(walk.imu, accel_m_s2=-walk.imu.accel_m_s2)
 
-    right, found = repaired_imu(walk, SETTINGS)
+    right, found = with_right_axes(walk, SETTINGS)
 
     assert found.forces_reversed < -0.8
     np.testing.assert_array_equal(right.imu.accel_m_s2, frames.imu.accel_m_s2)
