@@ -24,7 +24,7 @@ def test_markers_are_compared_and_missing_ones_named(tmp_path, markers, capsys):
 
     text = capsys.readouterr().out
     assert "A (check)" in text and "5.0" in text
-    assert "not measured: C" in text
+    assert "not measured in the map: C" in text
     assert "– No verdict at the check points: horizontal – (1 point, 3 needed)" in text
     assert "mean 14 cm horizontal, 12 cm height" in text
 

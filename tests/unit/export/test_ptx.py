@@ -52,10 +52,10 @@ def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch, en
     tiles, scans = made
     check = ptx._check
 
-    def changed(path, scans):
+    def changed(path, scans, progress):
         text = path.read_text("ascii")
         path.write_text(text + end if end else text[: text.rindex(" ")] + "\n", "ascii")
-        check(path, scans)
+        check(path, scans, progress)
 
     monkeypatch.setattr(ptx, "_check", changed)
     with pytest.raises(StoreError, match=f"reads back wrong: {what}"):

@@ -255,7 +255,8 @@ def test_geojson_says_what_each_line_is(rooms, tmp_path):
         "plan", ProductSource(rooms, PLACED, None), path, options=ProductOptions(storey="0")
     )
 
-    assert "1 window in them" in text and ", darin 1 Tür und 1 Fenster, " in said(text, "de")
+    assert "2 doors and 1 window in them, 1 column" in text
+    assert ", darin 2 Türen und 1 Fenster, 1 Stütze" in said(text, "de")
     record = json.loads(path.read_text())
     assert record["crs"]["properties"]["name"] == "urn:ogc:def:crs:EPSG::32633"
     layers = [one["properties"]["layer"] for one in record["features"]]
