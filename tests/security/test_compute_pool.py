@@ -233,6 +233,26 @@ def test_work_ends_when_its_client_leaves(root, kind):
     in_pool(root, leave)
 
 
+def test_a_pool_that_closes_lets_work_that_was_left_end_its_child(root):
+    started = root / "mine" / "pid"
+    terms = replace(EVE, access=FileAccess(write=(root / "mine",)))
+
+    async def leave_and_close(pool):
+        run = pool.run_background(Lane.SURVEY, terms, work.note_and_pause, str(started))
+        asked = asyncio.ensure_future(run)
+        await asyncio.to_thread(wait_for, partial(written, started), "it runs")
+        asked.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await asked
+        for _ in range(3):
+            await asyncio.sleep(0)  # the work is canceled, too
+        await pool.close()
+
+    in_pool(root, leave_and_close)
+
+    assert list((root / ".recon4" / "compute").iterdir()) == []
+
+
 def test_a_call_cancelled_before_its_first_step_gives_its_slot_back(root):
     async def leave_at_once(pool):
         asked = asyncio.ensure_future(pool.run_background(Lane.SIGN, EVE, work.environment))

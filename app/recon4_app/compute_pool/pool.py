@@ -102,7 +102,8 @@ class ComputePool:
         if self._preparing is not None:
             self._preparing.cancel()
         for task in self._tasks:
-            task.cancel()
+            if not task.cancelling():  # one that ends its child already is left to do so
+                task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
         kept = [child for children in self._kept.values() for child in children]
         self._kept.clear()
