@@ -23,6 +23,7 @@ from recon4.registration.choose import Trial, Trials, choose
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.hypothesis_table import row_of
 from recon4.registration.imu_choice import (
+    LESS_USED,
     choose_imu,
     start_and_fastest_turn,
     with_residuals,
@@ -55,11 +56,10 @@ class _Shown:
 
 
 def doubts_imu(choice: Choice) -> bool:
-    """Whether a walk contradicts its IMU: tracking was lost, or not all of it is used as it is."""
+    """Whether a walk contradicts its IMU: tracking was lost, it is wrong, or less of it is used."""
     tracked, imu = choice.best.tracked, choice.best.hypothesis.imu
     faults = tracked.estimate.faults if tracked.estimate else ()
-    used = imu.choice.outcome in ("as recorded", "bias removed")
-    return tracked.score.lost_in_sight > 0 or bool(faults) or not used
+    return tracked.score.lost_in_sight > 0 or bool(faults) or imu.choice.outcome in LESS_USED
 
 
 def choose_walk(recording: WalkInputs) -> Choice:

@@ -47,7 +47,7 @@ class WindowTuning:
 
 TUNING = WindowTuning()
 AS_RECORDED = ImuChoice(outcome="as recorded")
-_LESS = ("accelerometer not used", "not used")
+LESS_USED = ("accelerometer not used", "not used")
 """Outcomes that leave something of the IMU out."""
 
 
@@ -268,7 +268,7 @@ def _chosen(stages: list[Trials[TrackedWindows]]) -> ImuTrials:
     """The IMU that the last of some choices left, with all of their tables."""
     best = stages[-1].best
     imu = best.hypothesis.imu
-    if best.verdict is TrialVerdict.CLEARLY_BETTER and imu.choice.outcome in _LESS:
+    if best.verdict is TrialVerdict.CLEARLY_BETTER and imu.choice.outcome in LESS_USED:
         rival = [row for row in stages[-1].rows if row.verdict.wins][-2]
         imu = with_residuals(imu, rival.score, best.tracked.score)
     tried = tuple(

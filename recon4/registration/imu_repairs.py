@@ -50,8 +50,8 @@ def with_right_forces(
 
 def with_right_axes(
     frames: RecordedFrames, settings: OdometryReads
-) -> tuple[RecordedFrames, ImuRepairs]:
-    """The multiframes with the right axes and signs of the IMU, and what was wrong with them.
+) -> tuple[RecordedFrames, ImuRepairs] | None:
+    """The multiframes with the right axes and signs of the IMU; None = its axes are not exchanged.
 
     Args:
         frames: As recorded.
@@ -59,7 +59,7 @@ def with_right_axes(
     """
     turned = turned_imu(frames, settings)
     if turned is None or frames.imu is None:
-        return with_right_forces(frames, settings)
+        return None
     turn = ImuRepair.turned(turned.R)
     right, forces = with_right_forces(frames.with_imu(turn.of(frames.imu)), settings)
     repair = turn if forces.repair is None else forces.repair.after(turn)

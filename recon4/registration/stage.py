@@ -38,10 +38,8 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
             something was wrong with the IMU: later stages read both.
     """
     choice = choose_walk(recording)
-    if recording.with_right_axes is not None and doubts_imu(choice):
-        turned = recording.with_right_axes()
-        if turned.repairs.turn is not None:
-            recording, choice = turned, choose_walk(turned)
+    if doubts_imu(choice) and (turned := recording.with_right_axes()) is not None:
+        recording, choice = turned, choose_walk(turned)
     if recording.repairs.repair is not None:
         save_record(out / IMU_REPAIR, recording.repairs.repair)
     hypothesis = choice.best.hypothesis

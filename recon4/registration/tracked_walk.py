@@ -60,9 +60,9 @@ class WalkInputs:
     """None = the rig is that of the recording."""
     repairs: ImuRepairs = NO_REPAIRS
     """What was repaired of the IMU of the multiframes."""
-    with_right_axes: Callable[[], WalkInputs] | None = None
-    """The same with the axes of the IMU compared with the LiDARs, which takes as long as tracking
-    a hundred multiframes; None = nobody doubts them."""
+    with_right_axes: Callable[[], WalkInputs | None] = lambda: None
+    """The same with axes of the IMU exchanged as the LiDARs show it; None = they are right. It
+    takes as long as tracking a hundred multiframes."""
 
     def seen(self, hidden: HiddenPoints | None) -> RecordedFrames:
         """The multiframes without some points."""

@@ -28,13 +28,14 @@ from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.locales.coded import CodedText, unreadable
 from recon4.model.beams import beam_change
 from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
-from recon4.model.imu_repair import IMU_REPAIR, ImuRepair
+from recon4.model.imu_repair import ImuRepair
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.store.arrays import load_array, load_record, save_record
 from recon4.store.earlier_frames import EARLIER_INDEX, earlier_columns, is_earlier
+from recon4.store.imu_repair import read_imu_repair
 from recon4.store.json_files import read_object
 
 INDEX = np.dtype(
@@ -317,12 +318,11 @@ def open_frames(
     """
     path = calibration / CALIBRATED_RIG if calibration else None
     moving = odometry / MOVING_POINTS if odometry and not with_moving else None
-    repair = odometry / IMU_REPAIR if odometry else None
     return FrameStore.open(
         frames,
         load_rig(path) if path and path.is_file() else None,
         load_record(moving, HiddenPoints) if moving and moving.is_file() else None,
-        imu_repair=load_record(repair, ImuRepair) if repair and repair.is_file() else None,
+        imu_repair=read_imu_repair(odometry) if odometry else None,
     )
 
 

@@ -71,10 +71,11 @@ def _odometry(
         before = earlier_walks(earlier) if earlier else None
         return WalkInputs(right, settings, context.progress, aiding, before, repairs)
 
-    recording = replace(
-        inputs(*with_right_forces(store, settings)),
-        with_right_axes=lambda: inputs(*with_right_axes(store, settings)),
-    )
+    def turned() -> WalkInputs | None:
+        found = with_right_axes(store, settings)
+        return inputs(*found) if found is not None else None
+
+    recording = replace(inputs(*with_right_forces(store, settings)), with_right_axes=turned)
     return run_odometry(recording, context.out)
 
 

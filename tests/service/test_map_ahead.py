@@ -1,12 +1,12 @@
 """What the page *Map* reads first is made before somebody asks for it."""
 
-import time
+from functools import partial
 
 import pytest
 
-from tests.deadlines import HANG_S
 from tests.project_builder import build_project
 from tests.served import served
+from tests.service.running import wait_for
 
 FIRST = {"index.json", "xyz.bin", "normalized.bin"}
 
@@ -26,13 +26,7 @@ def made(server):
 
 @pytest.fixture
 def prepared(server):
-    def wait():
-        end_s = time.monotonic() + HANG_S
-        while made(server) != FIRST:
-            assert time.monotonic() < end_s, made(server)
-            time.sleep(0.05)
-
-    return wait
+    return partial(wait_for, lambda: made(server) == FIRST, "what is read first is made")
 
 
 def test_by_the_page_of_a_project_that_has_a_map(server, prepared):

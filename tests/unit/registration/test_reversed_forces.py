@@ -10,24 +10,11 @@ from recon4.model.imu_repair import ImuRepair
 from recon4.registration.reversed_forces import reversed_forces
 from recon4.settings import preset
 from recon4.settings.reads import OdometryReads, part_of
+from tests.unit.registration.other_imu import Walk
 
 SETTINGS = part_of(preset("indoor"), OdometryReads)
 OVER = SE3.from_rpy(np.pi, 0.0, 0.0, t=[0.0] * 3)
 """From a body that stands to one that hangs."""
-
-
-class Walk:
-    """A recording with another IMU or rig."""
-
-    def __init__(self, frames, *, imu=None, rig=None):
-        self._frames, self.imu, self.rig = frames, imu or frames.imu, rig or frames.rig
-        self.t_mid_ns = frames.t_mid_ns
-
-    def __len__(self):
-        return len(self._frames)
-
-    def __getitem__(self, k):
-        return self._frames[k]
 
 
 def hanging(rig):

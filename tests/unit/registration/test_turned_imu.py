@@ -15,28 +15,12 @@ from recon4.registration.tracked_walk import WalkInputs
 from recon4.registration.turned_imu import turned_imu
 from recon4.settings import preset
 from recon4.settings.reads import OdometryReads, part_of
+from tests.unit.registration.other_imu import Walk
 
 SETTINGS = part_of(preset("indoor"), OdometryReads)
 OVER = np.diag([1.0, -1.0, -1.0])
 LEFT = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 SKEW = so3_exp([0.3, -0.2, 0.5])
-
-
-class Walk:
-    """A recording with another IMU or rig."""
-
-    def __init__(self, frames, *, imu=None, rig=None):
-        self._frames, self.imu, self.rig = frames, imu or frames.imu, rig or frames.rig
-        self.t_mid_ns = frames.t_mid_ns
-
-    def __len__(self):
-        return len(self._frames)
-
-    def __getitem__(self, k):
-        return self._frames[k]
-
-    def with_imu(self, imu):
-        return Walk(self._frames, imu=imu, rig=self.rig)
 
 
 def mounted(frames, R):

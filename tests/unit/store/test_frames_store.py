@@ -19,6 +19,7 @@ from recon4.model.samples import ImuSamples
 from recon4.store.arrays import save_record
 from recon4.store.earlier_frames import EARLIER_INDEX
 from recon4.store.frames import POINTS, FrameStore, FrameWriter, open_frames
+from recon4.store.imu_repair import FORCES_REVERSED
 from tests.deadlines import HANG_S
 
 
@@ -249,6 +250,7 @@ from recon4.errors import NoSpace
 from recon4.model.hidden_points import HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import load_rig
+from recon4.store.imu_repair import FORCES_REVERSED
 from recon4.store.frames import FrameWriter
 from pathlib import Path
 n = 20_000
@@ -307,14 +309,15 @@ def test_points_that_a_stage_hides_are_not_there_in_other_processes_either(writt
         assert len(store[2]) == 7
 
 
+@pytest.mark.parametrize("name", [IMU_REPAIR, FORCES_REVERSED], ids=["today", "before"])
 def test_what_the_odometry_repaired_of_an_imu_is_right_wherever_its_folder_is_given(
-    written, tmp_path
+    written, tmp_path, name
 ):
     folder = written[0]
     samples = ImuSamples(np.array([1, 2], np.int64), np.ones((2, 3)), np.full((2, 3), 9.8))
     save_record(folder / "imu.npz", samples)
     (tmp_path / "odometry").mkdir()
-    save_record(tmp_path / "odometry" / IMU_REPAIR, ImuRepair.reversed_forces())
+    save_record(tmp_path / "odometry" / name, ImuRepair.reversed_forces())
 
     recorded = open_frames(folder, None)
     opened = open_frames(folder, None, tmp_path / "odometry", with_moving=True)
