@@ -80,8 +80,10 @@ def _stated(trials: Trials[TrackedWalk]) -> Trial[TrackedWalk]:
     imu = best.hypothesis.imu
     if imu.choice.outcome != "accelerometer not used" or imu.choice.with_m is not None:
         return best
-    won = [row for row in trials.rows if row.verdict.wins]
-    rival = next(row for row in reversed(won) if row.hypothesis.imu.choice != imu.choice)
+    others = [row for row in trials.rows if row.hypothesis.imu.choice != imu.choice]
+    rival = next((row for row in reversed(others) if row.verdict.wins), None)
+    if rival is None:  # the windows left the accelerometer out, not a walk
+        return best
     stated = with_residuals(imu, rival.score, best.row.score)
     return replace(best, row=replace(best.row, hypothesis=replace(best.hypothesis, imu=stated)))
 

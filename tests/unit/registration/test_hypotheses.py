@@ -1,17 +1,18 @@
 """Moving objects that pull the odometry along, with and without fixes that show it."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.odometry_figures import MovingFigures, MovingOutcome
+from recon4.model.odometry_figures import ImuChoice, MovingFigures, MovingOutcome
 from recon4.model.samples import ImuSamples
-from recon4.model.tried_hypotheses import Because
+from recon4.model.tried_hypotheses import Because, TrialVerdict
 from recon4.progress import Silent
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.hypotheses import Choice, choose_walk
+from recon4.registration.hypotheses import Choice, _stated, choose_walk
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption
 from recon4.registration.imu_choice import AS_RECORDED, start_and_fastest_turn
 from recon4.registration.pulled_motion import less_sure
@@ -153,3 +154,12 @@ def test_forces_that_lose_the_track_outside_of_all_windows_are_not_used(frames) 
     assert first.lost > alone.lost == 0
     choice = found.best.hypothesis.imu.choice
     assert choice.outcome == "accelerometer not used" and choice.with_m > choice.without_m
+
+
+def test_an_accelerometer_that_only_windows_left_out_states_no_rival_walk() -> None:
+    windows = ImuAssumption(None, ImuChoice(outcome="accelerometer not used"))
+    hypothesis = SimpleNamespace(imu=windows)
+    best = SimpleNamespace(hypothesis=hypothesis)
+    row = SimpleNamespace(hypothesis=hypothesis, verdict=TrialVerdict.FIRST)
+
+    assert _stated(SimpleNamespace(best=best, rows=[row])) is best
