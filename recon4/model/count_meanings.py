@@ -73,6 +73,7 @@ _CAPTURES = {
     "records_of_unknown_device": _lost("records", apart=True),
     "records_without_time": _lost("records", apart=True),
     "files_cut": _STATED,
+    "captures_joined": _repaired(),
 }
 _PACKETS = {
     "packets": _READ,

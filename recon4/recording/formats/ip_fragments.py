@@ -100,7 +100,7 @@ class IpFragments:
         if not data:
             return
         del self._open[key]
-        length = int.from_bytes(data[4:6], "big")
+        length = int.from_bytes(data[4:6], "big") or len(data)  # 0: left to the network card
         if not _UDP_HEADER <= length <= len(data):
             self._lost += [-1] * len(waiting.parts)
             return

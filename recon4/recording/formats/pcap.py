@@ -5,6 +5,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from io import SEEK_CUR
 from itertools import islice
 from pathlib import Path
 from typing import IO
@@ -19,19 +20,12 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.trajectory import Times
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.formats.ip_fragments import Fragment, IpFragments, JoinedDatagram
+from recon4.recording.formats.pcapng import CLASSIC, MAX_PACKET_BYTES, Packet, read_packets
 from recon4.recording.formats.pcapng import MAGIC as PCAPNG
-from recon4.recording.formats.pcapng import MAX_PACKET_BYTES, Packet, read_packets
 from recon4.recording.formats.unread_records import UnreadRecords
 from recon4.recording.report import ImportReport
 from recon4.units import SECOND_NS
 
-_CLASSIC = {
-    b"\xd4\xc3\xb2\xa1": ("<", 1000),
-    b"\xa1\xb2\xc3\xd4": (">", 1000),
-    b"\x4d\x3c\xb2\xa1": ("<", 1),
-    b"\xa1\xb2\x3c\x4d": (">", 1),
-}
-"""First four bytes -> byte order and timestamp unit [ns]."""
 _ETHERTYPE_AT = {1: 12, 113: 14, 276: 0}
 """Link type (Ethernet, Linux cooked 1 and 2) -> offset of the ethertype in a packet."""
 _IP_AT = {1: 14, 113: 16, 276: 20, 101: 0, 12: 0, 14: 0, 228: 0, 0: 4, 108: 4}
@@ -77,7 +71,8 @@ def read_pcap(
     datagrams for us: ``records_not_udp``, ``records_fragment`` (an IP fragment whose others are
     missing), ``records_cut`` (longer than what was captured), with
     ports, sizes and protocols as details of the counts. A file that ends inside a record yields all
-    before it, and ``report.outcome`` becomes ``lossy``.
+    before it, and ``report.outcome`` becomes ``lossy``. Captures that follow the first one in the
+    file are read, too (``captures_joined``).
 
     Raises:
         UnknownFormat: If the file is not a capture of Ethernet, Linux cooked or raw IP packets.
@@ -105,18 +100,34 @@ def is_pcap(path: Path) -> bool:
     """Whether the first bytes are those of a pcap or pcapng file."""
     with path.open("rb") as file:
         magic = file.read(4)
-    return magic in _CLASSIC or magic == PCAPNG
+    return magic in CLASSIC or magic == PCAPNG
 
 
 def _records(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
+    """The records of a capture, and of those that follow it in the file, as ``cat`` joins them."""
+    damaged = report.counts["files_cut"]
     magic = file.read(4)
     if not magic:
         raise EmptyRecording(CodedText("file-empty", name=name))
+    yield from _capture(file, name, magic, report=report)
+    while report.counts["files_cut"] == damaged and (magic := file.read(4)):
+        report.count("captures_joined")
+        where = f"{name}, capture at byte {file.tell() - len(magic)}"
+        try:
+            yield from _capture(file, where, magic, report=report)
+        except (EmptyRecording, UnknownFormat) as error:
+            _salvaged(report, name, error=error)
+
+
+def _capture(
+    file: IO[bytes], name: str, magic: bytes, *, report: ImportReport
+) -> Iterator[_Records]:
+    """The records of one capture, whose first four bytes were read."""
     if magic == PCAPNG:
-        file.seek(0)
+        file.seek(-len(magic), SEEK_CUR)
         yield from _next_generation(file, name, report)
-    elif magic in _CLASSIC:
-        yield from _classic(file, name, _CLASSIC[magic], report=report)
+    elif magic in CLASSIC:
+        yield from _classic(file, name, CLASSIC[magic], report=report)
     else:
         raise UnknownFormat(CodedText("pcap-magic", name=name, magic=magic.hex(" ")))
 
@@ -131,13 +142,16 @@ def _classic(
     # Above the 16 bits: how long the checksums of frames are.
     link_type = struct.unpack(f"{order}I", header[16:])[0] & 0xFFFF
     _require_link_type(link_type, name)
-    rest, at = b"", 24
+    rest, at = b"", file.tell()
     while chunk := file.read(_CHUNK):
         data = rest + chunk
         stamps, end, broken = _walk(data, order)
         if stamps:
             yield _batch(stamps, data, unit_ns, link_type=link_type)
         rest, at = data[end:], at + end
+        if broken and (rest[:4] in CLASSIC or rest[:4] == PCAPNG):
+            file.seek(-len(rest), SEEK_CUR)
+            return
         if broken:
             captured = struct.unpack_from(f"{order}I", rest, 8)[0]
             _salvaged(report, name, at=at, most=MAX_PACKET_BYTES, captured=captured)
@@ -230,7 +244,9 @@ def _datagrams(records: _Records, unread: UnreadRecords, fragments: IpFragments)
     fits = is_udp & (at + 28 <= end)
     whole = (_word(records, at + 6) & 0x3FFF) == 0
     udp = at + 4 * (_byte(records, at) & 15)
-    length = _word(records, udp + 4) - 8
+    stated = _word(records, udp + 4)
+    # 0: left to the network card, which had not yet filled it in; the IP header has it.
+    length = np.where(stated, stated, _ip_end(records, at) - udp) - 8
     inside = fits & (length >= 0) & (udp + 8 + length <= end)
     unread.add_others(ethertype[~is_udp], protocol[~is_udp])
     cut = is_udp & whole & ~inside
@@ -255,9 +271,7 @@ def _fragment(records: _Records, row: int, at: NDArray[np.int64]) -> Fragment:
     here = at[row : row + 1]
     word = int(_word(records, here + 6)[0])
     begin = int(here[0] + 4 * (_byte(records, here)[0] & 15))
-    end = min(
-        int(here[0] + _word(records, here + 2)[0]), int(records.start[row] + records.length[row])
-    )
+    end = int(_ip_end(records, at)[row])
     return Fragment(
         t_ns=int(records.t_ns[row]),
         source=int(_long(records, here + 12)[0]),
@@ -267,6 +281,12 @@ def _fragment(records: _Records, row: int, at: NDArray[np.int64]) -> Fragment:
         is_last=not word & 0x2000,
         data=records.buffer[begin:end].tobytes(),
     )
+
+
+def _ip_end(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Where the IP packets end: as their headers say (0 = not known), or with the record."""
+    stated, end = _word(records, at + 2), records.start + records.length
+    return np.where(stated, np.minimum(at + stated, end), end)
 
 
 def _with_joined(

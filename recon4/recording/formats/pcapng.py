@@ -8,12 +8,20 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from io import SEEK_CUR
 from typing import IO, NamedTuple
 
 from recon4.errors import CorruptFile
 from recon4.locales.coded import CodedText
 
 MAGIC = b"\x0a\x0d\x0d\x0a"
+CLASSIC = {
+    b"\xd4\xc3\xb2\xa1": ("<", 1000),
+    b"\xa1\xb2\xc3\xd4": (">", 1000),
+    b"\x4d\x3c\xb2\xa1": ("<", 1),
+    b"\xa1\xb2\x3c\x4d": (">", 1),
+}
+"""First four bytes of a pcap file, which has no blocks: byte order and unit of its times [ns]."""
 MAX_BLOCK_BYTES = 16 << 20
 MAX_INTERFACES = 1024
 MAX_PACKET_BYTES = 262_144
@@ -48,7 +56,7 @@ def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Pa
     """Stream the packets of a pcapng file from its start.
 
     Args:
-        file: Open for reading bytes, at its start.
+        file: Open for reading bytes, at its start; a pcap file may follow, which is left.
         skipped: Receives the name of a count for a packet that has no usable time.
 
     Raises:
@@ -56,6 +64,9 @@ def read_packets(file: IO[bytes], skipped: Callable[[str], None]) -> Iterator[Pa
     """
     order, interfaces, at = "<", list[Interface](), 0
     while head := _read(file, 8):
+        if head[:4] in CLASSIC:
+            file.seek(-len(head), SEEK_CUR)
+            return
         where = f"block at byte {at}"
         order = _order(file, head, order, where=where)
         kind, body, length = _block(file, head, order, where=where)
@@ -83,7 +94,7 @@ def _order(file: IO[bytes], head: bytes, order: str, *, where: str) -> str:
     if head[:4] != MAGIC:
         return order
     magic = _read(file, 4)
-    file.seek(-len(magic), 1)
+    file.seek(-len(magic), SEEK_CUR)
     if magic not in {b"\x4d\x3c\x2b\x1a", b"\x1a\x2b\x3c\x4d"}:
         raise CorruptFile(CodedText("pcapng-order", where=where, magic=magic.hex(" ")))
     return "<" if magic[0] == 0x4D else ">"

@@ -16,15 +16,17 @@ from tests.warned import K, warned
 SECONDS, NANOSECONDS = 1_700_000_000, 123_456_789
 
 
-def udp(payload=b"\x07" * 40, *, source=(10, 0, 0, 7), port=2368, options=b"", fragment=0):
-    """IPv4 and UDP around a payload."""
+def udp(payload=b"\x07" * 40, *, port=2368, options=b"", fragment=0, lengths=(None, None)):
+    """IPv4 and UDP around a payload; ``lengths`` are those in their headers, if others."""
     words = 5 + len(options) // 4
+    of_ip, of_udp = lengths
+    of_ip = words * 4 + 8 + len(payload) if of_ip is None else of_ip
+    of_udp = 8 + len(payload) if of_udp is None else of_udp
     ip = struct.pack(
         ">BBHHHBBH4s4s",
-        0x40 | words, 0, words * 4 + 8 + len(payload), 1, fragment, 64, 17, 0,
-        bytes(source), bytes((255,) * 4),
+        0x40 | words, 0, of_ip, 1, fragment, 64, 17, 0, bytes((10, 0, 0, 7)), bytes((255,) * 4),
     )  # fmt: skip
-    return ip + options + struct.pack(">HHHH", 2368, port, 8 + len(payload), 0) + payload
+    return ip + options + struct.pack(">HHHH", 2368, port, of_udp, 0) + payload
 
 
 def ethernet(packet, *, tags=b"", ethertype=0x0800):
@@ -245,6 +247,50 @@ def test_a_pcapng_file_of_packets_without_times_says_so(tmp_path):
 
     with pytest.raises(EmptyRecording, match="packet that has a time; 1 have none"):
         read(written(tmp_path, content))
+
+
+def numbered(first, count):
+    """Datagrams whose payloads are numbers."""
+    return [ethernet(udp(bytes([first + k]) * 40)) for k in range(count)]
+
+
+@pytest.mark.parametrize("first", [classic, next_generation])
+@pytest.mark.parametrize("second", [classic, next_generation])
+def test_captures_that_follow_each_other_in_a_file_are_read(tmp_path, first, second):
+    content = first(numbered(0, 3)) + second(numbered(3, 2)) + classic(numbered(5, 1), order=">")
+
+    batches, report = read(written(tmp_path, content))
+
+    sections = first is second is next_generation  # which a pcapng file may have
+    found = [b.payload(row)[0] for b in batches for row in range(len(b))]
+    assert found == list(range(6))
+    assert report.counts == {"records": 6, "captures_joined": 1 if sections else 2}
+    assert report.outcome == "complete"
+
+
+@pytest.mark.parametrize(
+    ("second", "why"),
+    [(classic([], link_type=147), "link type 147"), (classic([])[:20], "cut inside")],
+)
+def test_a_second_capture_that_is_none_is_named_with_its_place(tmp_path, second, why):
+    first = classic(numbered(0, 3))
+
+    batches, report = read(written(tmp_path, first + second))
+
+    assert sum(map(len, batches)) == 3
+    assert report.outcome == "lossy"
+    (said,) = report.said()
+    assert f"capture.pcap, capture at byte {len(first)}" in said and why in said
+
+
+@pytest.mark.parametrize("lengths", [(None, 0), (0, 0)])
+def test_a_length_that_was_left_to_the_network_card_is_that_of_the_packet(tmp_path, lengths):
+    padding = bytes(6) if lengths[0] is None else b""
+    packet = ethernet(udp(lengths=lengths)) + padding
+
+    (batch,), report = read(written(tmp_path, classic([packet])))
+
+    assert (batch.length.tolist(), report.counts) == ([40], {"records": 1})
 
 
 def test_what_the_writer_writes_is_what_the_reader_reads(tmp_path):
