@@ -34,6 +34,7 @@ db3-table-hides = { $name }: die Tabelle { $table } verbirgt die Nummern ihrer Z
 db3-unreadable = { $name }: keine lesbare SQLite-Datenbank: { $why }
 db3-column = { $name }: erwartet wird eine Spalte { $column } in { $table }, erhalten: { $got }
 db3-topics = { $name }: Tabelle topics: erwartet werden höchstens { $max_topics } Topics, jedes mit eigener Nummer, erhalten: { $number } nach { $count }
+db3-no-topics = { $name }: die Tabelle topics ist leer: was die { $count } Nachrichten sind, ist nicht bekannt
 mcap-summary = { $where }: erwartet werden Schemas, Blöcke und Statistik, nicht alles davon ist da
 mcap-footer = { $file }: erwartet wird ein Fuß bei Byte { $footer_at }, er ist abgeschnitten
 mcap-summary-place = { $file }: erwartet wird eine Übersicht von höchstens { $max_summary_bytes } Byte vor Byte { $footer_at }, erhalten: eine ab Byte { $start }

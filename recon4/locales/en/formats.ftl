@@ -34,6 +34,7 @@ db3-table-hides = { $name }: table { $table } hides the numbers of its rows
 db3-unreadable = { $name }: no readable SQLite database: { $why }
 db3-column = { $name }: expected a column { $column } in { $table }, got { $got }
 db3-topics = { $name }: table topics: expected at most { $max_topics } topics, each with a number of its own, got { $number } after { $count }
+db3-no-topics = { $name }: its table topics is empty: what the { $count } messages are is not known
 mcap-summary = { $where }: expected schemas, chunks and statistics, not all are there
 mcap-footer = { $file }: expected a footer at byte { $footer_at }, it is cut off
 mcap-summary-place = { $file }: expected a summary of at most { $max_summary_bytes } bytes before byte { $footer_at }, got one from byte { $start }

@@ -80,10 +80,10 @@ class Db3:
         self._damage = ""
         whole, page_bytes = _pages(path)
         check_table_tree(path, 1, page_bytes)
-        with _reading(path.name):
+        with _reading(path.name, whole=whole):
             self._database = self._open(path, whole=whole)
         try:
-            with _reading(path.name):
+            with _reading(path.name, whole=whole):
                 roots = _require_tables(self._database, path.name)
                 for root in roots.values():
                     check_table_tree(path, root, page_bytes)
@@ -206,6 +206,8 @@ class Db3:
 
     def _index(self, topics: dict[int, Topic]) -> BagIndex:
         t_ns, row_id, number = self._rows
+        if len(number) and not topics:
+            raise CorruptFile(CodedText("db3-no-topics", name=self._name, count=len(number)))
         counts = Counter(number.tolist())
         for k, topic in topics.items():
             topic.msgcount = counts.pop(k, 0)
@@ -260,10 +262,12 @@ def _span(t_ns: NDArray[np.int64]) -> tuple[int, int]:
 
 
 @contextmanager
-def _reading(name: str) -> Iterator[None]:
+def _reading(name: str, *, whole: bool) -> Iterator[None]:
     try:
         yield
     except (apsw.Error, MemoryError, OSError, ValueError) as error:  # ValueError: no UTF-8
+        if not whole:
+            raise CorruptFile(CodedText("db3-cut-off", name=name)) from error
         raise CorruptFile(CodedText("db3-unreadable", name=name, why=str(error))) from error
 
 

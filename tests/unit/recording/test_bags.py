@@ -1,6 +1,8 @@
 """Bags of every kind, whole and cut off."""
 
 import shutil
+import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pytest
@@ -232,6 +234,34 @@ def test_an_empty_bag_is_named(tmp_path):
         pass
 
     with pytest.raises(EmptyRecording, match="a bag without messages"):
+        messages(path)
+
+
+@pytest.mark.parametrize(
+    ("statement", "why"),
+    [
+        (
+            "DELETE FROM topics",
+            r"its table topics is empty: what the \d+ messages are is not known",
+        ),
+        ("DROP TABLE topics", "expected a table topics, got nothing of that name"),
+        ("DELETE FROM messages", "a bag without messages"),
+    ],
+)
+def test_a_database_that_lost_a_table_says_which(rooms, statement, why, tmp_path):
+    path = cut(rooms["db3"], 1.0, tmp_path)
+    with closing(sqlite3.connect(path, isolation_level=None)) as database:
+        database.execute(statement)
+
+    with pytest.raises(RecordingError, match=why):
+        messages(path)
+
+
+def test_a_database_cut_off_behind_its_first_page_says_so(rooms, tmp_path):
+    path = cut(rooms["db3"], 1.0, tmp_path)
+    path.write_bytes(path.read_bytes()[:4096])
+
+    with pytest.raises(CorruptFile, match="cut off, not one message is left"):
         messages(path)
 
 
