@@ -68,7 +68,7 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     write("\n".join(_lines(found, of_terminal())))
     page = out.with_suffix(".html")
     report = methods.calibration_report(method, found, sources, folder=folder)
-    write_calibration_page(page, report)
+    write_calibration_page(page, report, of_terminal())
     say("calibrated-page", page=str(page))
     _write(found, out)
 

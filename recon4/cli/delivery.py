@@ -62,7 +62,7 @@ def report(
         draft=draft, key=signer or report_files.server_key(project), language=spoken
     )
     if html:
-        made = report_files.write_html(project, html, draft=draft)
+        made = report_files.write_html(project, html, wish)
         write(str(html))
         say_approval(made.approval)
     if client:

@@ -136,10 +136,15 @@ def _relation_errors(result: Path, relations: Path) -> RelationErrors:
 
 def _write_report(project: Path, found: Evaluation, path: Path) -> None:
     from recon4.report.assessment import assess
-    from recon4.report.html import write_report
+    from recon4.report.html import render
+    from recon4.report.known_texts import known_texts
     from recon4.report.project import project_facts
+    from recon4.report.translation import in_language
+    from recon4.store.atomic import write_text
 
-    write_report(path, assess(project_facts(project, found)))
+    language = of_terminal()
+    page = render(assess(project_facts(project, found)))
+    write_text(path, in_language(page, language, known_texts(project, language)))
 
 
 def _marker_table(

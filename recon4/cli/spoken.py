@@ -14,13 +14,11 @@ from typing import Any
 
 from recon4.locales.coded import CodedText, said
 from recon4.locales.languages import ENGLISH, ROOT
-from recon4.locales.texts import Texts, messages_of, readable
+from recon4.locales.texts import Texts, messages_of, pattern_of
 
 _TITLES = {"argument": "Arguments", "option": "Options"}
 """Of the boxes of a help, by the kind of parameter."""
 _METAVARS = ("options_metavar", "subcommand_metavar")
-_VALUE = re.compile("‹(.+?)›")
-"""Of a readable text."""
 
 
 def paragraphs(text: str | None) -> list[str]:
@@ -120,7 +118,5 @@ def _patterns() -> tuple[tuple[str, re.Pattern[str]], ...]:
     found = []
     for name, message in {**files[0], **fields}.items():
         assert message.value is not None, name
-        parts = _VALUE.split(readable(message.value))
-        written = (f"(?P<{one}>.*?)" if k % 2 else re.escape(one) for k, one in enumerate(parts))
-        found.append((name, re.compile("".join(written), re.DOTALL)))
+        found.append((name, pattern_of(message.value)))
     return tuple(sorted(found, key=lambda pair: -len(pair[1].pattern)))  # the longest says most

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,8 +18,10 @@ from recon4.report.client_front import shown
 from recon4.report.client_html import client_html
 from recon4.report.client_report import ReportExtras, client_report
 from recon4.report.client_words import Words, words
+from recon4.report.known_texts import known_texts
 from recon4.report.pdf import pdf_of, require_pdf
 from recon4.report.project import project_facts
+from recon4.report.translation import in_language
 from recon4.report.tuning import CLIENT_REPORT
 from recon4.review.acknowledgments import (
     acknowledgments,
@@ -112,20 +114,42 @@ def write_client_html(root: Path, path: Path, wish: ReportWish) -> WrittenReport
     return WrittenReport(state, signed=False)
 
 
-def write_html(root: Path, path: Path, *, draft: bool = False) -> WrittenReport:
+def write_html(root: Path, path: Path, wish: ReportWish) -> WrittenReport:
     """Write the report with all figures, as the run made it, with its approval and notes.
+
+    Args:
+        root: The project folder.
+        path: File to write, replaced only when the new one is complete.
+        wish: Language.
 
     Raises:
         Altered: If the map was approved and is not what was approved.
         StoreError: If there is no report, or a file is damaged.
     """
-    state, _ = checked_approval(root, draft=draft)
+    state, _ = checked_approval(root, draft=wish.draft)
     source = root / HTML
     if not source.is_file():
         raise StoreError(CodedText("report-no-run", root=str(root)))
     with atomic_file(path) as temporary, temporary.open("wb") as file:
-        file.writelines(report_with_notes(root, source))
+        file.writelines(said_report(root, report_with_notes(root, source), wish.language))
     return WrittenReport(state, signed=False)
+
+
+def said_report(root: Path, page: Iterable[bytes], language: str) -> Iterable[bytes]:
+    """The report of the latest run in a language; the file has it in English.
+
+    Args:
+        root: The project folder.
+        page: The report, in parts.
+        language: Its code.
+
+    Raises:
+        StoreError: If a file with what it quotes is damaged.
+    """
+    if language == ENGLISH:
+        return page
+    text = b"".join(page).decode("utf-8", errors="replace")
+    return (in_language(text, language, known_texts(root, language)).encode("utf-8"),)
 
 
 def checked_approval(

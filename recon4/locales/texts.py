@@ -23,6 +23,8 @@ Shown = bool | int | float | str
 Functions = Mapping[str, Callable[..., str]]
 _BEGIN = re.compile(r"^([a-zA-Z][\w-]*) *=", re.MULTILINE)
 """Where a message begins; what belongs to it is indented."""
+_VALUE = re.compile("‹(.+?)›")
+"""Of a readable text."""
 
 
 class Texts:
@@ -223,3 +225,10 @@ def _readable(element: ast.TextElement | ast.Placeable) -> str:
     if isinstance(element.expression, ast.StringLiteral):
         return str(element.expression.parse()["value"])
     return "/".join(f"‹{name}›" for name in sorted(quoted_by(ast.Pattern([element]))))
+
+
+def pattern_of(pattern: ast.Pattern) -> re.Pattern[str]:
+    """What recognizes a text and the values that it quotes, each a group."""
+    parts = _VALUE.split(readable(pattern))
+    written = (f"(?P<{one}>.*?)" if k % 2 else re.escape(one) for k, one in enumerate(parts))
+    return re.compile("".join(written), re.DOTALL)

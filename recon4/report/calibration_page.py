@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.geometry.se3 import Array
+from recon4.locales.coded import said
+from recon4.locales.languages import ENGLISH
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.report.beams import beam_charts, beam_rows
 from recon4.report.chart_groups import framed
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.html import environment
 from recon4.report.rig import RigRow, rig_charts, rig_rows
+from recon4.report.translation import in_language
 from recon4.report.tuning import CALIBRATION_PAGE
 from recon4.store.atomic import write_text
 
@@ -44,8 +47,8 @@ class CalibrationPage:
     slices: Sequence[CloudSlice] = ()
 
 
-def write_calibration_page(path: Path, page: CalibrationPage) -> None:
-    """Write the page as one HTML file without scripts and network.
+def write_calibration_page(path: Path, page: CalibrationPage, language: str = ENGLISH) -> None:
+    """Write the page as one HTML file without scripts and network, in a language.
 
     Raises:
         StoreError: If the file cannot be written.
@@ -56,17 +59,17 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
         .render(
             title=page.title,
             method=page.method,
-            outcome=page.outcome,
+            outcome=said(page.outcome, language),
             rows=rig_rows(page.figures) or page.rows,
             charts=framed(rig_charts(page.figures)),
             beams=beam_rows(page.figures),
             beam_charts=framed(beam_charts(page.figures)),
             slices=framed([(_chart(one), one.name) for one in page.slices]),
             thickness_m=CALIBRATION_PAGE.thickness_m,
-            report_lines=page.report_lines,
+            report_lines=[said(line, language) for line in page.report_lines],
         )
     )
-    write_text(path, text)
+    write_text(path, in_language(text, language, {}))
 
 
 def _chart(one: CloudSlice) -> str:

@@ -56,3 +56,14 @@ def test_the_report_is_also_a_page_in_the_language_of_the_request(server):
 def test_a_project_that_is_not_there_has_no_report(server):
     for name in ("report.pdf", "client.html"):
         assert server.get(f"/api/projects/nothing/{name}").status_code == 404
+
+
+def test_the_quality_report_is_in_the_language_of_the_request_and_its_file_in_english(server, root):
+    for name, state in (("draft", "Von niemandem freigegeben."), ("approved", "freigegeben von")):
+        address, file = f"/api/projects/{name}/report", root / name / "report.html"
+
+        german = server.get(address, headers={"Accept-Language": "de"}).text
+        english = server.get(address, headers={"Accept-Language": "en"}).text
+
+        assert state in german
+        assert english == file.read_text("utf-8")

@@ -179,16 +179,20 @@ def download(project_id: str, name: str, server: Server) -> FileResponse:
     dependencies=SHARED,
     summary="Report",
 )
-def report(project_id: str, server: Server, who: Who) -> Response:
-    """Show the quality report; that of a draft with the notes of reviewers, except to guests."""
+def report(project_id: str, server: Server, who: Who, *, language: Language) -> Response:
+    """Show the quality report; that of a draft with the notes of reviewers, except to guests.
+
+    It is in the language of the request; the file of the run is in English.
+    """
+    from recon4.delivery.report_files import said_report  # brings what draws
+
     path = server.projects.result(project_id, "report.html")
-    headers = {"Content-Security-Policy": REPORT_POLICY}
-    if who.project:
-        return FileResponse(path, media_type="text/html; charset=utf-8", headers=headers)
+    root = server.projects.folder(project_id)
+    page = [path.read_bytes()] if who.project else report_with_notes(root, path)
     return StreamingResponse(
-        report_with_notes(server.projects.folder(project_id), path),
+        iter(said_report(root, page, language)),
         media_type="text/html; charset=utf-8",
-        headers=headers,
+        headers={"Content-Security-Policy": REPORT_POLICY},
     )
 
 
