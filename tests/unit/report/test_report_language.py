@@ -33,8 +33,8 @@ from tests.planar_walks import along, furnished_room, scanned, write_carmen
 from tests.unit.report.test_report import DERIVED, EVIL, made_facts
 
 SAME = {
-    EVIL, "Drift", "joint", "earlier ring", "GNSS", "IMU", "Import",
-    "Rig", "RMSE", "SHA-256", "min:s", "cm", "max", "min", "median", "pcap", "2σ [cm]", "laser", "frames", "front, OS1",
+    EVIL, "Drift", "joint", "earlier ring", "GNSS", "IMU", "Import", "Rig", "RMSE", "SHA-256",
+    "min:s", "cm", "max", "min", "median", "pcap", "2σ [cm]", "laser", "frames", "front, OS1",
 }  # fmt: skip
 """Names, units and words that are those of both languages."""
 CODE = re.compile(r"[A-Z0-9-]{4,}|[\w.]+\.(log|npz|png|pcap)|[\d.+−± -]*(cm|mm|m|s|Hz|MB)?")
