@@ -121,7 +121,8 @@ def audit(
 ) -> JointEstimate | None:
     """Estimate the rig from a few short windows; None if no window has planes.
 
-    If the estimate is far from the rig file, mounts with exchanged axes are tried as well.
+    If the estimate is far from the rig file, mounts with exchanged axes are tried as well, on
+    all points: those of a LiDAR whose mount is wrong pass for points on moving objects.
 
     Args:
         walk: The recording.
@@ -131,10 +132,14 @@ def audit(
         progress: Counts rounds.
     """
     s = tuned(CalibrationTuning, settings.calibration)
+    estimator = _Estimator(settings, progress)
     windows = walk.windows(s.audit_windows, s.audit_window_s)
-    found = _Estimator(settings, progress).estimate(windows, start, parameters)
+    found = estimator.estimate(windows, start, parameters)
     if found is not None and _is_near(found, walk.frames.rig):
         return _counted_from(found, walk.frames.rig)
+    walk = walk.with_all_points()
+    windows = walk.windows(s.audit_windows, s.audit_window_s)
+    found = estimator.estimate(windows, start, parameters)
     others = _from_other_mounts(walk, start, parameters, settings=settings, progress=progress)
     best = max([found, *others], key=_shared_points)
     if best is None or _shared_points(best) < AUDIT.clearly * _shared_points(found):

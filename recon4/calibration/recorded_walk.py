@@ -65,6 +65,10 @@ class RecordedWalk:
         """The same recording with the mounts and clocks of another rig."""
         return replace(self, frames=self.frames.with_rig(rig))
 
+    def with_all_points(self) -> RecordedWalk:
+        """The same recording with the points that the odometry took for moving objects."""
+        return replace(self, frames=replace(self.frames, hidden=None))
+
     def rows(self, count: int, seconds: float, *, with_lost: bool = False) -> list[range]:
         """Multiframes of windows spread over the walk where the body turns most.
 

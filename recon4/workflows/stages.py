@@ -176,7 +176,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 
 FRAMES = Stage("frames", 56, ImportReads, _frames, FrameFigures, percent=9.0)
 CALIBRATION = Stage(
-    "calibration", 16, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
+    "calibration", 17, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
 )
 VERIFICATION = Stage(
     "verification", 4, VerificationReads, _verification, VerificationFigures, percent=2.0

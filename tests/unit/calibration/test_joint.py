@@ -10,6 +10,7 @@ from recon4.calibration.stage import run_calibration
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import so3_exp
 from recon4.model.calibration_figures import RigOutcome
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.store.frames import FrameStore, open_frames
@@ -161,8 +162,9 @@ def test_a_right_rig_file_is_not_changed_on_request(right, confirmed, tmp_path):
     )
 
 
-@pytest.mark.study
-def test_exchanged_mounts_are_called_so(dance, tmp_path):
+@pytest.fixture(scope="module")
+def exchanged(dance, tmp_path_factory):
+    """Each LiDAR has the mount of the other in the rig file."""
     first, second = dance.rig.sensors
     rig = replace(
         dance.rig,
@@ -171,11 +173,28 @@ def test_exchanged_mounts_are_called_so(dance, tmp_path):
             replace(second, T_body_sensor=first.T_body_sensor),
         ),
     )
-    found = run(store(tmp_path, dance, rig, dance.imu))
+    return store(tmp_path_factory.mktemp("exchanged"), dance, rig, dance.imu)
 
-    assert "The mounts of 's0' and 's1' seem to be exchanged in the rig file." in " ".join(
-        rig_texts(found.figures)
-    )
+
+EXCHANGED = "The mounts of 's0' and 's1' seem to be exchanged in the rig file."
+
+
+@pytest.mark.study
+def test_exchanged_mounts_are_called_so(exchanged):
+    figures = run(exchanged).figures
+
+    assert EXCHANGED in " ".join(rig_texts(figures))
+    assert not figures.imu_faults
+
+
+@pytest.mark.study
+def test_exchanged_mounts_are_called_so_where_their_points_passed_for_moving_objects(exchanged):
+    """What a LiDAR sees through a wrong mount contradicts the map, as moving objects do."""
+    moving = ((frame.sensor == 1) & (np.arange(len(frame)) % 128 > 0) for frame in exchanged.frames)
+    hidden = HiddenPoints.of(moving)
+    recorded = replace(exchanged, frames=replace(exchanged.frames, hidden=hidden))
+
+    assert EXCHANGED in " ".join(rig_texts(run(recorded).figures))
 
 
 @pytest.mark.study

@@ -72,7 +72,8 @@ def test_a_wrong_scale_of_the_gyroscope_is_named(dance, factor, words):
 
 
 @pytest.mark.parametrize(
-    ("factor", "words"), [(1 / 9.80665, "seems to be g"), (1.08, "its scale is +7.")]
+    ("factor", "words"),
+    [(1 / 9.80665, "seems to be g"), (1.08, "its scale is +7."), (0.92, "its scale is -8.")],
 )
 def test_a_wrong_unit_of_the_accelerometer_is_named(dance, factor, words):
     start = start_of(dance, accel_m_s2=factor * dance.imu.accel_m_s2)
