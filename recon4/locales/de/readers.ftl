@@ -81,7 +81,7 @@ PACKETS-MISSING = Keine Pakete eines Sensors
     .text2-if-anywhere = { $sensor }: keine Datenpakete von irgendeiner Adresse an Port { $port }.
     .text3-if-found = Gefunden: { $found }.
     .meaning = Die Karte entsteht ohne diesen Sensor des Rigs.
-    .remedy = Adresse und Port in der Rig-Datei korrigieren oder neu aufzeichnen.
+    .remedy = Modell, Adresse und Port in der Rig-Datei korrigieren oder neu aufzeichnen.
 
 PACKETS-UNREAD = Pakete nicht gelesen
     .text1 = Nicht gelesen: { $packets } Pakete von { $sender } ({ $why }).

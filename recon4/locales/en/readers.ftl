@@ -81,7 +81,7 @@ PACKETS-MISSING = No packets of a sensor
     .text1-if-address = { $sensor }: no data packets from { $address } to port { $port }.
     .text2-if-anywhere = { $sensor }: no data packets from any address to port { $port }.
     .text3-if-found = Found: { $found }.
-    .remedy = Correct address and port in the rig file, or capture again.
+    .remedy = Correct model, address and port in the rig file, or capture again.
     .meaning = The map is made without this sensor of the rig.
 
 PACKETS-UNREAD = Packets not read

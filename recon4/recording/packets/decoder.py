@@ -50,7 +50,10 @@ def open_decoder(
         raise ConfigError(
             CodedText("packets-unknown", source=of.sensor.topic or of.sensor.name, known=known)
         )
-    require_one_sender(family.open(replace(of, report=ImportReport())), of)
+    trial = ImportReport()
+    layout = family.open(replace(of, report=trial))
+    if all(found.kind is not FindingKind.MODEL_CONTRADICTED for found in trial.findings):
+        require_one_sender(layout, of)  # of another model, packets come as often as theirs do
     return PacketDecoder(family.open(of), of, utc_offset_ns=utc_offset_ns, alone=alone)
 
 

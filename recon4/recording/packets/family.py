@@ -90,6 +90,8 @@ class Recognized:
     """Why packets of this make are not read; None for other kinds than ``other``."""
     rows: NDArray[np.bool_] | None = None
     """Which of the datagrams are of this sensor, (N,); None = all."""
+    readable_as: tuple[str, ...] = ()
+    """Models whose decoder reads these packets; empty = `PacketFamily.open` refuses the others."""
     others: tuple[Recognized, ...] = ()
     """Further sensors that send from the same address to the same port, with their rows."""
 

@@ -1,4 +1,4 @@
-"""Whether packets can be those of a sensor of a rig: of the same maker."""
+"""Whether packets can be those of a sensor of a rig: of its maker, in a format of its model."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from recon4.recording.packets.family import Companion, Recognized
 def can_be_of(
     sensor: Sensor, found: Recognized | None, *, head: Datagrams, companions: Sequence[Companion]
 ) -> bool:
-    """Whether the family of a sensor's model reads some packets; its model may be forced.
+    """Whether a sensor's model can read some packets; it may be another one than they say.
 
     Args:
         sensor: Of a rig.
@@ -24,7 +24,9 @@ def can_be_of(
     """
     maker = lidar_model(sensor.model).maker
     family = next((family for family in FAMILIES if family.name == maker), None)
-    if family is None or found is None or found.family == maker:
+    if family is None or found is None:
         return True
+    if found.family == maker:
+        return not found.readable_as or sensor.model in found.readable_as
     answer = family.recognize(head, companions)
     return answer is not None and answer.kind == "data"

@@ -283,6 +283,7 @@ class RoboSenseFamily:
                     model=solid.name,
                     packet_s=solid.packet_s,
                     size=solid.size,
+                    readable_as=(solid.name,),
                 )
         payloads = _of_size(head, SIZE)
         device = is_device(payloads)
@@ -302,6 +303,7 @@ class RoboSenseFamily:
         if name in SOLID_MODELS:
             return SolidFormat(sensor, SOLID_MODELS[name])
         if name in MODELS:
+            _warn_of_old_type(sensor, MODELS[name])
             return SpinningFormat(sensor, MODELS[name])
         known = ", ".join([*MODELS, *SOLID_MODELS])
         raise ConfigError(CodedText("robosense-no-decoder", name=name, known=known))
@@ -347,6 +349,7 @@ def _recognized_data(head: Datagrams, payloads: Payloads) -> Recognized | None:
             mode="dual" if dual else "",
             packet_s=packet_s(model, dual=dual),
             size=SIZE,
+            readable_as=tuple(m.name for m in MODELS.values() if _same_bytes(m, model)),
         )
         return _refined(found, head, packets)
     return None
@@ -371,6 +374,16 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
         return replace(found, model="Helios 16P", packet_s=usual_s)
     low = device is None or float(device.angles_cdeg[:, 0].min()) < ROBOSENSE_ANGLES.low_cdeg
     return replace(found, model="Helios 5515" if low else "Helios 32")
+
+
+def _warn_of_old_type(of: PacketSensor, model: RoboSenseModel) -> None:
+    """Warn if the header names another one of the oldest models, whose packets are alike."""
+    head = _of_size(of.head, SIZE)
+    types = head[has_id(head, model), OLD_TYPE_AT]
+    says = OLD_TYPES.get(int(np.median(types)), "") if len(types) else ""
+    if says not in ("", model.name) and _same_bytes(model, MODELS[says]):
+        about = {"sensor": of.sensor.name, "says": says, "model": model.name}
+        of.report.warn(FindingKind.MODEL_CONTRADICTED, **about)
 
 
 def _of_old_id(found: Recognized, packets: Payloads, kind: tuple[int, ...]) -> Recognized:

@@ -32,8 +32,8 @@ INSTALLED_AT, ELEVATIONS_AT = 289, 1165
 ANGLE = np.dtype([("sign", "u1"), ("cdeg", ">u2")])
 OLD_TYPE_AT = 30
 """Offset of the type in the header of the oldest models."""
-OLD_TYPES = {1: "RS-16", 2: "RS-32"}
-"""Type there -> model; 3 = Bpearl."""
+OLD_TYPES = {1: "RS-16", 2: "RS-32", 3: "Bpearl"}
+"""Type there -> model."""
 TYPE_AT = 31
 """Offset of type and variant in the header: (3, 4) = Bpearl V4; the variant of an Airy."""
 IMU_PACKET = np.dtype(

@@ -275,6 +275,7 @@ def _recognized_data(payloads: Payloads) -> Recognized | None:
         packet_s=packet_s,
         rotation_hz=rotation.hz,
         findings=findings,
+        readable_as=tuple(MODELS),
     )
 
 
@@ -283,7 +284,7 @@ def _recognized_wide(payloads: Payloads) -> Recognized | None:
     flags = as_packets(payloads)["blocks"]["flag"]
     if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() <= 0.3:
         return None
-    found = Recognized(family=NAME, kind="data", size=DATA_SIZE, model=HDL64)
+    found = Recognized(family=NAME, kind="data", size=DATA_SIZE, model=HDL64, readable_as=(HDL64,))
     sound = payloads[sound_wide(payloads, VLS128, ImportReport())]
     if 2 * len(sound) <= len(payloads):
         return found
@@ -293,6 +294,7 @@ def _recognized_wide(payloads: Payloads) -> Recognized | None:
         model=VLS128.name,
         mode=RETURN_MODES.get(int(sound[0, -2]), ""),
         packet_s=VLS128.packet_s(dual=dual),
+        readable_as=(VLS128.name,),
     )
 
 
