@@ -7,6 +7,7 @@ import pytest
 from playwright.sync_api import expect
 
 from recon4.model.rig import load_rig
+from recon4.recording.packets.ouster.encode import metadata_json
 from recon4.review.trusted_keys import STATE
 from tests.e2e.conftest import (
     first_of,
@@ -17,6 +18,7 @@ from tests.e2e.conftest import (
     open_menu,
 )
 from tests.e2e.test_pages import fits
+from tests.ouster_models import nominal_metadata
 from tests.rig_projects import TOML, calibrated_project, tilted
 from tests.served import served
 from tests.service.running import SLOW, recording_with_gate, wait_for
@@ -189,6 +191,23 @@ def test_a_rig_is_duplicated_exported_and_imported(server, page, tmp_path):
     expect(page).to_have_url(f"{server.url}/rigs/hand-made/")
     expect(page.get_by_role("heading", name="hand-made: field backpack")).to_be_visible()
     assert server.get("/api/rigs/hand-made/versions/1/file").text == TOML
+
+
+@looks("desktop light")
+def test_files_selected_with_a_rig_file_describe_its_lidars(server, page, tmp_path):
+    (tmp_path / "ouster.toml").write_text(TOML.replace("VLP-16", "OS0-32", 1))
+    metadata = metadata_json(nominal_metadata("OS0-32", profile="LEGACY"))
+    (tmp_path / "sensor.json").write_bytes(metadata)
+    page.goto(f"{server.url}/rigs")
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Import…").click()
+    chooser.value.set_files([tmp_path / "sensor.json", tmp_path / "ouster.toml"])
+    expect(page.get_by_text("Describes its LiDARs: sensor.json")).to_be_visible()
+    page.get_by_role("button", name="Import", exact=True).click()
+
+    expect(page).to_have_url(f"{server.url}/rigs/ouster/")
+    stored = server.get("/api/rigs/ouster").json()["content"]["sensors"][0]
+    assert stored["description"] == metadata.decode()
 
 
 @looks("desktop light")

@@ -13,7 +13,10 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
 from recon4.live.replay import replay
+from recon4.model.rig import load_rig
 from recon4.progress import Silent
+from recon4.recording.packets.ouster.encode import metadata_json
+from tests.ouster_models import nominal_metadata
 from tests.scan_captures import capture_server
 from tests.served import served
 
@@ -55,8 +58,8 @@ class Phone:
         self.voxels = np.concatenate([known, fresh])
 
 
-def start(server, project="walk", place=""):
-    new = {"project": project, "rig": "4recon", "preset": "indoor", "place": place}
+def start(server, project="walk", place="", rig="4recon"):
+    new = {"project": project, "rig": rig, "preset": "indoor", "place": place}
     response = server.post("/api/live", json=new)
     assert response.status_code == 201, response.text
     return response.json()
@@ -104,6 +107,19 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, offic
     project = server.get("/api/projects/walk").json()
     assert [stage["stage"] for stage in project["stages"]] == ["frames"]
     assert project["name"] == "Town hall, 2nd floor"
+
+
+def test_a_file_beside_the_rig_file_describes_its_lidar(server):
+    metadata = metadata_json(nominal_metadata("OS0-32", profile="LEGACY")).decode()
+    (server.root / "backpack.toml").write_text(
+        'name = "backpack"\n[[sensor]]\nname = "top"\nmodel = "OS0-32"\n'
+    )
+    (server.root / "sensor.json").write_text(metadata)
+
+    start(server, rig=str(server.root / "backpack.toml"))
+
+    (sensor,) = load_rig(server.root / "walk/recordings/rig.toml").sensors
+    assert sensor.description == metadata
 
 
 @pytest.mark.parametrize("greeting", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])

@@ -253,15 +253,15 @@ def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_reports_wh
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
             taken.bind((address, 2369))
             with pytest.raises(Conflict, match=r"vertical.*is another recorder"):
-                await current_capture.start("walk", "4recon", address=address)
+                await current_capture.start("walk", load_rig("4recon"), address=address)
         left = project.exists()
         capture = await current_capture.start(
-            "walk", "4recon", address=address, least_free_bytes=1 << 62
+            "walk", load_rig("4recon"), address=address, least_free_bytes=1 << 62
         )
         while not capture.over:
             await capture.stream.news(capture.stream.version, timeout_s=0.5)
         with pytest.raises(StoreError, match="project walk exists already"):
-            await current_capture.start("walk", "4recon", address=address)
+            await current_capture.start("walk", load_rig("4recon"), address=address)
         await capture.leave()
         for module in ("recon4.live.recorder.process", "recon4.live.mapper.process"):
             await asyncio.to_thread(wait_for, lambda m=module: not process_of(m, project), module)

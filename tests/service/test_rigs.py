@@ -1,16 +1,21 @@
 """Rigs over HTTP: list, create, change, versions, uses, calibrated rigs."""
 
 import json
+from base64 import b64encode
 
 import numpy as np
 import pytest
 
 from recon4.model.rig import format_rig, load_rig
+from recon4.recording.packets.companions import described_in
+from recon4.recording.packets.ouster.encode import metadata_json
+from tests.ouster_models import nominal_metadata
 from tests.project_builder import build_project
 from tests.rig_projects import TOML, calibrated_project, tilted
 from tests.served import served
 from tests.service.running import server_thread
 from tests.service.secure import secure_server
+from tests.unit.recording.hesai_mirrors import mirror_table
 
 server = served(fresh=True)
 
@@ -167,6 +172,36 @@ def test_a_file_that_is_no_rig_is_rejected(shared, toml, text):
     assert answer.status_code == 422
     assert text in answer.json()["detail"]
     assert "other" not in [rig["id"] for rig in shared.get("/api/rigs").json()]
+
+
+def beside(*files):
+    return [{"name": n, "content": b64encode(content).decode()} for n, content in files]
+
+
+def test_files_imported_with_a_rig_file_describe_its_lidars(server):
+    toml = 'name = "r"\n[[sensor]]\nname = "top"\nmodel = "OS0-32"\naddress = "10.0.0.1"\n'
+    toml += '[[sensor]]\nname = "side"\nmodel = "AT128"\naddress = "10.0.0.2"\n'
+    metadata = metadata_json(nominal_metadata("OS0-32", profile="LEGACY"))
+    files = beside(("sensor.json", metadata), ("angles.dat", mirror_table().content))
+
+    created(server, toml=toml, beside=files)
+
+    stored = load_rig(server.root / "rigs/field/1/field-v1.toml")
+    assert [one.content for one in described_in(stored)] == [metadata, mirror_table().content]
+
+
+@pytest.mark.parametrize(
+    ("files", "text"),
+    [
+        (beside(("notes.json", b"{}")), "notes.json: describes none of the LiDARs of the rig"),
+        ([{"name": "a.json", "content": "abcde"}], "beside.0.content"),
+    ],
+)
+def test_a_file_beside_a_rig_file_that_is_of_no_use_is_refused(shared, files, text):
+    answer = shared.post("/api/rigs", json={"id": "other", "toml": TOML, "beside": files})
+
+    assert answer.status_code == 422
+    assert text in answer.json()["detail"]
 
 
 def test_names_that_are_taken_are_refused(shared):

@@ -8,7 +8,7 @@ import { t } from "../shared/texts.js";
 
 /**
  * @import {Content} from "../shared/dom.js"
- * @import {SavedRig} from "../shared/http_types"
+ * @import {FileBeside, SavedRig} from "../shared/http_types"
  * @typedef {(saved: SavedRig) => void} Done
  */
 
@@ -72,13 +72,25 @@ export function askDuplicate(id, done) {
 }
 
 /**
- * Asks where a rig file goes: a new rig, or the next version of one of `own`.
+ * A file that describes a LiDAR, as it is sent.
  * @param {File} file
+ * @returns {Promise<FileBeside>}
+ */
+async function besideOf(file) {
+  const bytes = new Uint8Array(await file.arrayBuffer());
+  const text = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
+  return { name: file.name, content: btoa(text) };
+}
+
+/**
+ * Asks where a rig file goes: a new rig, or the next version of one of `own`.
+ * @param {File[]} files The rig file, and files that describe its LiDARs.
  * @param {string[]} own
  * @param {Done} done
  */
-export async function askImport(file, own, done) {
-  const toml = file.size <= MAX_BYTES ? await file.text() : "";
+export function askImport(files, own, done) {
+  const file = files.find((one) => /\.toml$/i.test(one.name)) ?? files[0];
+  const others = files.filter((one) => one !== file);
   const choose = (/** @type {Event} */ event) => {
     const select = targetOf(event);
     const form = /** @type {HTMLFormElement} */ (select.closest("form"));
@@ -92,12 +104,24 @@ export async function askImport(file, own, done) {
       ${own.map((id) => html`<option value=${id}>${t("a-new-version", { id })}</option>`)}
     </select></label
   >`;
-  const content = [own.length ? into : nothing, nameField(slug(file.name)), noteField()];
+  const names = others.map((one) => one.name).join(", ");
+  const beside = html`<p>${t("import-beside", { names })}</p>`;
+  const content = [
+    others.length ? beside : nothing,
+    own.length ? into : nothing,
+    nameField(slug(file.name)),
+    noteField(),
+  ];
   open(t("import-of", { name: file.name }), content, {
     button: t("import"),
-    save: ({ into: rig, id, note }) => {
-      if (!toml) throw new Error(t("file-size", { most: MAX_BYTES, size: file.size }));
-      const version = { toml, note: note.value.trim() };
+    save: async ({ into: rig, id, note }) => {
+      const wrong = files.find((one) => !one.size || one.size > MAX_BYTES);
+      if (wrong) throw new Error(t("file-size", { most: MAX_BYTES, size: wrong.size }));
+      const version = {
+        toml: await file.text(),
+        beside: await Promise.all(others.map(besideOf)),
+        note: note.value.trim(),
+      };
       return rig?.value
         ? addRigVersion(rig.value, version)
         : createRig({ id: id.value, ...version });

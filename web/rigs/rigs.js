@@ -206,8 +206,7 @@ form.addEventListener("cancelled", drawRig);
 byId("import").addEventListener("click", () => file.click());
 file.addEventListener("change", () => {
   const own = state.rigs.filter((one) => !one.shipped).map((one) => one.id);
-  const [chosenFile] = file.files ?? [];
-  if (chosenFile) askImport(chosenFile, own, leadTo);
+  if (file.files?.length) askImport([...file.files], own, leadTo);
   file.value = "";
 });
 

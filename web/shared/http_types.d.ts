@@ -615,6 +615,11 @@ export interface ExportedFile {
   points: number;
 }
 
+export interface FileBeside {
+  name: string;
+  content: string;
+}
+
 export interface FileView {
   name: string;
   bytes: number;
@@ -1123,6 +1128,7 @@ export interface NewRig {
   id: string;
   content?: RigContent | null;
   toml?: string | null;
+  beside?: Array<FileBeside>;
   copy_of?: string;
   note?: string;
 }
@@ -1137,6 +1143,7 @@ export interface NewUpload {
 export interface NewVersion {
   content?: RigContent | null;
   toml?: string | null;
+  beside?: Array<FileBeside>;
   note?: string;
   after?: number | null;
 }

@@ -66,12 +66,12 @@ class CurrentCapture:
         assert self._rig is not None
         return self._rig
 
-    async def start(self, project: str, rig: str | Path, **how: Any) -> Capture:
+    async def start(self, project: str, rig: Rig, **how: Any) -> Capture:
         """Start a capture.
 
         Args:
             project: Name of its folder, checked.
-            rig: Name of a shipped rig or path of a rig file.
+            rig: The sensors.
             how: Fields of `CaptureSession`.
 
         Raises:
@@ -84,11 +84,10 @@ class CurrentCapture:
                 raise Conflict(
                     CodedText("capture-running", project=self._capture.project), remedy=CAPTURE
                 )
-            loaded = load_rig(rig)
-            session = await asyncio.to_thread(begin, self._root / project, loaded, **how)
+            session = await asyncio.to_thread(begin, self._root / project, rig, **how)
             capture = Capture(session)
             await capture.start()
-            self._capture, self._rig = capture, loaded
+            self._capture, self._rig = capture, rig
             return capture
 
     async def adopt(self) -> None:

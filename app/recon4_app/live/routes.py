@@ -13,6 +13,7 @@ from starlette.requests import Request
 from recon4.live.findings import CaptureFinding
 from recon4.live.protocol import AddMark, Pause, Resume
 from recon4.locales.coded import CodedText
+from recon4.model.rig import load_rig, parse_rig
 from recon4.settings import PRESET_TEXTS, PRESETS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
@@ -29,7 +30,7 @@ from recon4_app.names import Name, Note
 from recon4_app.network.close_codes import CloseCode, close_reason
 from recon4_app.network.request_caller import CalledBy
 from recon4_app.pages import language_of
-from recon4_app.rig_files import check_rig_file
+from recon4_app.rig_files import read_rig_file
 
 LOOK = [Depends(needs(Permission.LOOK))]
 CAPTURE = [Depends(needs(Permission.CAPTURE))]
@@ -125,11 +126,12 @@ async def start_capture(
     new: NewCapture, server: Server, who: Who, *, caller: CalledBy
 ) -> CaptureView:
     """Open the sensors' ports and record; the project exists from the start."""
-    rig = new.rig
     if Path(new.rig).suffix:
         file = await run_in_threadpool(server.projects.importable, new.rig)
-        await check_rig_file(server.compute_pool, caller, file)
-        rig = str(file)
+        text = await read_rig_file(server.compute_pool, caller, file)
+        rig = parse_rig(text, where=file.name)
+    else:
+        rig = load_rig(new.rig)
     if new.project:
         await run_in_threadpool(server.projects.refuse_taken, new.project)
     project = new.project or await run_in_threadpool(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Base64Bytes, BaseModel, ConfigDict, Field
 
 from recon4.model.limits import RIG_LIMITS
 from recon4.model.rig import SensorKind
@@ -110,12 +110,21 @@ class RigContent(RigPart):
     gnss: GnssContent
 
 
+class FileBeside(RigPart):
+    """A file that describes a LiDAR, as its maker delivers it: metadata, or a table of angles."""
+
+    name: Name = Field(max_length=RIG_TEXTS.longest_text)
+    content: Base64Bytes = Field(max_length=RIG_LIMITS.file_bytes)
+
+
 class NewVersion(RigPart):
     """Request for a version of a rig; exactly one of ``content`` and ``toml``."""
 
     content: RigContent | None = None
     toml: str | None = Field(default=None, max_length=RIG_LIMITS.file_bytes)
     """Text of a rig file."""
+    beside: list[FileBeside] = Field(default=[], max_length=RIG_LIMITS.sensors)
+    """Files beside it, which become the descriptions of its LiDARs."""
     note: Note = Field(default="", max_length=500)
     """Why there is a new version."""
     after: int | None = Field(default=None, ge=0, le=1 << 31)
@@ -130,6 +139,8 @@ class NewRig(RigPart):
     """Name of its folder."""
     content: RigContent | None = None
     toml: str | None = Field(default=None, max_length=RIG_LIMITS.file_bytes)
+    beside: list[FileBeside] = Field(default=[], max_length=RIG_LIMITS.sensors)
+    """Files beside the rig file, which become the descriptions of its LiDARs."""
     copy_of: str = Field(default="", max_length=64)
     """Rig whose newest version is copied."""
     note: Note = Field(default="", max_length=500)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -27,6 +28,7 @@ from recon4_app.rigs.model import (
     CalibratedVersion,
     CalibrationSlices,
     CalibrationView,
+    FileBeside,
     NewRig,
     NewVersion,
     RigCard,
@@ -116,7 +118,7 @@ async def create_rig(new: NewRig, server: Server, *, caller: CalledBy, who: Who)
         path = await run_in_threadpool(server.rigs.file, new.copy_of)
         rig = await _checked_file(server, caller, path)
     else:
-        rig = await _checked_text(_text_of(new), server, caller)
+        rig = await _checked_text(_text_of(new), server, caller, beside=new.beside)
     about = {"who": who.name, "note": new.note, "evidence": ""}
     saved = await run_in_threadpool(server.rigs.create, new.id, rig, **about)
     return _audited(caller.request, new.id, saved)
@@ -132,7 +134,7 @@ async def add_version(
     if (new.content is None) == (new.toml is None):
         raise BadRequest(CodedText("rig-one-of-two"))
     await run_in_threadpool(server.rigs.versions, rig_id)
-    rig = await _checked_text(_text_of(new), server, caller)
+    rig = await _checked_text(_text_of(new), server, caller, beside=new.beside)
     about = {"who": who.name, "note": new.note, "evidence": ""}
     saved = await run_in_threadpool(server.rigs.add, rig_id, rig, after=new.after, **about)
     return _audited(caller.request, rig_id, saved)
@@ -194,10 +196,14 @@ def _text_of(new: NewRig | NewVersion) -> str:
     return new.toml or ""
 
 
-async def _checked_text(text: str, server: ServerParts, caller: Caller) -> rig_work.CheckedRig:
+async def _checked_text(
+    text: str, server: ServerParts, caller: Caller, *, beside: Sequence[FileBeside] = ()
+) -> rig_work.CheckedRig:
     terms = Terms(person=caller.name, limit_s=RIG_FILE_TIMES.limit_s)
     pool = server.compute_pool
-    return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_work.check_rig, text))
+    return await caller.wait(
+        pool.run_interactive(Lane.INSPECT, terms, rig_work.check_rig, text, beside)
+    )
 
 
 async def _checked_file(server: ServerParts, caller: Caller, path: Path) -> rig_work.CheckedRig:

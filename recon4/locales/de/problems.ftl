@@ -184,6 +184,7 @@ assignee-may-not-review = { $name } darf hier nicht prüfen
 
 rig-not-calibrated = das Projekt { $project } hat kein kalibriertes Rig
 rig-file-too-large = die Datei des Rigs: erlaubt sind { $limit } Byte, es sind { $size }
+rig-files-unused = { $names }: beschreibt keinen der LiDARs des Rigs; bei mehreren LiDARs eines Herstellers gehört eine Datei zu dem, mit dessen Namen sie beginnt
 rig-one-of-three = genau eines von content, toml und copy_of angeben
 rig-one-of-two = genau eines von content und toml angeben
 rig-unknown = kein Rig { QUOTED($name) }

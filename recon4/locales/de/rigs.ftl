@@ -102,5 +102,6 @@ import-as = Importieren als
 a-new-rig = Neues Rig
 a-new-version = Neue Version von { $id }
 import-of = { $name } importieren
+import-beside = Beschreibt seine LiDARs: { $names }
 import = Importieren
-file-size = Eine Rig-Datei hat 1 bis { COUNT($most) } Bytes, diese { COUNT($size) }
+file-size = Eine Datei eines Rigs hat 1 bis { COUNT($most) } Bytes, diese { COUNT($size) }

@@ -184,6 +184,7 @@ assignee-may-not-review = { $name } is nobody who may review here
 
 rig-not-calibrated = project { $project } has no calibrated rig
 rig-file-too-large = the rig file: expected at most { $limit } bytes, got { $size }
+rig-files-unused = { $names }: describes none of the LiDARs of the rig; of several LiDARs of one maker, a file belongs to the one whose name it begins with
 rig-one-of-three = give exactly one of content, toml and copy_of
 rig-one-of-two = give exactly one of content and toml
 rig-unknown = no rig { QUOTED($name) }

@@ -102,5 +102,6 @@ import-as = Import as
 a-new-rig = A new rig
 a-new-version = A new version of { $id }
 import-of = Import { $name }
+import-beside = Describes its LiDARs: { $names }
 import = Import
-file-size = A rig file has 1 to { COUNT($most) } bytes, this one { COUNT($size) }
+file-size = A file of a rig has 1 to { COUNT($most) } bytes, this one { COUNT($size) }

@@ -35,19 +35,28 @@ def described_in(rig: Rig | None) -> list[Companion]:
 
 
 def with_descriptions(rig: Rig, files: Sequence[Path]) -> tuple[Rig, dict[str, str]]:
-    """A rig whose LiDARs have the files beside the rig file as descriptions, where that is certain.
+    """As `described_by` the files beside the rig file.
+
+    Args:
+        rig: The rig.
+        files: Files beside its own.
+    """
+    return described_by(rig, companions_of(files))
+
+
+def described_by(rig: Rig, found: Sequence[Companion]) -> tuple[Rig, dict[str, str]]:
+    """A rig whose LiDARs have some files as descriptions, where that is certain.
 
     A file is of the LiDAR that its name begins with, or of the only one of its family. A
     description in the rig file stays.
 
     Args:
         rig: The rig.
-        files: Files beside its own.
+        found: The files.
 
     Returns:
         The rig, and by names of LiDARs those of their files.
     """
-    found = companions_of(files)
     used: dict[str, str] = {}
     sensors = []
     for sensor in rig.sensors:
