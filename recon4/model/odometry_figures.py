@@ -77,6 +77,15 @@ class ImuTurn(msgspec.Struct, frozen=True, kw_only=True):
     """Its right mount on the body [°]."""
 
 
+class ImuAxes(msgspec.Struct, frozen=True, kw_only=True):
+    """Axes or signs that the driver of an IMU exchanges; its samples were repaired."""
+
+    gyro: str
+    """The right axes of its turn rates, of those that were recorded: "x, -y, z" …"""
+    accel: str
+    """… and of its accelerations."""
+
+
 class TurnDoubt(msgspec.Struct, frozen=True, kw_only=True):
     """A stretch of the walk in which the LiDARs hardly observe a turn of the body."""
 
@@ -169,6 +178,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Which samples of it; None = there is none, or of an earlier version."""
     imu_turn: ImuTurn | None = None
     """How its samples were turned; None = they were not."""
+    imu_axes: ImuAxes | None = None
+    """Which of its axes were exchanged beside that; None = none."""
     forces_reversed: float | None = None
     """Correlation of forces and motion as recorded, -1 to 0: the sign of all accelerations was
     turned. None = it was not."""

@@ -54,9 +54,10 @@ class ComparedTurns:
         turned = _interpolated(self._t_s - clock_s, self._imu_s, self._turned)
         return _centered(np.diff(turned, axis=0)[self._measured])
 
-    def aligned(self) -> GyroAlignment:
-        """Rotation and clock that explain the most."""
-        fits = [_fit(self.of_body, self.of_imu(clock)) for clock in _CLOCKS_S]
+    def aligned(self, *, left_handed: bool = False) -> GyroAlignment:
+        """Rotation and clock that explain the most; of left-handed axes, a rotated reflection."""
+        det = -1.0 if left_handed else 1.0
+        fits = [_fit(self.of_body, self.of_imu(clock), det) for clock in _CLOCKS_S]
         explained = np.array([fit[1] for fit in fits])
         best = int(np.argmax(explained))
         R_body_imu, _, scale, mirrored = fits[best]
@@ -72,6 +73,14 @@ class ComparedTurns:
         """Part of the turning that a rotation explains with its best clock, up to 1."""
         turns = ((self.of_body, self.of_imu(clock) @ R_body_imu.T) for clock in _CLOCKS_S)
         return max(_squared_correlation(a, b) for a, b in turns)
+
+    def log_likelihood_ratio(self, explained: float, simpler: float) -> float:
+        """Of turns that are explained so far, against a simpler hypothesis that explains less.
+
+        Twice its logarithm: beside errors of one size it is chi-square distributed.
+        """
+        left, left_simpler = (max(1.0 - part, 1e-12) for part in (explained, simpler))
+        return self.of_body.size * float(np.log(left_simpler / left))
 
     def rotation_sd_rad(self, explained: float) -> float:
         """Standard deviation of a rotation that explains so much, about its vaguest axis [rad]."""
@@ -124,10 +133,10 @@ def _saturated(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
     return found
 
 
-def _fit(of_body: Array, of_imu: Array) -> tuple[Array, float, float, bool]:
-    """Rotation, explained part, scale and handedness for one clock offset."""
+def _fit(of_body: Array, of_imu: Array, det: float) -> tuple[Array, float, float, bool]:
+    """Rotation or reflection, explained part, scale and handedness for one clock offset."""
     U, singular, Vt = np.linalg.svd(of_body.T @ of_imu)
-    sign = float(np.sign(np.linalg.det(U @ Vt)))
+    sign = det * float(np.sign(np.linalg.det(U @ Vt)))
     proper = singular * np.array([1.0, 1.0, sign])
     energy, energy_imu = float(np.sum(of_body**2)), float(np.sum(of_imu**2))
     explained = float(proper.sum()) ** 2 / max(energy * energy_imu, 1e-12)

@@ -45,8 +45,8 @@ def reversed_forces(frames: RecordedFrames, settings: OdometryReads) -> float | 
     for rows in _shaken(frames.t_mid_ns, imu.t_ns, accel):
         odometry = Odometry(frames.rig, settings)
         steps = [step for step in (odometry.push(frames[k]) for k in rows) if not step.lost]
-        if _is_covered(steps, imu.t_ns):
-            speeds.append(_changes_of_speed(steps, imu.t_ns, accel))
+        if is_covered(steps, imu.t_ns):
+            speeds.append(changes_of_speed(steps, imu.t_ns, accel))
             turns.append(_turns(steps, imu.t_ns, gyro))
     found = _correlation(speeds)
     turned_over = _correlation(turns) < REVERSED_FORCES.least
@@ -67,7 +67,7 @@ def _shaken(t_mid_ns: Times, imu_ns: Times, accel: Array) -> list[range]:
     return [range(int(starts[k]), int(starts[k]) + size) for k in (first, *second)]
 
 
-def _is_covered(steps: Sequence[OdometryStep], imu_ns: Times) -> bool:
+def is_covered(steps: Sequence[OdometryStep], imu_ns: Times) -> bool:
     """Whether there are positions enough to show a motion, and more samples than those."""
     knots = len(steps[:: REVERSED_FORCES.each])
     if knots < REVERSED_FORCES.least_knots:
@@ -76,7 +76,7 @@ def _is_covered(steps: Sequence[OdometryStep], imu_ns: Times) -> bool:
     return int(np.count_nonzero(inside)) >= knots
 
 
-def _changes_of_speed(
+def changes_of_speed(
     steps: Sequence[OdometryStep], imu_ns: Times, accel: Array
 ) -> tuple[Array, Array]:
     """Changes of the mean velocity, from one interval to the next [m/s], (N, 3) each.

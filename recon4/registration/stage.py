@@ -110,6 +110,7 @@ def _figures(recording: WalkInputs, choice: Choice, *, with_imu: bool) -> Odomet
         imu=with_imu,
         imu_choice=imu.choice if frames.imu is not None else None,
         imu_turn=recording.repairs.turn,
+        imu_axes=recording.repairs.axes,
         forces_reversed=recording.repairs.forces_reversed,
         imu_faults=tracked.estimate.faults if tracked.estimate else (),
         heights=tuple(ride.doubt for ride in _rides(choice, frames.rig)) if with_imu else (),

@@ -108,16 +108,14 @@ class TurnedImuTuning(Struct, frozen=True, kw_only=True):
     frames: int = 40
     """Multiframes that the LiDARs track alone."""
     least_explained: float = 0.9
-    """A gyroscope that is only turned measures more of their turns than this …"""
-    more_left: float = 4.0
-    """… and by its rig it misses this many times as much: 1.0 in right rigs, above 34 in turned
-    ones (docs/explanation/odometry.md)."""
+    """A gyroscope whose axes are all that is wrong measures more of the turns than this."""
+    sigmas: float = 4.0
+    """What is taken for other axes explains more by this many standard deviations: 0.5 to 2.6 in
+    right rigs, 19 and more if they are left-handed (docs/explanation/odometry.md)."""
     most_sd_rad: float = 0.05
     """A rotation that is known less is not taken: in a walk on one level about one axis [rad]."""
-    far_rad: float = 0.15
+    far_rad: float = 0.05
     """The filter finds a smaller error [rad]."""
-    same_rad: float = 0.09
-    """Axes nearer than this to exchanged ones are exchanged [rad]."""
 
 
 TURNED_IMU = TurnedImuTuning()

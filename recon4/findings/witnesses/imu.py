@@ -16,6 +16,7 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_EVENED, CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import (
     HeightDoubt,
+    ImuAxes,
     ImuChoice,
     ImuFault,
     ImuTurn,
@@ -47,6 +48,8 @@ class ImuUse(Witness):
             yield _choice(figures.imu_choice)
         if figures.imu_turn is not None:
             yield _turned(figures.imu_turn)
+        if figures.imu_axes is not None:
+            yield _exchanged(figures.imu_axes)
         if figures.forces_reversed is not None:
             samples = len(walk.imu) if walk.imu is not None else 0
             values: dict[str, Value] = {"correlation": figures.forces_reversed, "samples": samples}
@@ -217,6 +220,11 @@ def _turned(turn: ImuTurn) -> Finding:
         "rpy_deg": ", ".join(f"{angle:g}" for angle in turn.rpy_deg),
     }
     return replace(finding(FindingKind.IMU_TURNED, Level.CHECK, values), sensor="IMU")
+
+
+def _exchanged(axes: ImuAxes) -> Finding:
+    values: dict[str, Value] = {"gyro": axes.gyro, "accel": axes.accel}
+    return replace(finding(FindingKind.IMU_AXES, Level.CHECK, values), sensor="IMU")
 
 
 def _choice(choice: ImuChoice) -> Finding:

@@ -1,4 +1,4 @@
-"""An IMU that is mounted otherwise than its rig says is found by the turns of the LiDARs."""
+"""Axes of an IMU that are not those of its rig are found by the motion of the LiDARs."""
 
 from contextlib import nullcontext
 from dataclasses import replace
@@ -20,6 +20,9 @@ from tests.unit.registration.other_imu import Walk
 SETTINGS = part_of(preset("indoor"), OdometryReads)
 OVER = np.diag([1.0, -1.0, -1.0])
 LEFT = np.array([[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+MIRROR = np.diag([1.0, -1.0, 1.0])
+SWAP = np.eye(3)[[1, 0, 2]]
+NOISE = np.random.default_rng(5)
 SKEW = so3_exp([0.3, -0.2, 0.5])
 
 
@@ -52,7 +55,7 @@ def test_exchanged_axes_are_exchanged_back_exactly(frames, R):
     np.testing.assert_array_equal(right.imu.gyro_rad_s, frames.imu.gyro_rad_s)
     np.testing.assert_array_equal(right.imu.accel_m_s2, frames.imu.accel_m_s2)
     assert found.turn.explained < 0.85 < 0.95 < found.turn.explained_turned
-    assert found.forces_reversed is None
+    assert found.axes is None
 
 
 def test_the_mount_that_is_stated_is_the_right_one(frames):
@@ -66,34 +69,72 @@ def test_the_mount_that_is_stated_is_the_right_one(frames):
 def test_a_rotation_that_is_not_of_exchanged_axes_is_found_to_a_degree_or_two(frames):
     found = turned_imu(mounted(frames, SKEW), SETTINGS)
 
-    assert found.angle_rad == pytest.approx(np.linalg.norm([0.3, -0.2, 0.5]), abs=0.03)
-    assert SE3(found.R @ SKEW.T, np.zeros(3)).angle() < 0.03
-
-
-def test_reversed_forces_are_found_on_an_imu_that_was_turned(frames):
-    walk = mounted(frames, OVER)
-    walk.imu = replace(walk.imu, accel_m_s2=-walk.imu.accel_m_s2)
-
-    right, found = with_right_axes(walk, SETTINGS)
-
-    assert found.forces_reversed < -0.8
-    np.testing.assert_array_equal(right.imu.accel_m_s2, frames.imu.accel_m_s2)
+    assert SE3(found.mount @ SKEW.T, np.zeros(3)).angle() < 0.03
 
 
 @pytest.mark.parametrize(
-    "gyro", [np.eye(3), np.diag([1.0, -1.0, 1.0]), so3_exp([0.0, 0.0, 0.1])],
-    ids=["right", "left-handed", "6 degrees"],
-)  # fmt: skip
-def test_an_imu_that_is_right_or_has_another_fault_is_not_turned(frames, gyro):
-    imu = replace(frames.imu, gyro_rad_s=frames.imu.gyro_rad_s @ gyro.T)
+    ("gyro", "accel", "mount", "said"),
+    [
+        (MIRROR, MIRROR, None, ("x, -y, z", "x, -y, z")),
+        (-np.eye(3), np.eye(3), None, ("-x, -y, -z", "x, y, z")),
+        (np.eye(3), -np.eye(3), None, ("x, y, z", "-x, -y, -z")),
+        (np.eye(3), SWAP, None, ("x, y, z", "y, x, z")),
+        (np.diag([1.0, 1.0, -1.0]), np.eye(3), None, ("x, y, -z", "x, y, z")),
+        (OVER, -OVER, OVER, ("x, y, z", "-x, -y, -z")),
+        (-LEFT, LEFT, LEFT, ("-x, -y, -z", "x, y, z")),
+    ],
+    ids=["left-handed", "gyro", "forces", "forces' axes", "gyro z", "over, forces", "left, gyro"],
+)
+def test_each_sensor_gets_axes_and_signs_of_its_own(frames, gyro, accel, mount, said):
+    walk = Walk(frames, imu=ImuRepair(gyro.T, accel.T).of(frames.imu))
 
-    assert turned_imu(Walk(frames, imu=imu), SETTINGS) is None
+    right, found = with_right_axes(walk, SETTINGS)
+
+    np.testing.assert_array_equal(right.imu.gyro_rad_s, frames.imu.gyro_rad_s)
+    np.testing.assert_array_equal(right.imu.accel_m_s2, frames.imu.accel_m_s2)
+    assert (found.axes.gyro, found.axes.accel) == said
+    assert (found.turn is None) == (mount is None)
+    if mount is not None:
+        roll, pitch, yaw = np.deg2rad(found.turn.rpy_deg)
+        stated = SE3.from_rpy(roll, pitch, yaw, t=[0.0] * 3).R
+        np.testing.assert_allclose(stated, frames.rig.T_body_imu.R @ mount, atol=1e-9)
 
 
-def test_a_late_clock_is_no_rotation(frames):
-    late = replace(frames.imu, t_ns=frames.imu.t_ns + 200_000_000)
+def test_left_handed_axes_of_an_imu_that_is_turned_oddly_are_found(frames):
+    found = turned_imu(mounted(frames, SKEW @ MIRROR), SETTINGS)
 
-    assert turned_imu(Walk(frames, imu=late), SETTINGS) is None
+    assert np.linalg.norm(found.repair.gyro - SKEW @ MIRROR) < 0.05
+    np.testing.assert_array_equal(found.repair.accel, found.repair.gyro)
+    np.testing.assert_array_equal(found.of_driver.gyro, -np.eye(3))
+    np.testing.assert_allclose(found.mount, -found.repair.gyro)
+
+
+@pytest.mark.parametrize("axis", np.eye(3), ids="xyz")
+def test_a_rotation_of_six_degrees_is_found(frames, axis):
+    R = so3_exp(0.1 * axis)
+
+    found = turned_imu(mounted(frames, R), SETTINGS)
+
+    assert SE3(found.repair.gyro @ R.T, np.zeros(3)).angle() < 0.03
+    np.testing.assert_array_equal(found.repair.accel, found.repair.gyro)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda imu: imu,
+        lambda imu: replace(imu, gyro_rad_s=imu.gyro_rad_s @ so3_exp([0.0, 0.0, 0.02])),
+        lambda imu: replace(imu, gyro_rad_s=imu.gyro_rad_s * [1.05, 1.0, 0.97]),
+        lambda imu: replace(imu, accel_m_s2=imu.accel_m_s2 / 9.8),
+        lambda imu: replace(imu, accel_m_s2=0.0 * imu.accel_m_s2 + [0.0, 0.0, 9.8]),
+        lambda imu: replace(imu, accel_m_s2=np.full_like(imu.accel_m_s2, np.nan)),
+        lambda imu: replace(imu, accel_m_s2=NOISE.normal(0.0, 50.0, imu.accel_m_s2.shape)),
+        lambda imu: replace(imu, t_ns=imu.t_ns + 200_000_000),
+    ],
+    ids=["none", "1 degree", "scale", "g", "constant forces", "no forces", "noise", "late clock"],
+)
+def test_an_imu_that_is_right_or_has_another_fault_keeps_its_axes(frames, changed):
+    assert turned_imu(Walk(frames, imu=changed(frames.imu)), SETTINGS) is None
 
 
 def test_turns_about_one_axis_show_no_rotation(frames):
