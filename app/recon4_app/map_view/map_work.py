@@ -27,6 +27,7 @@ from recon4_app.map_view.cubes import write_cubes
 from recon4_app.map_view.index import class_name, index_of
 from recon4_app.map_view.model import (
     HitPoint,
+    MapIndex,
     MapVolume,
     MapWalk,
     PointsInCrs,
@@ -46,14 +47,36 @@ from recon4_app.viewer.cloud.pick import Ray, hit_point
 
 _MORE = ("normal", "range_m", "intensity_normalized", "classification", DEVIATION, "surface_sd_m")
 
+INDEX = "index.json"
+"""Name of the file of the index."""
+
+
+def coarse_name(stored: Stored) -> str:
+    """Name of the file of coarse points."""
+    return f"{stored}.bin"
+
+
+def write_first(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
+    """Write what the page reads first into a folder: index, coarse points, and their color."""
+    folder = Path(out)
+    folder.mkdir()
+    index = _index(artifacts, evidence)
+    write_json(folder / INDEX, index.model_dump(mode="json"))
+    first: tuple[Stored, ...] = ("xyz",) if index.color == "height" else ("xyz", index.color)
+    for stored in first:
+        write_coarse(artifacts, stored, str(folder / coarse_name(stored)), evidence=evidence)
+
 
 def write_index(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
     """Write the index of a map as JSON."""
+    write_json(Path(out), _index(artifacts, evidence).model_dump(mode="json"))
+
+
+def _index(artifacts: Artifacts, evidence: Evidence | None) -> MapIndex:
     tiles = map_of(artifacts, evidence)
     walk = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
     walk_m = np.empty((0, 3)) if walk is None else walk.T_a_b.t
-    made = index_of(Path(artifacts["map"]).name, tiles, map_frame(artifacts), walk_m=walk_m)
-    write_json(Path(out), made.model_dump(mode="json"))
+    return index_of(Path(artifacts["map"]).name, tiles, map_frame(artifacts), walk_m=walk_m)
 
 
 def write_coarse(

@@ -7,7 +7,6 @@ import logging
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 from starlette.concurrency import run_in_threadpool
@@ -20,11 +19,15 @@ from recon4_app.compute_pool.model import Terms
 from recon4_app.errors import NotFound
 from recon4_app.map_view import map_work
 from recon4_app.map_view.cubes import CubeFile
+from recon4_app.map_view.map_work import INDEX, coarse_name
 from recon4_app.map_view.model import MapIndex, Stored
 from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.slices.store import Slices
 
 log = logging.getLogger(__name__)
+
+_FIRST = "first"
+"""Folder of what is made before somebody asks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,34 +55,44 @@ class ShownMap:
             slices.terms(project_id, person, source),
         )
 
-    async def index(self, *, ahead: bool = False) -> MapIndex:
-        """The index; ``ahead`` = nobody waits for it yet.
+    async def index(self) -> MapIndex:
+        """The index.
 
         Raises:
             StoreError: If a file of the map, or the index, is damaged.
         """
-        name = "index.json"
-        path = await self._kept(name, map_work.write_index, name, ahead=ahead)
+        path = await self._kept(INDEX, map_work.write_index, INDEX)
         return await run_in_threadpool(_read_index, path)
 
-    async def coarse(self, stored: Stored, *, ahead: bool = False) -> CubeFile:
+    async def coarse(self, stored: Stored) -> CubeFile:
         """The coarse points.
 
         Raises:
             ConfigError: If the map has no such values.
             StoreError: If a file of the map is damaged.
         """
-        name = f"{stored}.bin"
-        path = await self._kept(name, map_work.write_coarse, stored, name, ahead=ahead)
+        name = coarse_name(stored)
+        path = await self._kept(name, map_work.write_coarse, stored, name)
         return CubeFile(path, stored)
 
-    async def _kept(
-        self, name: str, function: Callable[..., None], *args: str, ahead: bool
-    ) -> Path:
-        run: Callable[..., Awaitable[Any]] = (
-            self.slices.run_ahead if ahead else self.slices.run_interactive
-        )
+    async def prepare(self) -> None:
+        """Make what the page reads first in one child, before somebody asks for it."""
+        if not (await self.slices.kept_before(f"{self._prefix}-{INDEX}")).exists():
+            await self._made(_FIRST, self.slices.run_ahead, map_work.write_first, _FIRST)
 
+    async def _kept(self, name: str, function: Callable[..., None], *args: str) -> Path:
+        prepared = await self.slices.kept_before(f"{self._prefix}-{_FIRST}") / name
+        if prepared.exists():
+            return prepared
+        return await self._made(name, self.slices.run_interactive, function, *args)
+
+    async def _made(
+        self,
+        name: str,
+        run: Callable[..., Awaitable[None]],
+        function: Callable[..., None],
+        *args: str,
+    ) -> Path:
         async def make(out: Path) -> None:
             made = replace(self.terms, outputs={name: out})
             await run(made, function, self.artifacts, *args, evidence=self.evidence)
@@ -129,10 +142,7 @@ class MapPreparation:
 
     async def _prepare(self, project_id: str) -> None:
         shown = await ShownMap.of(self._slices, project_id, person="server")
-        index = await shown.index(ahead=True)
-        await shown.coarse("xyz", ahead=True)
-        if index.color != "height":
-            await shown.coarse(index.color, ahead=True)
+        await shown.prepare()
 
 
 def _read_index(path: Path) -> MapIndex:
