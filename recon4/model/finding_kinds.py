@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 17
+AUDIT_VERSION = 18
 """Raise it when witnesses find something else in the same walk, or in another order: then finished
 projects are audited again."""
 

@@ -90,6 +90,8 @@ def rig_findings(
     for first, second in figures.exchanged:
         names: dict[str, Value] = {"first": repr(first), "second": repr(second)}
         yield finding(FindingKind.RIG_EXCHANGED, level, names)
+    if figures.exchanged and not figures.applied:
+        return  # all else differs from a mount that is another sensor's
     rows = (*figures.parameters, *figures.beams)
     for sensor in dict.fromkeys(row.sensor for row in rows if row.status == "off"):
         if sensor != GNSS or figures.applied:
