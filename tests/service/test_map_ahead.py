@@ -16,7 +16,7 @@ def projects(root):
     build_project(root / "office", points=1000)
 
 
-server = served(projects, fresh=True, worker_module="tests.service.finishing_worker")
+server = served(projects, fresh=True, ahead=True, worker_module="tests.service.finishing_worker")
 
 
 def made(server):
