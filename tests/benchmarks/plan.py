@@ -71,7 +71,9 @@ def figures(walk: Path, recording: Path) -> list[tuple[str, ...]]:
     tiles = open_map(walk).tiles
     mesh = read_mesh(recording / "model.ply")
     T_world_map, error = onto_truth(tiles, mesh, walk, recording)
-    print(f"{walk.name}: ATE {1e3 * error.position_m.rmse:.1f} mm", flush=True)
+    tilt_deg = np.degrees(np.arctan2(np.hypot(*T_world_map.R[2, :2]), T_world_map.R[2, 2]))
+    position = f"ATE {1e3 * error.position_m.rmse:.1f} mm"
+    print(f"{walk.name}: {position}, off level by {tilt_deg:.3f}°", flush=True)
     path = T_world_map @ read_tum(walk / "trajectory.tum").T_a_b.t
     levels = level_surfaces(tiles)
     return [

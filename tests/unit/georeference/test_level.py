@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.georeference.floor import level_by_floor
 from recon4.georeference.level import level, level_by_attitude, level_by_gravity, tilt_to
-from recon4.georeference.stage import level_by_floor
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -193,8 +193,20 @@ def test_the_dominant_floor_levels_a_map_without_imu() -> None:
 
     leveling = level_by_floor(p, origin)
 
-    assert tilt_error_deg(leveling.T_level_odom, tilt) < 0.1
+    assert tilt_error_deg(leveling.T_level_odom, tilt) < 0.01
     assert leveling.source == "floor"
+
+
+def test_a_kerb_along_the_walk_tilts_no_map() -> None:
+    tilt = SE3.from_rpy(np.deg2rad(3.0), np.deg2rad(-2.0), 0.5, t=[1.0, 2.0, 3.0])
+    rng = np.random.default_rng(5)
+    p = np.c_[rng.uniform(-20, 20, 40_000), rng.uniform(-4, 4, 40_000), rng.normal(0, 0.01, 40_000)]
+    p[p[:, 1] > 0.0, 2] += 0.12
+    origin = np.c_[p[:, 0], np.zeros(len(p)), np.full(len(p), 1.5)]
+
+    leveling = level_by_floor(tilt @ p, tilt @ origin)
+
+    assert tilt_error_deg(leveling.T_level_odom, tilt) < 0.02
 
 
 def test_without_floor_nothing_is_turned() -> None:
