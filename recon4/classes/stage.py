@@ -19,7 +19,16 @@ from numpy.typing import NDArray
 
 from recon4.classes.carrier import CarrierCubes, CarrierVolume, near_points
 from recon4.classes.class_parts import ClassedWalk, Classes, OrderedClasses, save_classes
-from recon4.classes.tuning import KNOWN_PLACES, SIGHT, SPREAD, THINGS, TOUCHING, VIEWS, VOLUME
+from recon4.classes.tuning import (
+    KNOWN_PLACES,
+    PARTED,
+    SIGHT,
+    SPREAD,
+    THINGS,
+    TOUCHING,
+    VIEWS,
+    VOLUME,
+)
 from recon4.classes.views import RegularViews
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
@@ -266,6 +275,9 @@ def _verdicts(
     spread_to_neighbors(points, body_m, SPREAD, cubes)
     if things is not None:
         move_as_things(points, things, body_m, THINGS, cubes)
+        # A bus that stands close to a front is one thing with the house, but for what is met there.
+        seen_through = (evidence >= EVIDENCE.doubted) & (evidence != EVIDENCE.unknown)
+        move_as_things(points, things & seen_through, body_m, PARTED, cubes)
         unmet = things & (evidence > EVIDENCE.doubted)
         move_as_things(points, unmet, body_m, TOUCHING, cubes)
     return verdict

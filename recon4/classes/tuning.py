@@ -70,6 +70,8 @@ SPREAD = SpreadRules(
 )
 
 THINGS = ThingRules(cube_m=SPREAD.cube_m, floor_m=0.25, around=2, few=10, surely=0.05, share=0.25)
+PARTED = THINGS._replace(surely=0.2)
+"""Of what some scan sees through: it stands close to what stands."""
 TOUCHING = ThingRules(cube_m=SPREAD.cube_m, floor_m=0.25, around=2, few=10, surely=0.5, share=0.5)
 """Of what no scan meets: it is connected with nothing that stands, but may be a part of it."""
 

@@ -198,7 +198,7 @@ def _carried(
 INTENSITY: Stage[IntensityReads, Figures] = Stage(
     "intensity", 2, IntensityReads, _intensity, percent=4.0
 )
-CLASSES = Stage("classes", 8, ReadsNothing, _classes, ClassFigures, percent=5.0)
+CLASSES = Stage("classes", 9, ReadsNothing, _classes, ClassFigures, percent=5.0)
 MAP = Stage("map", 17, MapReads, _map, MapFigures, percent=21.0)
 TO_MAP = (INTENSITY, CLASSES, MAP)
 """The stages that `make_map` runs, in order."""

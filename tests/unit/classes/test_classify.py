@@ -15,7 +15,7 @@ from recon4.kernels.things import JudgedPoints, spread_to_neighbors
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.classes import PointClass, is_delivered
 from recon4.store.classes import StoredClasses
-from tests.unit.classes.scanned_scenes import HEIGHT_M, ROOM, box, cylinder, pane, scanned
+from tests.unit.classes.scanned_scenes import HEIGHT_M, ROOM, Thing, box, cylinder, pane, scanned
 
 STANDS = int(PointClass.UNCLASSIFIED)
 
@@ -107,6 +107,21 @@ def test_a_car_that_stands_until_it_drives_off_is_moving():
 
     assert (classes[names == "car"] == PointClass.MOVING).mean() > 0.9
     assert kept(classes, names, "room") > 0.998
+
+
+def test_most_of_a_bus_that_stands_close_to_a_wall_until_it_drives_off_is_moving():
+    standing = box("bus", (4.0, 1.6, 0.0), (8.0, 2.7, 2.2))
+
+    def reach(p, d, t_s):
+        gone_m = 3.0 * max(float(np.min(t_s)) - 6.0, 0.0)
+        return standing.reach(p - [gone_m, 0.0, 0.0], d, t_s)
+
+    hall = box("hall", (-3.0, -3.0, 0.0), (40.0, 3.0, 3.0))
+
+    classes, names = found(hall, Thing("bus", reach), seconds=14.0)
+
+    assert (classes[names == "bus"] == PointClass.MOVING).mean() > 0.7
+    assert kept(classes, names, "hall") > 0.998
 
 
 def test_what_comes_back_to_its_place_is_moving_although_scans_meet_it():
