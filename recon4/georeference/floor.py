@@ -87,8 +87,8 @@ def _normal_of_levels(patches: _FloorPatches, up: Array) -> Array:
     """The common normal of the planes in which patches lie, by least squares.
 
     A floor of meters says it better than its patches, whose normals turn where a wall or a chair
-    begins. Neighbors of nearly one height are of one plane: a kerb, or a step of a flight of
-    stairs, parts two.
+    begins. Neighbors of nearly one height are of one plane: a threshold, a kerb, or a step of
+    a flight of stairs parts two.
 
     Args:
         patches: Some.

@@ -26,9 +26,9 @@ class FloorTuning(Struct, frozen=True, kw_only=True):
     min_patches: int = 5
     """Fewer patches are no floor."""
     reach_m: float = 1.0
-    step_m: float = 0.05
+    step_m: float = 0.015
     """Patches nearer to each other than this are of one plane if their heights differ by less [m]:
-    a kerb is 8 to 15 cm high."""
+    a threshold is 2 cm high, a kerb 8 to 15 cm."""
     max_candidates: int = 500
     """Number of patches whose normal is tried as that of the floor."""
 

@@ -182,5 +182,5 @@ VERIFICATION = Stage(
     "verification", 4, VerificationReads, _verification, VerificationFigures, percent=2.0
 )
 REVIEW = Stage("review", 6, VerificationReads, _review, ReviewFigures)
-LEVEL = Stage("level", 40, LevelReads, _level, LevelFigures, percent=1.0)
+LEVEL = Stage("level", 41, LevelReads, _level, LevelFigures, percent=1.0)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures, percent=1.0)

@@ -197,11 +197,12 @@ def test_the_dominant_floor_levels_a_map_without_imu() -> None:
     assert leveling.source == "floor"
 
 
-def test_a_kerb_along_the_walk_tilts_no_map() -> None:
+@pytest.mark.parametrize("step_m", [0.03, 0.12])
+def test_a_threshold_or_kerb_along_the_walk_tilts_no_map(step_m: float) -> None:
     tilt = SE3.from_rpy(np.deg2rad(3.0), np.deg2rad(-2.0), 0.5, t=[1.0, 2.0, 3.0])
     rng = np.random.default_rng(5)
     p = np.c_[rng.uniform(-20, 20, 40_000), rng.uniform(-4, 4, 40_000), rng.normal(0, 0.01, 40_000)]
-    p[p[:, 1] > 0.0, 2] += 0.12
+    p[p[:, 1] > 0.0, 2] += step_m
     origin = np.c_[p[:, 0], np.zeros(len(p)), np.full(len(p), 1.5)]
 
     leveling = level_by_floor(tilt @ p, tilt @ origin)
