@@ -53,7 +53,7 @@ def _compiled_kernels() -> dict[str, str]:
     return {
         str(path): f"recon4/kernels/__pycache__/{path.name}"
         for path in files
-        if path.suffix in CACHED
+        if path.suffix in CACHED and path.is_file()
     }
 
 

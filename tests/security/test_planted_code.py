@@ -11,7 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from recon4.sandbox.private_cache import KERNELS, cached_elsewhere, planted, private_cache
+from recon4.sandbox.private_cache import (
+    KERNELS,
+    LINKS,
+    cached_elsewhere,
+    mark_compiled,
+    planted,
+    private_cache,
+)
 from recon4.sandbox.private_cache import _numba_name as numba_name
 from recon4_app.jobs.supervisor import _spawn
 from tests.source_trees import sources, trees_with
@@ -145,6 +152,35 @@ def test_a_confined_child_of_another_reads_the_kernels_themselves(tmp_path, monk
     private_cache(tmp_path / "inner")
 
     assert folder in cached_elsewhere(tmp_path / "inner")
+
+
+def test_private_caches_share_the_links_that_were_made_at_the_installation(tmp_path, monkeypatch):
+    (kernel,) = kernels_of(tmp_path / "numba").iterdir()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
+    mark_compiled()
+    first, second = (
+        Path(private_cache(tmp_path / name)["NUMBA_CACHE_DIR"], kernel.parent.name, kernel.name)
+        for name in ("first", "second")
+    )
+
+    assert first.readlink() == second.readlink() == kernel
+    assert first.lstat().st_ino == second.lstat().st_ino
+
+
+@pytest.mark.parametrize("kind", ["file", "link"])
+def test_a_shared_link_to_something_else_is_not_used(tmp_path, monkeypatch, kind):
+    (kernel,) = kernels_of(tmp_path / "numba").iterdir()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "numba"))
+    mark_compiled()
+    shared = kernel.parent / LINKS / kernel.name
+    shared.unlink()
+    if kind == "file":
+        shared.write_text("planted")
+    else:
+        shared.symlink_to(tmp_path / "planted")
+    folder = private_cache(tmp_path / "private")["NUMBA_CACHE_DIR"]
+
+    assert Path(folder, kernel.parent.name, kernel.name).readlink() == kernel
 
 
 def test_a_cache_of_the_user_and_a_private_group_is_fine(tmp_path):
