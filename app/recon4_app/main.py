@@ -337,6 +337,7 @@ async def _maintain(parts: ServerParts) -> None:
             lambda: parts.uploads.sweep(time.time()),
             lambda: parts.trash.sweep(time.time()),
             lambda: free_expired(parts, time.time()),
+            parts.project_spaces.sweep_kept,
             lambda: parts.slices.exports.sweep(time.time()),
             lambda: parts.exports.sweep(time.time()),
             parts.webhooks.store.sweep,

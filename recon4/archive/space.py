@@ -14,9 +14,11 @@ from enum import StrEnum
 from functools import partial
 from pathlib import Path
 
+from recon4.archive.kept_files import KEPT, kept_files, state_of
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.review.approved import VERSIONS
+from recon4.review.trusted_keys import STATE
 from recon4.store.atomic import is_temporary, temporary_beside
 from recon4.store.checked import Altered
 from recon4.store.hashing import files_below
@@ -96,6 +98,8 @@ def stored_parts(root: Path) -> tuple[StoredPart, ...]:
             parts.append(part(None, "no stage accounts for it", Kept.UNKNOWN))
         else:
             parts.append(part(_reason(stages.get(key, ""), key in current)))
+    if kept := _kept(root, seen):
+        parts.append(StoredPart(f"../{STATE}", KEPT, kept, None))
     return tuple(sorted(parts, key=lambda part: (-part.bytes, part.name)))
 
 
@@ -169,6 +173,13 @@ def _unknown(key: str) -> str:
     if is_temporary(key):
         return "unfinished artifact"
     return "damaged artifact" if _is_damaged(key) else "not of recon4"
+
+
+def _kept(root: Path, seen: set[tuple[int, int]]) -> int:
+    """Bytes that a server keeps of the maps of a project."""
+    artifacts = root / ARTIFACTS
+    own = (path for key, path in kept_files(state_of(root)) if (artifacts / key).is_dir())
+    return sum(_size(path, seen) for path in own)
 
 
 def _file(path: Path, seen: set[tuple[int, int]]) -> StoredPart:

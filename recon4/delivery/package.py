@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from glob import escape
 from pathlib import Path
 
 import recon4
@@ -44,10 +45,11 @@ from recon4.review.approval_state import ApprovalState
 from recon4.review.approved import Approval
 from recon4.review.signature import public_key_of
 from recon4.review.state import read_summary
-from recon4.store.atomic import atomic_file, raise_if_full, write_text
+from recon4.store.atomic import atomic_file, is_temporary, raise_if_full, write_text
 from recon4.store.formats import FORMATS
 from recon4.store.hashing import hash_shown
 from recon4.store.json_files import read_object
+from recon4.store.locks import is_abandoned, locked_folder
 from recon4.store.project import read_artifacts
 from recon4.untrusted.limits import LIMITS
 from recon4.untrusted.names import visible
@@ -178,20 +180,35 @@ def _open(project: Path, wish: DeliveryWish, progress: Progress) -> _Map:
 
 @contextmanager
 def _folder_beside(out: Path) -> Iterator[Path]:
-    """A folder for the files of a delivery, which is removed whatever happens.
+    """A folder for the files of a delivery, which is removed whatever happens: that of a killed
+    process by the next delivery of this name.
 
     Raises:
         NoSpace: If the disk is full.
         StoreError: If it cannot be made, or a file in it cannot be written.
     """
     try:
-        with tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent) as name:
+        _sweep_killed(out)
+        beside = tempfile.TemporaryDirectory(prefix=f".{out.name}.", dir=out.parent)
+        with beside as name, locked_folder(Path(name)):
             yield Path(name)
     except Exception as error:
         raise_if_full(error, out)  # also if a file in it says so: its path means nothing to people
         if isinstance(error, OSError):
             raise StoreError(CodedText("deliver-failed", out=str(out), why=str(error))) from error
         raise
+
+
+def _sweep_killed(out: Path) -> None:
+    """Remove what killed processes left of a delivery of this name, unless one is packed now."""
+    folders = [one for one in out.parent.glob(f".{escape(out.name)}.????????") if one.is_dir()]
+    if not all(map(is_abandoned, folders)):
+        return
+    for folder in folders:
+        shutil.rmtree(folder, ignore_errors=True)
+    for file in out.parent.glob(f".tmp-*-{escape(out.name)}"):
+        if is_temporary(file.name):
+            file.unlink(missing_ok=True)
 
 
 def _refuse_changed(map_: _Map) -> None:

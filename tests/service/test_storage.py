@@ -6,6 +6,7 @@ import time
 import httpx
 import pytest
 
+from recon4.archive.kept_files import kept_files
 from recon4.archive.space import stored_parts
 from recon4.store.project import Project
 from recon4_app.storage.storage_work import free_expired
@@ -115,6 +116,33 @@ def test_a_project_says_what_takes_its_space_and_frees_what_is_chosen(server):
     for body in ({"what": []}, {"what": ["all"]}):
         assert server.post("/api/projects/office/free", json=body).status_code == 422
     assert server.post("/api/projects/none/free", json={"what": ["map"]}).status_code == 404
+
+
+def kept(server):
+    """Names of the files that the server keeps of maps."""
+    return [path.name for _, path in kept_files(server.root / ".recon4")]
+
+
+def test_what_is_kept_of_a_map_for_the_pages_is_counted_and_goes_with_the_map(server):
+    for name in ("office", "shop"):
+        build_project(server.root / name, points=100 * len(name))
+        for page in ("map", "thumbnail"):
+            assert server.get(f"/api/projects/{name}/{page}").status_code == 200
+    both = kept(server)
+    sizes = [path.stat().st_size for _, path in kept_files(server.root / ".recon4")]
+
+    parts = [
+        server.get(f"/api/projects/{one}/storage").json()["parts"] for one in ("office", "shop")
+    ]
+
+    counted = [part["bytes"] for one in parts for part in one if part["what"] == "pages"]
+    assert len(both) >= 4 and sum(counted) == sum(sizes)
+    assert server.post("/api/projects/office/free", json={"what": ["map"]}).status_code == 200
+    of_shop = kept(server)
+    assert of_shop and len(of_shop) < len(both)
+    assert httpx.delete(f"{server.url}/api/projects/shop").status_code == 200
+    assert sorted(server.app.state.parts.project_spaces.sweep_kept()) == sorted(of_shop)
+    assert kept(server) == []
 
 
 def test_earlier_runs_go_when_their_time_is_over_except_what_is_approved(tmp_path):

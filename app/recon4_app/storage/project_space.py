@@ -6,10 +6,12 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
+from recon4.archive.kept_files import KEPT_FOLDERS, state_of, sweep_kept
 from recon4.archive.space import ARTIFACTS, Freeable, free_space, stored_parts
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
 from recon4.review.approved import VERSIONS
+from recon4.review.trusted_keys import STATE
 from recon4_app.errors import Conflict, project_page
 from recon4_app.jobs.model import JobState
 from recon4_app.jobs.space import size_below
@@ -54,11 +56,18 @@ class ProjectSpaces:
                 remedy=project_page(project_id),
             )
         free_space(folder, chosen)
+        self.sweep_kept()
         return space_of(folder)
+
+    def sweep_kept(self) -> list[str]:
+        """Remove what is kept of maps that no project has any more."""
+        root = self._projects.root
+        return sweep_kept(root / STATE, {path.name for path in root.glob(f"*/{ARTIFACTS}/*")})
 
     def _of(self, folder: Path, *, stays: bool) -> ProjectSpace:
         # A finished project's files are made under other names and renamed: its folders change.
-        folders = (folder, folder / ARTIFACTS, folder / VERSIONS)
+        kept_of_maps = (state_of(folder) / name for name in KEPT_FOLDERS)
+        folders = (folder, folder / ARTIFACTS, folder / VERSIONS, *kept_of_maps)
         key = (stamp_of(folder), [_changed_ns(one) for one in folders])
         kept = self._kept.get(folder.name)
         if stays and kept is not None and kept[0] == key:

@@ -114,6 +114,7 @@ stage-intensity = Intensität
 stage-classes = Klassen
 stage-map = Karte
 stage-audit = Befunde
+stage-pages = für die Seiten aufbewahrt
 
 ## Seite eines Projekts
 

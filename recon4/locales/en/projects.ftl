@@ -114,6 +114,7 @@ stage-intensity = intensity
 stage-classes = classes
 stage-map = map
 stage-audit = audit
+stage-pages = kept for the pages
 
 ## Page of a project
 

@@ -1,5 +1,8 @@
 """Deliveries while they are made: progress, requests to stop, language, README."""
 
+import signal
+import subprocess
+import sys
 import zipfile
 from dataclasses import dataclass, field
 
@@ -121,3 +124,47 @@ def test_the_readme_names_the_system_of_the_coordinates(crs, says):
 def test_the_readme_names_the_classes_that_points_have():
     assert classes_line({0: 5, 2: 7, 6: 1, 18: 9}, words()).endswith(": 2 ground, 6 building.")
     assert classes_line({0: 5}, words()) == ""
+
+
+KILLED = """
+import os, signal, sys
+from pathlib import Path
+from recon4.delivery.package import DeliveryWish, deliver
+from recon4.progress import Silent
+
+class Killed(Silent):
+    def start(self, what, total, unit):
+        self.seen = (*getattr(self, "seen", ()), what)
+        if self.seen[-2:] == ("pack", "compare"):
+            os.kill(os.getpid(), signal.SIGKILL)
+
+deliver(Path(sys.argv[1]), Path(sys.argv[2]), DeliveryWish(files=("map.laz",)), progress=Killed())
+"""
+
+
+def test_what_a_killed_delivery_left_is_removed_by_the_next_one(room, tmp_path):
+    out, other = tmp_path / "a[1].zip", tmp_path / ".b.zip.abcdefgh"
+    other.mkdir()
+    ended = subprocess.run([sys.executable, "-c", KILLED, room, out], check=False)
+    assert ended.returncode == -signal.SIGKILL
+    left = {path.name for path in tmp_path.iterdir()}
+    assert len(left) == 3, "the folder of its files, the file that was to be compared, another's"
+
+    deliver(room, out, wish(room), progress=Silent())
+
+    assert {path.name for path in tmp_path.iterdir()} == {out.name, other.name}
+
+
+def test_a_delivery_that_is_being_packed_is_left_alone_by_another_one(room, tmp_path):
+    out, inner = tmp_path / "a.zip", []
+
+    class Twice(Silent):
+        def start(self, what, total, unit):
+            if what == "pack" and not inner:
+                inner.append(what)
+                deliver(room, out, wish(room), progress=Silent())
+
+    deliver(room, out, wish(room), progress=Twice())
+
+    assert inner and [path.name for path in tmp_path.iterdir()] == ["a.zip"]
+    assert check_file(out).intact
