@@ -155,7 +155,7 @@ result-figures-settings-and-hashes = Kennzahlen, Einstellungen und Prüfsummen
 ## Speicher eines Projekts
 
 stored-earlier = Von früheren Läufen
-stored-earlier-without = Eine Rückkehr zu deren Einstellungen oder Entscheidungen rechnet sie neu.
+stored-earlier-without = Eine Rückkehr zu deren Einstellungen oder Entscheidungen rechnet sie neu. Die Karte ohne Entscheidungen gehört dazu: die nächste kleine Entscheidung dauert einmal so lange wie eine ganze Karte.
 stored-frames = Aufgezeichnete Punkte
 stored-frames-without = Neue Entscheidungen und die Ansichten von Paaren und Multiframes brauchen sie.
 stored-map = Kacheln der Karte

@@ -155,7 +155,7 @@ result-figures-settings-and-hashes = Figures, settings and hashes
 ## Storage of a project
 
 stored-earlier = Of earlier runs
-stored-earlier-without = Going back to their settings or decisions computes them again.
+stored-earlier-without = Going back to their settings or decisions computes them again. The map without decisions is among them: the next small decision takes as long as a whole map, once.
 stored-frames = Points as recorded
 stored-frames-without = New decisions, and the views of pairs and multiframes, need them.
 stored-map = Tiles of the map
