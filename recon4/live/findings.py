@@ -10,6 +10,7 @@ from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
 from recon4.live.session import loopback_address
+from recon4.live.shared_port import senders_to_another_port
 from recon4.live.tuning import CAPTURE_WARNINGS
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import Texts, texts
@@ -178,10 +179,19 @@ def _sensors(rig: Rig, status: Status, say: Texts) -> list[CaptureFinding]:
         text = say("none-sends-anything", time=_seconds(shortest, say), **known)
         return [CaptureFinding("error", text)]
     return elsewhere + [
-        CaptureFinding("error", say("sensor-silent", sensor=_title(sensor, say), time=time))
+        CaptureFinding("error", _silence(sensor, rig, status, time=time, say=say))
         for sensor in rig.sensors
         if sensor.name in silent and (time := _seconds(silent[sensor.name], say))
     ]
+
+
+def _silence(sensor: Sensor, rig: Rig, status: Status, *, time: str, say: Texts) -> str:
+    there = senders_to_another_port(rig, status.senders, sensor)
+    known = {"sensor": _title(sensor, say), "time": time}
+    if not there:
+        return say("sensor-silent", **known)
+    ports = {"own": str(sensor.port), "port": str(there[0].port), "sources": _sources(there)}
+    return say("sensor-silent-shared", **known, **ports)
 
 
 def _sent_elsewhere(sensor: Sensor, sender: Sender, say: Texts) -> str:

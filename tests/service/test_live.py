@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import threading
 from contextlib import contextmanager, suppress
 
@@ -120,6 +121,26 @@ def test_a_file_beside_the_rig_file_describes_its_lidar(server):
 
     (sensor,) = load_rig(server.root / "walk/recordings/rig.toml").sensors
     assert sensor.description == metadata
+
+
+def test_packets_of_another_model_are_said_although_no_pose_ever_comes(server, office_recording):
+    rig = (office_recording / "rig.toml").read_text("utf-8").replace('"VLP-16"', '"XT32"')
+    path = server.root / "rigs" / "other.toml"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(re.sub('address = ".*"', 'address = ""', rig), "utf-8")
+    new = {"project": "other", "rig": str(path), "preset": "indoor"}
+    assert server.post("/api/live", json=new).status_code == 201
+
+    def said(phone, message):
+        return any(
+            "of a VLP-16, not of the XT32" in one["text"] for one in phone.newest["findings"]
+        )
+
+    phone = Phone()
+    with sending(server, office_recording):
+        asyncio.run(phone.follow(server, lambda p, m: "findings" in p.newest and said(p, m)))
+    assert "pose" not in phone.newest
+    server.post("/api/live/stop")
 
 
 @pytest.mark.parametrize("greeting", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])

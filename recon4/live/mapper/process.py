@@ -180,7 +180,10 @@ class Mapper:
         return TailFile(path, self._growth)
 
     def _opened(self, rig: Rig) -> None:
-        """Map with the IMU of the LiDAR that is read, where the rig file names none."""
+        """Say what the reader found, and map with the IMU of the LiDAR that is read, where the rig
+        file names none.
+        """
+        self._report_notes(every_s=0.0)  # packets of another model never give a pose
         if rig.imu_sensor == self._rig.imu_sensor:
             return
         with self._mapping:

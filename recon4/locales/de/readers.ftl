@@ -109,7 +109,8 @@ RETURN-MODE = Unbekannter Echo-Modus
 
 MODEL-CONTRADICTED = Pakete eines anderen Modells
     .text1 = { $sensor }: seine Pakete sind die eines { $says }; dekodiert als { $model }.
-    .meaning = Winkel und Zeiten der Punkte sind die des Modells in der Rig-Datei.
+    .text2 = { $sensor }: seine Pakete sind die eines { $says }, nicht die des { $expected } in der Rig-Datei; sie werden nicht gelesen.
+    .meaning = Winkel und Zeiten der Punkte sind die des Modells in der Rig-Datei. Pakete anderer Hersteller werden nicht gelesen.
     .remedy = In der Rig-Datei das richtige Modell angeben.
 
 MODEL-UNLIKELY = Pakete so oft wie von einem anderen Modell

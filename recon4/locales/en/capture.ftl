@@ -10,6 +10,7 @@ ports = port { $ports }
 what-lidar = LiDAR
 what-scanner = scanner
 sensor-silent = { $sensor } silent for { $time }
+sensor-silent-shared = { $sensor } silent at port { $own } for { $time }, but { $sources } send to port { $port }: give each LiDAR the port that the rig states, or correct the rig
 sensor-elsewhere = { $sensor } sends from { $source }, not { $address }. It is used; correct the rig
 title-laser2d = 2-D laser
 title-profiler = Profiler

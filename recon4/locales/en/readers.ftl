@@ -110,8 +110,9 @@ RETURN-MODE = Unknown return mode
 
 MODEL-CONTRADICTED = Packets of another model
     .text1 = { $sensor }: its packets are those of a { $says }; decoded as { $model }.
+    .text2 = { $sensor }: its packets are those of a { $says }, not of the { $expected } in the rig file; they are not read.
     .remedy = Name the right model in the rig file.
-    .meaning = Angles and times of the points are those of the model in the rig file.
+    .meaning = Angles and times of the points are those of the model in the rig file. Packets of another make are not read.
 
 MODEL-UNLIKELY = Packets as often as of another model
     .text1 = { $sensor }: a packet every { DECIMAL($interval_ms, digits: 3) } ms is what a { $likely } sends, but it is decoded as { $model }.

@@ -220,6 +220,14 @@ class PacketCapture:
         chosen = match_streams(self.rig.sensors, groups, self._companions, report=self._report)
         channels = []
         for row, sensor in enumerate(self.rig.sensors):
+            if row not in chosen and (other := self._of_another_make(sensor, chosen)):
+                self._report.warn(
+                    FindingKind.MODEL_CONTRADICTED,
+                    sensor=sensor.name,
+                    says=other.model,
+                    expected=sensor.model,
+                )
+                continue
             if row not in chosen:
                 self._report.warn(
                     FindingKind.PACKETS_MISSING,
@@ -269,6 +277,14 @@ class PacketCapture:
             self._report.derive(DerivedKind.IMU_CHOSEN, sensor=named[0].name, other=own[0])
             return ""
         return next(iter(own), "")
+
+    def _of_another_make(
+        self, sensor: Sensor, chosen: dict[int, tuple[PacketStream, ...]]
+    ) -> PacketStream | None:
+        """What comes from its address to its port and cannot be of its model."""
+        taken = {id(stream) for streams in chosen.values() for stream in streams}
+        left = (s for s in self.streams if _is_left(s, taken) and s.model)
+        return next((s for s in left if fits(sensor, s.source, s.port)), None)
 
     def _sent_instead(self, sensor: Sensor, chosen: dict[int, tuple[PacketStream, ...]]) -> str:
         """What is refused of its address and port, or is a LiDAR of another make."""

@@ -60,8 +60,10 @@ def match_streams(
             port=sensors[row].port,
             **where,
         )
-    for streams in left:
-        report.warn(FindingKind.PACKETS_UNASSIGNED, sender=streams[0].label)
+    silent = [sensor for row, sensor in enumerate(sensors) if row not in chosen]
+    for stream, *_ in left:
+        if not any(fits(sensor, stream.source, stream.port) for sensor in silent):
+            report.warn(FindingKind.PACKETS_UNASSIGNED, sender=stream.label)
     return chosen
 
 

@@ -170,9 +170,8 @@ def test_packets_of_another_make_are_none_of_a_sensor_beside_others(tmp_path):
     )
 
     assert points == {0: 100 * 384}
-    assert warned(
-        report, K.PACKETS_MISSING, sensor="b", found="port 2369 (data packets of a VLP-16)"
-    )
+    assert warned(report, K.MODEL_CONTRADICTED, sensor="b", says="VLP-16", expected="XT32")
+    assert not warned(report, K.PACKETS_MISSING) and not warned(report, K.PACKETS_UNASSIGNED)
 
 
 @pytest.mark.parametrize(
