@@ -1,5 +1,7 @@
 """What is to be seen, without a browser."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -31,7 +33,7 @@ from recon4_app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
 from recon4_app.viewer.scene.nodes import LinesNode
 from recon4_app.viewer.scene.source import ProjectSource
 from recon4_app.viewer.words import words
-from tests.project_builder import build_project, loop_walk, verified_graph
+from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 
 ENGLISH = words("en")
 
@@ -276,6 +278,19 @@ def test_the_source_notices_new_artifacts_once(tmp_path):
     assert not unchanged
     assert source.changed() and not source.changed()
     assert source.content.edges is not None and len(source.content.cloud) == 100
+
+
+def test_a_map_that_control_points_alone_put_on_earth_is_shown(tmp_path):
+    build_project(tmp_path / "office", points=100)
+    add_multiframes(tmp_path / "office")
+    (file,) = (tmp_path / "office" / "artifacts").glob("*/georeference.json")
+    record = json.loads(file.read_text("utf-8"))
+    no_fix = {"t_ns": [], "used": [], "residual_enu_m": [], "georeferenced": True}
+    file.write_text(json.dumps(record | {"georeference": no_fix}), "utf-8")
+
+    source = ProjectSource(tmp_path / "office", tmp_path / "jobs")
+
+    assert source.content.gnss is not None and source.content.gnss.p_map.shape == (0, 3)
 
 
 def test_every_word_of_a_scene_is_in_the_language_of_the_view(tmp_path, content):

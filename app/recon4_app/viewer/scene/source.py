@@ -203,7 +203,7 @@ class ProjectSource:
         p_antenna = (T.R @ load_rig(frames / "rig.toml").p_body_antenna) + T.t
         return GnssMarks(
             t_ns=t_ns[inside],
-            p_map=p_antenna + np.array(fixes.residual_enu_m)[inside],
+            p_map=p_antenna + np.array(fixes.residual_enu_m).reshape(-1, 3)[inside],
             p_antenna=p_antenna,
             used=np.array(fixes.used, dtype=np.bool_)[inside],
         )
