@@ -12,6 +12,10 @@ from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 
+WITHOUT_GRIDS = "without grids that are missing"
+"""The best transformation that is there: enough where points surveyed in the system place the map,
+as only its place on WGS 84 depends on the datum."""
+
 
 @dataclass(frozen=True, slots=True)
 class GeodeticOrigin:
@@ -53,12 +57,15 @@ class CrsTransform:
     (``EPSG:5514+8357``) they refer to its quasi-geoid. Easting is always first.
     """
 
-    def __init__(self, origin: GeodeticOrigin, crs: str = "") -> None:
+    def __init__(self, origin: GeodeticOrigin, crs: str = "", *, operation: str = "") -> None:
         """Find the best transformation at this position.
 
         Args:
             origin: Origin of the map's local frame.
             crs: EPSG code or codes; empty = `default_crs`.
+            operation: Description of the transformation with which the map was made, or
+                `WITHOUT_GRIDS`: it may be another than the best one. Empty, or not there = the
+                best one.
 
         Raises:
             GeoreferenceError: If there is no such system, or the transformation needs a grid that
@@ -68,7 +75,13 @@ class CrsTransform:
         self.crs = code_of(crs) or default_crs(origin)
         self._target = _system(self.crs)
         self.has_heights = len(self._target.axis_info) == 3
-        self._transformer = _best_transformer(origin, self._target, self.crs)
+        found = _transformers(origin, self._target)
+        chosen = [
+            one for one in found.transformers if operation in (WITHOUT_GRIDS, one.description)
+        ]
+        self.missing_grids = _missing_grids(found)
+        """Files that the best transformation needs and that are not installed."""
+        self._transformer = chosen[0] if chosen else _best(found, self.crs)
         here = self.to_crs(np.zeros((1, 3)))[0]
         self.storage_offset = np.round(here / 1000.0) * 1000.0
         """Multiple of 1 000 m near the origin; files subtract it to keep numbers small, (3,)."""
@@ -207,7 +220,8 @@ def _system(name: str) -> Any:
     return system
 
 
-def _best_transformer(origin: GeodeticOrigin, target: Any, name: str) -> Any:
+def _transformers(origin: GeodeticOrigin, target: Any) -> Any:
+    """The operations that lead to a system, the best one first."""
     from pyproj.aoi import AreaOfInterest
     from pyproj.transformer import TransformerGroup
 
@@ -217,22 +231,27 @@ def _best_transformer(origin: GeodeticOrigin, target: Any, name: str) -> Any:
     with warnings.catch_warnings():
         # A missing grid is an error below; pyproj only warns.
         warnings.simplefilter("ignore", UserWarning)
-        group = TransformerGroup(
+        return TransformerGroup(
             source,
             target,
             always_xy=True,
             area_of_interest=place,
             allow_ballpark=False,
         )
-    if not group.best_available or not group.transformers:
-        grids = [
-            grid.short_name
-            for operation in group.unavailable_operations[:1]
-            for grid in operation.grids
-            if not grid.available
-        ]
+
+
+def _missing_grids(found: Any) -> tuple[str, ...]:
+    if found.best_available and found.transformers:
+        return ()
+    needed = (grid for one in found.unavailable_operations[:1] for grid in one.grids)
+    return tuple(grid.short_name for grid in needed if not grid.available)
+
+
+def _best(found: Any, name: str) -> Any:
+    if not found.best_available or not found.transformers:
+        grids = _missing_grids(found)
         if grids:
             several = ", ".join(grids)
             raise GeoreferenceError(CodedText("crs-grid", name=name, grids=several, file=grids[0]))
         raise GeoreferenceError(CodedText("crs-no-operation", name=name))
-    return group.transformers[0]
+    return found.transformers[0]

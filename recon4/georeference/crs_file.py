@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from recon4.errors import GeoreferenceError, StoreError
-from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin, code_of
 from recon4.georeference.site_grid import SiteGrid
 from recon4.locales.coded import CodedText
 from recon4.model.local_frame import LocalReason
@@ -53,8 +54,24 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | SiteGrid | None:
             return SiteGrid((east, north, up))
         origin = record["georeference"]["origin"]
         lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
-        return CrsTransform(
-            GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or record["crs"]["name"]
-        )
+        place = GeodeticOrigin(lat_rad, lon_rad, origin["height_m"])
+        return _in_system(place, crs, own=record["crs"])
     except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
         raise StoreError(CodedText("crs-unreadable", file=str(path), why=repr(error))) from error
+
+
+def _in_system(place: GeodeticOrigin, crs: str, *, own: Mapping[str, object]) -> CrsTransform:
+    """The map in its own system as it was put there, or in another one.
+
+    Raises:
+        GeoreferenceError: If another one is requested, and control points put the map into its own
+            without a grid: its place on earth is known to meters only.
+    """
+    name = str(own["name"])
+    if code_of(crs) in ("", name):
+        return CrsTransform(place, name, operation=str(own.get("operation", "")))
+    try:
+        as_put = CrsTransform(place, name, operation=str(own.get("operation", "")))
+    except GeoreferenceError:
+        return CrsTransform(place, crs)  # put there on a computer with the grid
+    return CrsTransform(place, name if as_put.missing_grids else crs)  # says which grid is missing

@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import GeoreferenceError
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import (
+    WITHOUT_GRIDS,
     CrsTransform,
     GeodeticOrigin,
     area_of_use,
@@ -55,7 +56,7 @@ def survey_system(crs: str, p_crs: Array, *, origin: GeodeticOrigin | None = Non
 def _placed(crs: str, p_crs: Array, origin: GeodeticOrigin | None) -> CrsTransform:
     place = origin or origin_near(crs, p_crs)
     try:
-        system = CrsTransform(place, crs)
+        system = CrsTransform(place, crs, operation="" if origin else WITHOUT_GRIDS)
     except GeoreferenceError as error:
         if _in_area(crs, place):
             raise

@@ -28,6 +28,7 @@ from recon4.georeference.control_stage import (
     suspected_checks,
     system_of,
 )
+from recon4.georeference.crs import CrsTransform
 from recon4.georeference.crs_file import read_crs
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
@@ -63,6 +64,22 @@ class ControlAccuracy:
 
 
 @dataclass(frozen=True, slots=True)
+class RoughPlace:
+    """That a map in a system is only roughly on WGS 84, as grids of the datum are not installed."""
+
+    crs: str
+    grids: tuple[str, ...]
+    accuracy_m: float
+    """Of latitude and longitude; NaN = not known."""
+
+    def said(self, language: str) -> str:
+        """It in a language."""
+        grids = ", ".join(self.grids)
+        text = CodedText("crs-rough", crs=self.crs, grids=grids, accuracy_m=self.accuracy_m)
+        return text.said(language)
+
+
+@dataclass(frozen=True, slots=True)
 class ControlTrial:
     """What control points would do to a map."""
 
@@ -75,6 +92,8 @@ class ControlTrial:
     """Surveyed points that were not measured in the map."""
     unseen_exchanges: tuple[tuple[str, str], ...] = ()
     """Pairs of control points whose names could be exchanged without a test that fails."""
+    rough: RoughPlace | None = None
+    """Where on earth the map would be; None = as exactly as the system says."""
 
 
 def site_control(
@@ -143,8 +162,8 @@ def try_control(
     level = artifacts["level"]
     trajectory, uncertainty = load_trajectory(level / "trajectory.npz"), load_uncertainty(level)
     own = read_crs(level)
-    origin = getattr(own, "origin", None) if crs else None
-    system = system_of(control, origin)
+    on_earth = own if isinstance(own, CrsTransform) and not own.missing_grids else None
+    system = system_of(control, on_earth.origin if crs and on_earth else None)
     p_site = system.to_map(np.array([one.xyz_m for one in control.targets]).reshape(-1, 3))
     ours = np.array([one.role == "control" for one in control.targets], dtype=np.bool_)
     placing = [one for one in control.targets if one.role == "control"]
@@ -167,7 +186,9 @@ def try_control(
     )
     unseen = tuple(one.id for one in points if one.id not in measured)
     pairs = tuple((found[i].id, found[j].id) for i, j in alike)
-    return ControlTrial(control, record, blunders, unseen, pairs)
+    missing = system.missing_grids if isinstance(system, CrsTransform) else ()
+    without = RoughPlace(system.crs, missing, system.accuracy_m) if missing else None
+    return ControlTrial(control, record, blunders, unseen, pairs, without)
 
 
 def forbidding(trial: ControlTrial) -> tuple[Blunder, ...]:
@@ -191,7 +212,7 @@ def trial_text(trial: ControlTrial, language: str = ENGLISH) -> str:
     """Residuals, tests and statements of a trial in lines."""
     said = [one.said(language) for one in trial.blunders]
     text = outcome_text(trial_outcome(trial), language, said)
-    return "\n".join([text, *unseen_text(trial, language)])
+    return "\n".join([text, *trial_remarks(trial, language)])
 
 
 def trial_outcome(trial: ControlTrial) -> ControlOutcome:
@@ -199,16 +220,19 @@ def trial_outcome(trial: ControlTrial) -> ControlOutcome:
     return as_type(to_plain(trial.record), ControlOutcome)
 
 
-def unseen_text(trial: ControlTrial, language: str = ENGLISH) -> tuple[str, ...]:
-    """Which names could be exchanged without a test that fails, as a line."""
+def trial_remarks(trial: ControlTrial, language: str = ENGLISH) -> tuple[str, ...]:
+    """How roughly the map would be on earth, and which names could be exchanged without a test
+    that fails, as lines.
+    """
+    rough = (trial.rough.said(language),) if trial.rough else ()
     if not trial.unseen_exchanges:
-        return ()
+        return rough
     say = texts(language, "report")
     pairs = [
         say.part("control-table", "pair", {"one": one, "other": other})
         for one, other in trial.unseen_exchanges
     ]
-    return (say.part("control-table", "unseen-exchange", {"pairs": ", ".join(pairs)}),)
+    return (*rough, say.part("control-table", "unseen-exchange", {"pairs": ", ".join(pairs)}))
 
 
 def seen_place(found: Sighting) -> SeenPlace:

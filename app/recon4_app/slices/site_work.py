@@ -17,9 +17,9 @@ from recon4.slices.site_control import (
     forbidding,
     require_agreement,
     trial_outcome,
+    trial_remarks,
     trial_text,
     try_control,
-    unseen_text,
 )
 from recon4_app.slices.model import ControlState
 from recon4_app.slices.slice_work import Artifacts
@@ -77,7 +77,7 @@ def try_site(artifacts: Artifacts, state: ControlState, crs: str, *, language: s
     )
     return SiteTrial(
         points=points,
-        remarks=(*remarks(outcome, language), *unseen_text(trial, language)),
+        remarks=(*remarks(outcome, language), *trial_remarks(trial, language)),
         text=trial_text(trial, language),
         forbidden=tuple(one.said(language) for one in forbidding(trial)),
         unseen=trial.unseen,

@@ -60,6 +60,7 @@ crs-grid = { $name } braucht das Gitter { $grids }; ohne dieses wären Höhen od
 crs-no-operation = { $name }: PROJ kennt für diesen Ort keine Transformation, die Höhen und Lage richtig ergibt
 crs-place = { $crs } gilt an diesem Ort nicht
 crs-covers = { $crs } gilt für diese Koordinaten nicht
+crs-rough = Die Karte bekommt die Koordinaten ihrer Passpunkte in { $crs }; das Gitter { $grids }, das nicht installiert ist, wird dafür nicht gebraucht. Nur Breite und Länge auf WGS 84 sind dann bloß auf { DECIMAL($accuracy_m, digits: 0) } m bekannt, und ein Export in einem anderen System ist nicht möglich.
 crs-unknown = PROJ kennt kein Koordinatenreferenzsystem { QUOTED($name) }: erwartet ein Code wie EPSG:25832, oder einer der Lage und einer der Höhe wie EPSG:25832+7837; das eigene Netz einer Baustelle hat keinen
 crs-unreadable = { $file } ist nicht lesbar: { $why }
 crs-map = die Karte lässt sich nicht in { $crs } überführen: { $why }

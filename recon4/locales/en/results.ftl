@@ -60,6 +60,7 @@ crs-grid = { $name } needs the grid { $grids }; without it heights or positions 
 crs-no-operation = { $name }: PROJ knows no transformation for this place that gives right heights and positions
 crs-place = { $crs } does not cover this place
 crs-covers = { $crs } does not cover these coordinates
+crs-rough = The map gets the coordinates of its control points in { $crs }; the grid { $grids }, which is not installed, is not needed for that. Only latitude and longitude on WGS 84 are then known to { DECIMAL($accuracy_m, digits: 0) } m, and no export in another system is possible.
 crs-unknown = PROJ knows no coordinate reference system { QUOTED($name) }: expected a code as EPSG:25832, or one of place and one of heights as EPSG:25832+7837; the own grid of a site has none
 crs-unreadable = { $file } cannot be read: { $why }
 crs-map = the map cannot be put into { $crs }: { $why }
