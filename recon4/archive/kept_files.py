@@ -7,6 +7,7 @@ to show what was approved. Their names begin with the key of the map.
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Iterator, Set
 from pathlib import Path
 
@@ -25,11 +26,11 @@ def state_of(project: Path) -> Path:
 
 
 def kept_files(state: Path) -> Iterator[tuple[str, Path]]:
-    """Key of the map and place of each kept file."""
+    """Key of the map and place of each kept file, or folder of files."""
     for folder in (state / name for name in KEPT_FOLDERS):
         for path in sorted(folder.iterdir()) if folder.is_dir() else ():
             found = _OF_MAP.fullmatch(path.name)
-            if found and path.is_file() and not path.is_symlink():
+            if found and not path.is_symlink():
                 yield found[1], path
 
 
@@ -45,5 +46,8 @@ def sweep_kept(state: Path, known: Set[str]) -> list[str]:
     """
     gone = [path for key, path in kept_files(state) if key not in known]
     for path in gone:
-        path.unlink(missing_ok=True)
+        if path.is_dir():
+            shutil.rmtree(path, ignore_errors=True)
+        else:
+            path.unlink(missing_ok=True)
     return [path.name for path in gone]

@@ -9,6 +9,7 @@ import pytest
 from recon4.archive.kept_files import kept_files
 from recon4.archive.space import stored_parts
 from recon4.store.project import Project
+from recon4_app.jobs.space import size_below
 from recon4_app.storage.storage_work import free_expired
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.served import served
@@ -128,8 +129,11 @@ def test_what_is_kept_of_a_map_for_the_pages_is_counted_and_goes_with_the_map(se
         build_project(server.root / name, points=100 * len(name))
         for page in ("map", "thumbnail"):
             assert server.get(f"/api/projects/{name}/{page}").status_code == 200
+    ahead = server.root / ".recon4/slices" / f"{kept(server)[0].partition('-')[0]}-first"
+    ahead.mkdir()
+    (ahead / "index.json").write_text("{}")
     both = kept(server)
-    sizes = [path.stat().st_size for _, path in kept_files(server.root / ".recon4")]
+    sizes = [size_below(path) for _, path in kept_files(server.root / ".recon4")]
 
     parts = [
         server.get(f"/api/projects/{one}/storage").json()["parts"] for one in ("office", "shop")
