@@ -30,6 +30,7 @@ from recon4.georeference.control_stage import (
 )
 from recon4.georeference.crs import CrsTransform
 from recon4.georeference.crs_file import read_crs
+from recon4.georeference.site_grid import SiteGrid
 from recon4.locales.coded import CodedText
 from recon4.locales.languages import ENGLISH
 from recon4.locales.texts import texts
@@ -186,9 +187,13 @@ def try_control(
     )
     unseen = tuple(one.id for one in points if one.id not in measured)
     pairs = tuple((found[i].id, found[j].id) for i, j in alike)
-    missing = system.missing_grids if isinstance(system, CrsTransform) else ()
-    without = RoughPlace(system.crs, missing, system.accuracy_m) if missing else None
-    return ControlTrial(control, record, blunders, unseen, pairs, without)
+    return ControlTrial(control, record, blunders, unseen, pairs, _rough(system))
+
+
+def _rough(system: CrsTransform | SiteGrid) -> RoughPlace | None:
+    if isinstance(system, SiteGrid) or not system.missing_grids:
+        return None
+    return RoughPlace(system.crs, system.missing_grids, system.accuracy_m)
 
 
 def forbidding(trial: ControlTrial) -> tuple[Blunder, ...]:

@@ -141,6 +141,7 @@ def test_packets_of_another_model_are_said_although_no_pose_ever_comes(server, o
         asyncio.run(phone.follow(server, lambda p, m: "findings" in p.newest and said(p, m)))
     assert "pose" not in phone.newest
     server.post("/api/live/stop")
+    asyncio.run(Phone().follow(server, lambda p, message: message.get("state") == "ready"))
 
 
 @pytest.mark.parametrize("greeting", [b"\x00\xff", "", "[", "3", '{"have": [1]}', "[" * 100_000])

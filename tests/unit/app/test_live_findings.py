@@ -53,16 +53,6 @@ def test_without_faults_there_are_no_findings():
     assert found_in(rig=WITH_ADDRESSES, pose=pose()) == []
 
 
-def test_two_lidars_at_the_port_of_one_are_named_with_what_to_do():
-    first, second = sender(2368, source="10.0.0.1"), sender(2368, source="10.0.0.2")
-    ((level, text), *_) = found_in(status(first, second, IMU), pose=pose())
-
-    assert level == "error" and text.startswith("vertical LiDAR silent at port 2369 for")
-    assert "but 10.0.0.1, 10.0.0.2 send to port 2368: give each LiDAR the port" in text
-    alone = found_in(status(first, IMU), pose=pose())
-    assert any(text.startswith("vertical LiDAR silent for") for _, text in alone)
-
-
 def test_no_sensor_is_silent_in_the_first_seconds():
     assert found_in(status(sender(9999), seconds=1.0)) == []
 
