@@ -183,9 +183,7 @@ def ingest(
     paths = sources.recordings
     given = _Samples.of_files(sources, out, settings=settings, report=report)
     recording = _opened(sources, live, settings=settings)
-    assembler = Assembler(
-        recording.rig, settings=settings, report=report, wait_s=recording.wait_s, on_cut=live.watch
-    )
+    assembler = Assembler(recording.rig, settings=settings, report=report, wait_s=recording.wait_s)
     with FrameWriter(out, recording.rig) as writer:
         found = _Samples(given.lines)
         receivers = _Receivers(writer, found, live.watch)
@@ -252,6 +250,7 @@ def _write_frames(
         if not written.duration_ns:
             count = round(recording.seconds * 1e9 / item.duration_ns)
             progress.start("frames", count, "multiframe")
+        receivers.watch(item)
         receivers.writer.append(item)
         written.add(item)
         progress.advance()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
@@ -52,6 +53,8 @@ class _Stream:
     """Whether it has points for multiframes; a 2-D laser has none."""
     spins: bool = True
     """Whether its rotation may set the length of a multiframe."""
+    rotation_hz: float = math.nan
+    """As its packets say; NaN = not known."""
     points: int = 0
     late: int = 0
 
@@ -76,7 +79,6 @@ class Assembler:
         settings: IngestSettings,
         report: ImportReport,
         wait_s: float = ASSEMBLY.wait_s,
-        on_cut: Callable[[Multiframe], None] = lambda frame: None,
     ) -> None:
         """Prepare.
 
@@ -86,10 +88,7 @@ class Assembler:
             report: Receives counts of everything dropped.
             wait_s: A sensor that is silent for this time while another delivers no longer delays
                 the frames [s].
-            on_cut: Called with each multiframe at once; it is returned only when the next one is
-                complete, because the last one may be incomplete.
         """
-        self._on_cut, self._begun = on_cut, False
         self._settings, self._report = tuned(IngestTuning, settings), report
         self._beams = [sensor.beams for sensor in rig.sensors]
         self._blind_m = [blind_range_m(sensor) for sensor in rig.sensors]
@@ -101,8 +100,12 @@ class Assembler:
         self._start_ns: int | None = None
         self._next = 0
         """Frames since the start, empty ones counted."""
-        self._held: Multiframe | None = None
-        self._usual = 0.0
+        self._first: Multiframe | None = None
+        """Waits for the second frame: it may be incomplete."""
+        self._frames = 0
+        """Returned so far."""
+        self._usual, self._newest = 0.0, 0
+        """Usual number of points of a frame but the newest, and of the newest."""
         self.duration_ns = 0
         """Length of a frame [ns]; 0 until it is known."""
         self.rotation_hz: dict[str, float] = {}
@@ -127,6 +130,7 @@ class Assembler:
         )
         for number, part in enumerate(runs(kept, round(self._settings.gap_s * 1e9))):
             self._take(part, set_back=number > 0 or shots.set_back)
+        self._streams[shots.sensor].rotation_hz = shots.rotation_hz
         if self._start_ns is not None or self._head_complete():
             yield from self._cut(final=False)
 
@@ -136,8 +140,8 @@ class Assembler:
         for stream in self._streams:
             self._report.count("points_late", stream.late)
         warn_of_lidar_clocks(self._report)
-        held, self._held = self._held, None
-        return frames if held is None else [*frames, held]
+        first, self._first = self._first, None
+        return frames if first is None else [*frames, first]
 
     # -- taking in
 
@@ -202,22 +206,29 @@ class Assembler:
 
     def _head_complete(self) -> bool:
         ends = [s.last_ns - s.first_ns for s in self._streams if s.last_ns and s.first_ns]
-        points = sum(len(shots) for stream in self._streams for shots in stream.waiting)
-        many = points >= ASSEMBLY.head_points
-        least_ns = ASSEMBLY.short_head_ns if many else PROBE.head_ns
+        least_ns = PROBE.head_ns
+        if self._many_wait():
+            least_ns = 0 if self._packets_tell_rotation() else ASSEMBLY.short_head_ns
         everyone = len(ends) == self._expected and min(ends, default=0) >= least_ns
         return everyone or max(ends, default=0) >= PROBE.head_ns + self._wait_ns
+
+    def _many_wait(self) -> bool:
+        waiting = (len(shots) for stream in self._streams for shots in stream.waiting)
+        return sum(waiting) >= ASSEMBLY.head_points
+
+    def _packets_tell_rotation(self) -> bool:
+        return all(math.isfinite(s.rotation_hz) for s in self._streams if s.delivers and s.spins)
 
     def _begin(self) -> None:
         seen = [stream for stream in self._streams if stream.waiting]
         starts = [stream.first_ns for stream in seen if stream.first_ns is not None]
         if max(starts) - min(starts) > ASSEMBLY.clocks_ns:
             raise ConfigError(clocks_text([(s.name, s.first_ns or 0) for s in seen]))
+        by_packets = self._many_wait() and self._packets_tell_rotation()
         for stream in seen:
-            if not stream.spins:
-                continue
-            rate_hz = rotation_of_head(stream.waiting, PROBE.head_ns)
-            self.rotation_hz[stream.name] = rate_hz
+            if stream.spins:
+                measured = rotation_of_head(stream.waiting, PROBE.head_ns)
+                self.rotation_hz[stream.name] = stream.rotation_hz if by_packets else measured
         self._start_ns = min(starts)
         self.duration_ns = round(1e9 / self._rate_hz())
 
@@ -273,30 +284,31 @@ class Assembler:
         self._next += 1
         if not parts:
             return []
-        frame_id = self._held.frame_id + 1 if self._held else 0
+        frame_id = self._frames + (self._first is not None)
         frame = _multiframe(parts, frame_id, start_ns, duration_ns=self.duration_ns)
         if self._too_small(frame):
             return []
         for row, stream in enumerate(self._streams):
             if stream.delivers and not np.any(frame.sensor == row):
                 self._report.count(f"frames_without_{stream.name}")
-        before, self._held = self._held, frame
-        if self._begun:
-            self._on_cut(frame)
-        return self._release(before, frame) if before else []
+        return self._released(frame)
 
-    def _release(self, before: Multiframe, frame: Multiframe) -> list[Multiframe]:
-        """Return the frame held back, unless it is an incomplete one at the start."""
-        if before.frame_id == 0 and len(before) < ASSEMBLY.kept_ratio * len(frame):
-            self._leave_out(before)
-            self._held = _renumbered(frame, 0)
+    def _released(self, frame: Multiframe) -> list[Multiframe]:
+        """The frame, with the first one before the second, unless that one is incomplete."""
+        first, self._first = self._first, None
+        if first is None and not self._frames:
+            self._first = frame
             return []
-        if not self._begun:
-            self._begun = True
-            self._on_cut(before)
-            self._on_cut(frame)
-        self._usual += 0.1 * (len(before) - self._usual) if self._usual else len(before)
-        return [before]
+        if first is not None and len(first) < ASSEMBLY.kept_ratio * len(frame):
+            self._leave_out(first)
+            self._first = _renumbered(frame, 0)
+            return []
+        frames = [frame] if first is None else [first, frame]
+        self._frames += len(frames)
+        before = self._newest if first is None else len(first)
+        self._usual += 0.1 * (before - self._usual) if self._usual else before
+        self._newest = len(frame)
+        return frames
 
     def _too_small(self, frame: Multiframe) -> bool:
         """Whether all points are of a small part of the time, as beside a cloud that is missing."""
@@ -353,7 +365,7 @@ def _multiframe(parts: list[Shots], frame_id: int, t_ns: int, *, duration_ns: in
         "ring": np.concatenate([p.ring for p in parts]),
         "sensor": np.concatenate([np.full(len(p), p.sensor, np.uint8) for p in parts]),
         "echo": np.concatenate([p.echo for p in parts]),
-        "dt_ns": np.concatenate([p.t_ns - t_ns for p in parts]).astype(np.int32),
+        "dt_ns": np.concatenate([(p.t_ns - t_ns).astype(np.int32) for p in parts]),
     }
     frame = Multiframe(frame_id, t_ns, duration_ns, **columns)
     if all(a.sensor != b.sensor or a.t_ns[-1] <= b.t_ns[0] for a, b in pairwise(parts)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,8 @@ class Shots:
     """0 = only or strongest return, 1 = further return of the same shot, (N,)."""
     set_back: bool = False
     """Whether its clock was set back since the shots before: what is earlier does not overlap."""
+    rotation_hz: float = math.nan
+    """Revolutions a second as its packets say, from the first one on; NaN = they do not."""
 
     def __len__(self) -> int:
         return len(self.t_ns)

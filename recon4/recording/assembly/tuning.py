@@ -19,8 +19,9 @@ class AssemblyTuning(Struct, frozen=True, kw_only=True):
     """Without a rotation frames are cut this often."""
     head_points: int = 1_500_000
     short_head_ns: int = 500_000_000
-    """With as many points the first frame is cut after this time already [ns]: it is enough for a
-    rotation, and a second of two OS1-128 with two returns takes 170 MB."""
+    """With as many points the first frame is cut at once if the packets say how fast all LiDARs
+    turn, else after this time [ns]: it is enough for a rotation by points, and a second of two
+    OS1-128 with two returns takes 170 MB."""
     wait_s: float = 10.0
     """Readers may deliver several seconds of one sensor at a time."""
 

@@ -17,7 +17,12 @@ from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clocks.compare import LIDAR
-from recon4.recording.formats.datagrams import Datagrams, address_number, join_datagrams
+from recon4.recording.formats.datagrams import (
+    NO_DATAGRAMS,
+    Datagrams,
+    address_number,
+    join_datagrams,
+)
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.info.files_near import COMPANION_SUFFIXES
 from recon4.recording.packets.companions import companions_of, described_in
@@ -116,6 +121,7 @@ class PacketCapture:
         self.rig = self._imu.rig
         self._settings = settings
         self._channels = self._assign(groups)
+        self.streams = [_without_head(stream) for stream in self.streams]
         self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
         self._samples, self._open = SampleDecoder(report), open_file
 
@@ -311,7 +317,12 @@ class PacketCapture:
         decoder = open_decoder(
             of, utc_offset_ns=streams[0].utc_offset_ns, alone=len(self.rig.sensors) == 1
         )
-        return _Channel(sensor, streams, decoder)
+        return _Channel(sensor, tuple(map(_without_head, streams)), decoder)
+
+
+def _without_head(stream: PacketStream) -> PacketStream:
+    """A stream of points whose sensor is found: its first packets are not needed any more."""
+    return replace(stream, head=NO_DATAGRAMS) if stream.kind == "data" else stream
 
 
 def _found_instead(streams: Sequence[PacketStream], heads: ImportReport) -> str:

@@ -125,9 +125,9 @@ class PacketDecoder:
         return self._shots(*self._in_order(t_arrival_ns, payloads))
 
     def push_in_parts(self, t_arrival_ns: Times, payloads: Payloads) -> Iterator[Shots]:
-        """As `push`, in parts of about `SlotTuning.slot_ns`: fewer points are in memory at once."""
+        """As `push`, in parts of about `SlotTuning.part_ns`: fewer points are in memory at once."""
         t_ns, payloads = self._in_order(t_arrival_ns, payloads)
-        most = max(1, round(SLOTS.slot_ns / SECOND_NS / self._layout.packet_s))
+        most = max(1, round(SLOTS.part_ns / SECOND_NS / self._layout.packet_s))
         set_back = self._order.is_set_back
         for first in range(0, max(1, len(t_ns)), most):
             self._order.is_set_back = set_back
@@ -177,10 +177,9 @@ class PacketDecoder:
         else:
             payloads = np.zeros((0, self.size), np.uint8)
         shots = self._layout.decode(t_ns + self._offset_ns, payloads)
-        if not self._order.is_set_back or not len(shots):
-            return shots
-        self._order.is_set_back = False
-        return replace(shots, set_back=True)
+        set_back = self._order.is_set_back and len(shots) > 0
+        self._order.is_set_back &= not set_back
+        return replace(shots, set_back=set_back, rotation_hz=self._rotation.hz)
 
     def _check_interval(self, t_ns: Times, payloads: Payloads) -> None:
         """Count missing packets, measure rotation, and see whether the model can be true."""

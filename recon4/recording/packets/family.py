@@ -13,7 +13,7 @@ bags, live capture. A family tells what its packets look like and turns packets 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
@@ -114,6 +114,10 @@ class PacketSensor:
     """Limits of the range."""
     report: ImportReport
     """Receives counts, warnings and what was derived."""
+
+    def without_head(self) -> PacketSensor:
+        """The same for the rest of the recording: the first packets are kept no longer."""
+        return replace(self, head=NO_DATAGRAMS, beside=NO_DATAGRAMS)
 
 
 class PacketFormat(Protocol):

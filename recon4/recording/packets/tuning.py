@@ -116,6 +116,8 @@ class SlotTuning(Struct, frozen=True, kw_only=True):
 
     slot_ns: int = 100_000_000
     """Of the recorder's clock."""
+    part_ns: int = 25_000_000
+    """Of a slot, whose points are made at once: they wait until all are in a frame."""
     first_ns: int = 1_000_000_000
     """The first slot is longer, because the clocks of the sensors are compared in it."""
     bytes: int = 24 << 20

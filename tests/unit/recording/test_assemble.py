@@ -311,17 +311,27 @@ def test_the_rotation_of_the_head_is_measured_without_a_copy_of_its_points():
 
 
 def test_the_frames_of_the_first_second_are_made_one_by_one():
-    made = []
-    assembler = Assembler(
-        load_rig("single-vlp16"), settings=SETTINGS, report=ImportReport(), on_cut=made.append
-    )
+    assembler = Assembler(load_rig("single-vlp16"), settings=SETTINGS, report=ImportReport())
+    shots = spin(seconds=2.0)
 
-    frames = assembler.pushed(spin(seconds=2.0))
+    frames = assembler.pushed(shots)
     first = next(frames)
 
     assert first.frame_id == 0
-    assert len(made) == 2, "that, and the one that shows that it is whole"
+    left = sum(map(len, assembler._streams[0].waiting))
+    assert left == len(shots) - 2 * len(first), "that, and the one that shows that it is whole"
     assert len(list(frames)) > 10
+
+
+def test_a_frame_is_given_as_soon_as_it_is_cut():
+    assembler = Assembler(load_rig("single-vlp16"), settings=SETTINGS, report=ImportReport())
+
+    parts = pieces(spin(seconds=2.0), 20)
+
+    given = [[frame.frame_id for frame in assembler.push(part)] for part in parts]
+
+    assert given[-1] == [18]
+    assert [frame.frame_id for frame in assembler.flush()] == [19]
 
 
 @pytest.mark.parametrize("seconds", [0.031, 0.04, 0.08])

@@ -3,6 +3,7 @@
 Captured datagrams are made up; what follows them is the reader of captures.
 """
 
+import math
 import weakref
 
 import numpy as np
@@ -75,15 +76,17 @@ def test_a_slot_that_was_read_is_gone(tmp_path):
     assert first() is None
 
 
-def test_of_many_points_half_a_second_is_enough_for_the_first_frame():
+@pytest.mark.parametrize(("rotation_hz", "turns"), [(math.nan, 6), (10.0, 5)])
+def test_of_many_points_few_wait_for_the_first_frame(rotation_hz, turns):
+    """Half a second, or what shows that the frame is whole where the packets say the rotation."""
     assembler = Assembler(rig(sensor(port=2368)), settings=IngestSettings(), report=ImportReport())
-    count, frames = 320_000, []
+    count, frames = 320_000 if math.isnan(rotation_hz) else 400_000, []
     angle = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     ring = np.stack([np.cos(angle), -np.sin(angle), np.zeros(count)], axis=1)
-    for turn in range(6):
+    for turn in range(turns):
         t_ns = T0_NS + 100_000_000 * turn + np.arange(count) * 100_000_000 // count
         columns = (np.zeros(count, dtype) for dtype in (np.uint16, np.uint8, np.uint8))
-        shots = Shots(0, t_ns, (5.0 * ring).astype(np.float32), *columns)
+        shots = Shots(0, t_ns, (5.0 * ring).astype(np.float32), *columns, rotation_hz=rotation_hz)
         frames += assembler.push(shots)
 
     assert len(frames) >= 3

@@ -40,7 +40,7 @@ class SpinningPoints:
     def __init__(self, firing: FiringVariants, angles: Angles, sensor: PacketSensor) -> None:
         """Prepare the tables of channels."""
         model, layout = firing.model, firing.layout
-        self._firing, self._sensor = firing, sensor
+        self._firing, self._sensor = firing, sensor.without_head()
         # from +x, the azimuth 0 of the kernel, counterclockwise to +y, that of Hesai
         azimuth_cdeg = 100.0 * np.rad2deg(angles.azimuth_rad) - TURN_CDEG // 4
         self._channels = beams(
@@ -113,7 +113,7 @@ class MirrorPoints:
     def __init__(self, firing: FiringVariants, mirrors: MirrorTable, sensor: PacketSensor) -> None:
         """Prepare the tables of directions."""
         layout, model = firing.layout, firing.model
-        self._sensor = sensor
+        self._sensor = sensor.without_head()
         self._shape = Shape(
             blocks=layout.blocks,
             first=layout.blocks_at + layout.azimuth_at,

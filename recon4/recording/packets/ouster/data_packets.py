@@ -80,7 +80,7 @@ class OusterPackets:
         self.sample_sizes = SAMPLE_SIZES - {self.size}
         self.packet_s = metadata.layout.columns * turning.column_s
         self._layout, self._turn = metadata.layout, turning.columns
-        self._sensor, self._metadata = sensor, metadata
+        self._sensor, self._metadata = sensor.without_head(), metadata
         self._report = sensor.report
         self._tables = _tables(metadata, turning.columns)
         self._imu = ImuPackets(metadata, sensor)

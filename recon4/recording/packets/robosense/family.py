@@ -137,7 +137,7 @@ class SpinningFormat:
         Raises:
             ConfigError: If the angles of its lasers are nowhere.
         """
-        self._of, self._report = of, of.report
+        self._of, self._report = of.without_head(), of.report
         head = _of_size(of.head, SIZE)
         self._model = with_stamp_unit(model, head[has_id(head, model)])
         self._device = _device(of.head, model) or _device(of.beside, model)
@@ -234,7 +234,7 @@ class SolidFormat:
 
     def __init__(self, of: PacketSensor, model: SolidModel) -> None:
         """Prepare."""
-        self._of, self._model = of, model
+        self._of, self._model = of.without_head(), model
         self.size, self.packet_s = model.size, model.packet_s
 
     def sound(self, payloads: Payloads) -> NDArray[np.bool_]:

@@ -176,7 +176,7 @@ class VelodyneFormat:
         Raises:
             ConfigError: If packets of its model are not decoded.
         """
-        self._of, self._report = of, of.report
+        self._of, self._report = of.without_head(), of.report
         self._model = velodyne_model(of.sensor.model)
         self._mode = _first_mode(of.head)
         self._product: int | None = None

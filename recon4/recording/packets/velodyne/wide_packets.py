@@ -102,7 +102,7 @@ class WideFormat:
         Raises:
             ConfigError: If an HDL-64E has no calibration.
         """
-        self._of, self._report = of, of.report
+        self._of, self._report = of.without_head(), of.report
         rows = np.flatnonzero(of.head.length == DATA_SIZE)
         head = of.head.payloads(rows, DATA_SIZE)
         self._model = VLS128 if of.sensor.model == VLS128.name else _hdl64(of, head)
