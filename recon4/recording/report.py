@@ -110,6 +110,11 @@ class ImportReport:
         else:
             self.count("remarks_more")
 
+    def withdraw(self, kind: FindingKind, sensor: str) -> None:
+        """Remove warnings of a kind about a sensor: the whole recording shows that none is due."""
+        kept = [one for one in self.findings if (one.kind, one.sensor) != (kind, sensor)]
+        self.findings[:] = kept
+
     @property
     def recorder_set_ns(self) -> tuple[int, ...]:
         """Jumps of the recorder's clock [ns]: as by the LiDAR that shows most of them."""

@@ -174,7 +174,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
     return save_findings(context.out, check_walk(read_walk(artifacts, context.settings)))
 
 
-FRAMES = Stage("frames", 57, ImportReads, _frames, FrameFigures, percent=9.0)
+FRAMES = Stage("frames", 58, ImportReads, _frames, FrameFigures, percent=9.0)
 CALIBRATION = Stage(
     "calibration", 17, CalibrationReads, _calibration, CalibrationFigures, percent=3.0
 )

@@ -238,6 +238,9 @@ FRAMES-RATE =
     .text1-if-assumed = Keine Umdrehung gefunden, in Frames mit { SIGNIFICANT($rate_hz, digits: 6) } Hz geteilt.
     .text2-if-by_rotation = Frames mit { SIGNIFICANT($rate_hz, digits: 6) } Hz: eine Umdrehung des langsamsten LiDARs.
 
+CLOUDS-THINNED =
+    .text1 = { $sensor }: in der ganzen Aufzeichnung fehlen { DECIMAL($pause_s, digits: 3) } s von je { DECIMAL($every_s, digits: 3) } s, wie wenn nur ein Teil der Punktwolken behalten wird. Die Bewegung wird überbrückt.
+
 CLOCK-CORRECTED =
     .text1 = { $sensor }: seine Uhr wird seit seiner ersten Messung um { DECIMAL($rate_ppm, digits: 1, sign: 1) } µs je Sekunde korrigiert, wie die Rig-Datei angibt.
 

@@ -235,6 +235,9 @@ FRAMES-RATE =
     .text1-if-assumed = No rotation found, cut into frames at { SIGNIFICANT($rate_hz, digits: 6) } Hz.
     .text2-if-by_rotation = Frames at { SIGNIFICANT($rate_hz, digits: 6) } Hz: one revolution of the slowest LiDAR.
 
+CLOUDS-THINNED =
+    .text1 = { $sensor }: all over the recording nothing for { DECIMAL($pause_s, digits: 3) } s of every { DECIMAL($every_s, digits: 3) } s, as where only some of the clouds are kept. The motion is bridged.
+
 CLOCK-CORRECTED =
     .text1 = { $sensor }: its clock is corrected by { DECIMAL($rate_ppm, digits: 1, sign: 1) } µs a second since its first measurement, as the rig file says.
 

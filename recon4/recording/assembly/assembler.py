@@ -16,6 +16,7 @@ from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Times
+from recon4.recording.assembly.even_gaps import even_pause_ns
 from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation_rate import nominal, rotation_of_head
 from recon4.recording.assembly.shots import Shots
@@ -139,6 +140,7 @@ class Assembler:
         frames = list(self._cut(final=True))
         for stream in self._streams:
             self._report.count("points_late", stream.late)
+        self._sum_up_gaps()
         warn_of_lidar_clocks(self._report)
         first, self._first = self._first, None
         return frames if first is None else [*frames, first]
@@ -195,6 +197,20 @@ class Assembler:
                 end_s=since_s + max(0.0, gap.seconds),
                 seconds=abs(gap.seconds),
             )
+
+    def _sum_up_gaps(self) -> None:
+        """State once that clouds were left out evenly, in place of each gap."""
+        for stream in self._streams:
+            own = [gap for gap in self.gaps if gap.sensor == stream.name]
+            starts_ns = np.array([gap.t_ns for gap in own], np.int64)
+            lengths_ns = np.array([1e9 * gap.seconds for gap in own])
+            span_ns = stream.first_ns or 0, stream.last_ns or 0
+            if every_ns := even_pause_ns(starts_ns, lengths_ns, span_ns):
+                self.gaps = [gap for gap in self.gaps if gap.sensor != stream.name]
+                self._report.withdraw(FindingKind.TIME_GAP, stream.name)
+                self._report.counts["gaps"] -= len(own)
+                about = {"every_s": 1e-9 * every_ns, "pause_s": float(np.median(lengths_ns)) * 1e-9}
+                self._report.derive(DerivedKind.CLOUDS_THINNED, sensor=stream.name, **about)
 
     def _note_inner_gaps(self, stream: _Stream, shots: Shots, gap_ns: int) -> None:
         steps = np.diff(shots.t_ns)

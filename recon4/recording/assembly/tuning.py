@@ -29,6 +29,19 @@ class AssemblyTuning(Struct, frozen=True, kw_only=True):
 ASSEMBLY = AssemblyTuning()
 
 
+class EvenGapTuning(Struct, frozen=True, kw_only=True):
+    """Gaps that are one statement (`even_gaps.py`)."""
+
+    least: int = 5
+    uneven: float = 0.2
+    """Starts and lengths differ by less than this part of the time from one to the next."""
+    ends: float = 2.0
+    """The first and the last are nearer than this many steps to the ends of the recording."""
+
+
+EVEN_GAPS = EvenGapTuning()
+
+
 class RotationTuning(Struct, frozen=True, kw_only=True):
     """How fast a LiDAR turns, by the azimuths of its points (`rotation_rate.py`)."""
 

@@ -323,6 +323,20 @@ def test_the_frames_of_the_first_second_are_made_one_by_one():
     assert len(list(frames)) > 10
 
 
+@pytest.mark.parametrize(("kept", "gaps"), [(range(0, 40, 3), 0), ((0, 3, 6, 9, 12, 21, 24), 6)])
+def test_clouds_that_were_left_out_evenly_are_one_statement(kept, gaps):
+    parts = pieces(spin(seconds=4.0), 40)
+
+    _, assembler, report = assemble([parts[k] for k in kept])
+
+    assert len(assembler.gaps) == report.counts["gaps"] == gaps
+    assert warned(report, K.TIME_GAP, sensor="lidar") == bool(gaps)
+    stated = [
+        text for text in derivations(report) if "nothing for 0.200 s of every 0.300 s" in text
+    ]
+    assert len(stated) == (not gaps)
+
+
 def test_a_frame_is_given_as_soon_as_it_is_cut():
     assembler = Assembler(load_rig("single-vlp16"), settings=SETTINGS, report=ImportReport())
 
