@@ -76,6 +76,8 @@ class TriedHypothesis(msgspec.Struct, frozen=True, kw_only=True):
     """Ratio of the fixes that it contradicts, 0..1."""
     unexplained: float | None = None
     """Part of the turns that the LiDARs see alone and the gyroscope does not measure, 0.."""
+    other_axes: float | None = None
+    """What speaks for other axes of the gyroscope by these turns: a log likelihood ratio, twice."""
     moved_m: float | None = None
     """Largest distance of a position from the walk that suggested it [m]."""
     verdict: TrialVerdict

@@ -79,8 +79,7 @@ class ComparedTurns:
 
         Twice its logarithm: beside errors of one size it is chi-square distributed.
         """
-        left, left_simpler = (max(1.0 - part, 1e-12) for part in (explained, simpler))
-        return self.of_body.size * float(np.log(left_simpler / left))
+        return _log_ratio(self.of_body.size, explained, simpler)
 
     def rotation_sd_rad(self, explained: float) -> float:
         """Standard deviation of a rotation that explains so much, about its vaguest axis [rad]."""
@@ -121,6 +120,22 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
     """Rotation and clock that make the turn rates of an IMU fit a trajectory, if it turns."""
     turns = compare_turns(trajectory, t_ns, imu)
     return None if turns is None else turns.aligned()
+
+
+def for_other_axes(of_body: Array, of_imu: Array) -> float:
+    """What speaks for a rotation of the gyroscope: see `ComparedTurns.log_likelihood_ratio`.
+
+    Args:
+        of_body: Turns of the body [rad], (N, 3).
+        of_imu: The same as the gyroscope measures them by its rig.
+    """
+    _, explained, _, _ = _fit(of_body, of_imu, 1.0)
+    return _log_ratio(of_body.size, explained, _squared_correlation(of_body, of_imu))
+
+
+def _log_ratio(count: int, explained: float, simpler: float) -> float:
+    left, left_simpler = (max(1.0 - part, 1e-12) for part in (explained, simpler))
+    return count * float(np.log(left_simpler / left))
 
 
 def _saturated(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:

@@ -32,6 +32,7 @@ from recon4.registration.imu_choice import (
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.moving import find_moving, hide_moving
 from recon4.registration.tracked_walk import TrackedWalk, WalkInputs, track_walk
+from recon4.registration.tuning_imu import TURNED_IMU
 from recon4.registration.tuning_motion import HYPOTHESES
 
 
@@ -56,10 +57,15 @@ class _Shown:
 
 
 def doubts_imu(choice: Choice) -> bool:
-    """Whether a walk contradicts its IMU: tracking was lost, it is wrong, or less of it is used."""
+    """Whether a walk contradicts its IMU.
+
+    Tracking was lost, the IMU is wrong, less of it is used, or other axes fit the windows better.
+    """
     tracked, imu = choice.best.tracked, choice.best.hypothesis.imu
     faults = tracked.estimate.faults if tracked.estimate else ()
-    return tracked.score.lost_in_sight > 0 or bool(faults) or imu.choice.outcome in LESS_USED
+    other_axes = max((row.other_axes or 0.0 for row in choice.tried), default=0.0)
+    contradicted = bool(faults) or other_axes > TURNED_IMU.doubted_sigmas**2
+    return contradicted or tracked.score.lost_in_sight > 0 or imu.choice.outcome in LESS_USED
 
 
 def choose_walk(recording: WalkInputs) -> Choice:

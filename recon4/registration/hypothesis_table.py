@@ -31,6 +31,7 @@ def row_of(trial: TrialRow, *, whole: bool, chosen: bool) -> TriedHypothesis:
         residual_m=_rounded(score.residual_m),
         contradicted=_rounded(score.contradicted),
         unexplained=_rounded(score.unexplained),
+        other_axes=_rounded(score.other_axes),
         moved_m=_rounded(score.moved_m),
         verdict=trial.verdict,
         chosen=chosen,

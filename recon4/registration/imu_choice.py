@@ -19,6 +19,7 @@ from recon4.model.odometry_figures import ImuChoice
 from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import Because, TrialVerdict, TriedHypothesis
 from recon4.registration.choose import Trials, choose
+from recon4.registration.gyro_alignment import for_other_axes
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.hypothesis_table import row_of
 from recon4.registration.motion import ImuMotion
@@ -233,15 +234,17 @@ def _track(
         odometry = Odometry(frames.rig, settings, hypothesis.imu.samples)
         steps = [odometry.push(frames[k]) for k in window.rows]
         counted.append(steps[window.settling :])
-    unexplained = None
+    unexplained = other_axes = None
     if hypothesis.doubted is not None and hypothesis.doubted.samples is not None:
         motion = ImuMotion(hypothesis.doubted.samples, frames.rig, settings.odometry)
         unexplained = unexplained_turns(counted, motion)
+        other_axes = for_other_axes(*_turns(counted, motion))
     score = Score(
         multiframes=sum(len(window.rows) for window in windows),
         lost=sum(step.lost for steps in counted for step in steps),
         residuals_m=np.array([step.error_m for steps in counted for step in steps[1:]]),
         unexplained=unexplained,
+        other_axes=other_axes,
     )
     return TrackedWindows(score, odometry, steps[-1])
 
@@ -256,12 +259,18 @@ def unexplained_turns(windows: Sequence[Sequence[OdometryStep]], motion: ImuMoti
     Returns:
         Infinite without any turn.
     """
-    pairs = [(a, b) for steps in windows for a, b in pairwise(steps) if not (a.lost or b.lost)]
-    seen = np.array([so3_log(a.T_odom_body.R.T @ b.T_odom_body.R) for a, b in pairs])
-    measured = np.array([so3_log(motion.turn(a.t_mid_ns, b.t_mid_ns)) for a, b in pairs])
+    seen, measured = _turns(windows, motion)
     total = float((seen**2).sum())
     left = float(((seen - measured) ** 2).sum())
     return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
+
+
+def _turns(windows: Sequence[Sequence[OdometryStep]], motion: ImuMotion) -> tuple[Array, Array]:
+    """Turns between tracked multiframes as seen, and as a gyroscope measures them, (N, 3) each."""
+    pairs = [(a, b) for steps in windows for a, b in pairwise(steps) if not (a.lost or b.lost)]
+    seen = [so3_log(a.T_odom_body.R.T @ b.T_odom_body.R) for a, b in pairs]
+    measured = [so3_log(motion.turn(a.t_mid_ns, b.t_mid_ns)) for a, b in pairs]
+    return np.reshape(seen, (-1, 3)), np.reshape(measured, (-1, 3))
 
 
 def _chosen(stages: list[Trials[TrackedWindows]]) -> ImuTrials:

@@ -53,6 +53,8 @@ class Score:
     """Ratio of the fixes that the trajectory contradicts; None = there are none."""
     unexplained: float | None = None
     """Part of the turns that the gyroscope does not measure; None = not asked."""
+    other_axes: float | None = None
+    """What speaks for other axes of the gyroscope (`for_other_axes`); None = not asked."""
     moved_m: float | None = None
     """Largest distance of a position from the walk that suggested it; None = no walk did [m]."""
 

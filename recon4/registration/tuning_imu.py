@@ -112,6 +112,8 @@ class TurnedImuTuning(Struct, frozen=True, kw_only=True):
     sigmas: float = 4.0
     """What is taken for other axes explains more by this many standard deviations: 0.5 to 2.6 in
     right rigs, 19 and more if they are left-handed (docs/explanation/odometry.md)."""
+    doubted_sigmas: float = 3.0
+    """It is asked where windows of ten multiframes show as many: 0.3 to 2.0 in right rigs."""
     most_sd_rad: float = 0.05
     """A rotation that is known less is not taken: in a walk on one level about one axis [rad]."""
     far_rad: float = 0.05

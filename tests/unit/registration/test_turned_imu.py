@@ -39,7 +39,11 @@ def _ask():
     raise _Asked
 
 
-@pytest.mark.parametrize(("R", "asked"), [(np.eye(3), False), (LEFT, True)], ids=["right", "left"])
+@pytest.mark.parametrize(
+    ("R", "asked"),
+    [(np.eye(3), False), (LEFT, True), (so3_exp([0.0, 0.0, 0.2]), True)],
+    ids=["right", "left", "11 degrees about z, which the filter does not see"],
+)
 def test_axes_are_compared_only_where_a_walk_contradicts_the_imu(frames, R, asked, tmp_path):
     walk = WalkInputs(mounted(frames, R), SETTINGS, Silent(), with_right_axes=_ask)
 
