@@ -24,7 +24,7 @@ from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.findings.audit import check_walk
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk_record import read_walk
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import format_rig, load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -46,6 +46,7 @@ WALKS = (
     "mirrors:42/8043/VLP-16", "storeys:3/8044/VLP-16", "plaza:6/8045/XT32", "garage:2/8046/VLP-16",
 )  # fmt: skip
 """Of one LiDAR, with an IMU in a file."""
+Fault = Callable[[Path, np.random.Generator], None]
 LEVER_ARM_M, CLOCK_S, SET_S, FRAMES_SET_S = 0.5, 0.02, 0.1, 0.08
 """How far off the IMU is; how far its clock is; how far clocks are set back halfway."""
 
@@ -56,6 +57,35 @@ def lever_arm(folder: Path, rng: np.random.Generator) -> None:
     off_m = LEVER_ARM_M * way / np.linalg.norm(way)
     T = SE3(rig.T_body_imu.R, rig.T_body_imu.t + off_m)
     (folder / "rig.toml").write_text(format_rig(replace(rig, T_body_imu=T)), "utf-8")
+
+
+def mounted(rotation_rad: tuple[float, float, float]) -> Fault:
+    """The rig file has the IMU rotated."""
+
+    def put(folder: Path, rng: np.random.Generator) -> None:
+        rig = load_rig(folder / "rig.toml")
+        T = SE3(rig.T_body_imu.R @ so3_exp(np.array(rotation_rad)), rig.T_body_imu.t)
+        (folder / "rig.toml").write_text(format_rig(replace(rig, T_body_imu=T)), "utf-8")
+
+    return put
+
+
+def signs(gyro: tuple[int, int, int], accel: tuple[int, int, int]) -> Fault:
+    """The driver of the IMU turns signs round."""
+
+    def put(folder: Path, rng: np.random.Generator) -> None:
+        path = folder / "imu.csv"
+        head = path.read_text("utf-8").split("\n", 1)[0]
+        rows = np.loadtxt(path, delimiter=",", skiprows=1, dtype=str)
+        changed = rows[:, 1:].astype(np.float64) * [*gyro, *accel]
+        path.unlink()
+        lines = (
+            f"{t_ns}," + ",".join(f"{x:.9f}" for x in row)
+            for t_ns, row in zip(rows[:, 0], changed, strict=True)
+        )
+        path.write_text("\n".join([head, *lines]) + "\n", "utf-8")
+
+    return put
 
 
 def imu_clock(folder: Path, rng: np.random.Generator) -> None:
@@ -112,7 +142,11 @@ def frames_set(folder: Path, rng: np.random.Generator) -> None:
     frames(folder, rng, back_s=FRAMES_SET_S)
 
 
-FAULTS: dict[str, Callable[[Path, np.random.Generator], None]] = {
+FAULTS: dict[str, Fault] = {
+    "imu-to-the-left": mounted((0.0, 0.0, np.pi / 2)),
+    "imu-tilted": mounted((0.06, 0.06, 0.0)),
+    "imu-left-handed": signs((1, -1, 1), (1, -1, 1)),
+    "gyro-sign": signs((-1, -1, -1), (1, 1, 1)),
     "imu-lever-arm": lever_arm,
     "imu-clock": imu_clock,
     "imu-set": imu_set,
