@@ -118,6 +118,8 @@ def test_a_file_beside_the_rig_file_describes_its_lidar(server):
     (server.root / "sensor.json").write_text(metadata)
 
     start(server, rig=str(server.root / "backpack.toml"))
+    assert server.post("/api/live/stop").status_code == 200
+    asyncio.run(Phone().follow(server, lambda p, message: message.get("state") == "ready"))
 
     (sensor,) = load_rig(server.root / "walk/recordings/rig.toml").sensors
     assert sensor.description == metadata
