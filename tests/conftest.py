@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Protocol
 import pytest
 from hypothesis import settings
 
+from recon4.locales.languages import ENVIRONMENT
 from recon4.system.tuning import PROCESSES
 from tests.chromium import CHROMIUM, FLAGS
 from tests.file_order import mixed
@@ -94,6 +95,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def _no_keys_of_this_person(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Commands trust no key that the person who runs the tests trusts."""
     os.environ["XDG_CONFIG_HOME"] = str(tmp_path_factory.mktemp("config"))
+
+
+@pytest.fixture(autouse=True)
+def _in_english(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No language of this person, nor of a test before: ``--language`` sets it for the process."""
+    monkeypatch.setenv(ENVIRONMENT, "")
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -50,7 +50,6 @@ def test_no_help_has_an_english_sentence_in_german():
 
 
 def test_the_help_is_in_the_language_of_the_option_or_of_the_environment(monkeypatch, capsys):
-    monkeypatch.setenv(ENVIRONMENT, ENGLISH)
     assert main(["--language", "de", "settings", "--help"]) == 0
     asked = capsys.readouterr().out
     assert main(["settings", "--help"]) == 0  # the option has set the environment

@@ -23,7 +23,6 @@ from recon4.calibration.window import cut_window
 from recon4.cli.main import main
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.locales.languages import ENGLISH, ENVIRONMENT
 from recon4.model.rig import format_rig, load_rig
 from tests import scanned_room
 from tests.unit.calibration.conftest import SETTINGS, mounted
@@ -227,8 +226,7 @@ def test_a_lidar_upside_down_is_among_the_first_mounts(dance):
     assert min(off[:3]) < 3.0
 
 
-def test_the_command_writes_a_mount_from_pairs(tmp_path, capsys, monkeypatch):
-    monkeypatch.setenv(ENVIRONMENT, ENGLISH)  # the option sets it
+def test_the_command_writes_a_mount_from_pairs(tmp_path, capsys):
     marker = poses()
     sensor = marker @ MOUNT
     rows = np.column_stack([marker.t, marker.quat_xyzw(), sensor.t, sensor.quat_xyzw()])
