@@ -40,7 +40,7 @@ def map_figures(rasters: list[Raster]) -> list[ChartFigure]:
         caption = f"The map {raster.view.name}. Pixel {raster.frame.pixel_m * 100:g} cm."
         if raster.view is ABOVE:
             ink = plan_svg(ink_png(raster), raster.view, raster.frame, css="ink")
-            out.append(ChartFigure(Markup(ink), f"{caption} Dark: many points."))
+            out.append(ChartFigure(Markup(ink), f"{caption} The stronger, the more points."))
         png, (low, high) = height_png(raster)
         svg = plan_svg(png, raster.view, raster.frame)
         bar = ("viridis", f"{low:.1f} m", f"{high:.1f} m")
