@@ -54,7 +54,6 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     confine_command(write=[result_folder(folder), out.parent])
 
     from recon4.cli.terminal import watcher
-    from recon4.model.rig import load_rig
     from recon4.recording.sources import Sources, require_files
     from recon4.report.calibration_page import write_calibration_page
     from recon4.workflows import calibration_methods as methods
@@ -62,7 +61,7 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     choice = methods.CalibrationChoice(method, sensors, beams)
     methods.check_choice(choice)
     require_files([*recordings, *(path for path in (imu, gnss) if path)])
-    sources = Sources(tuple(recordings), load_rig(rig), imu, gnss)
+    sources = Sources.of(*recordings, rig=rig, imu=imu, gnss=gnss)
     with watcher() as progress:
         found = methods.calibrate_by(choice, sources, folder, progress=progress)
     write("\n".join(_lines(found, of_terminal())))

@@ -118,12 +118,9 @@ def record(
 
 def _described_rig(rig: str) -> Rig:
     """A rig preset or file, with the files beside it that describe its LiDARs."""
-    from recon4.model.rig import load_rig
-    from recon4.recording.info.files_near import files_near
-    from recon4.recording.packets.companions import with_descriptions
+    from recon4.recording.packets.companions import load_described_rig
 
-    beside = files_near(Path(rig)) if Path(rig).suffix else []
-    loaded, used = with_descriptions(load_rig(rig), beside)
+    loaded, used = load_described_rig(rig)
     for name, file in used.items():
         _say("capture-described", name=name, file=str(file))
     return loaded

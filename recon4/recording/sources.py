@@ -10,7 +10,7 @@ from pathlib import Path
 from recon4.errors import RecordingError
 from recon4.locales.coded import CodedText
 from recon4.model.clock_jump import ClockJump
-from recon4.model.rig import Rig, load_rig
+from recon4.model.rig import Rig
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,16 +47,19 @@ class Sources:
 
         Args:
             recordings: Files or folders: pcap, bags, folders of clouds; several are one walk.
-            rig: Rig file, or the name of a shipped rig; None = chosen from the recording.
+            rig: Rig file, with files beside it that describe its LiDARs, or the name of a shipped
+                rig; None = chosen from the recording.
             imu: CSV file, in place of the recording's IMU samples.
             gnss: File of positions, in place of the recording's GNSS samples.
 
         Raises:
             ConfigError: If the rig cannot be read.
         """
+        from recon4.recording.packets.companions import load_described_rig  # brings the decoders
+
         return Sources(
             tuple(map(Path, recordings)),
-            rig if rig is None or isinstance(rig, Rig) else load_rig(rig),
+            rig if rig is None or isinstance(rig, Rig) else load_described_rig(rig)[0],
             Path(imu) if imu else None,
             Path(gnss) if gnss else None,
         )

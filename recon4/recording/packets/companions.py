@@ -11,10 +11,11 @@ from binascii import Error as NoBase64
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from os import PathLike
 from pathlib import Path
 
 from recon4.model.lidars import lidar_model
-from recon4.model.rig import Rig, Sensor
+from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.recording.info.files_near import COMPANION_SUFFIXES, files_near
 from recon4.recording.limits import LIMITS
 from recon4.recording.packets.families import FAMILIES
@@ -42,6 +43,19 @@ def with_descriptions(rig: Rig, files: Sequence[Path]) -> tuple[Rig, dict[str, s
         files: Files beside its own.
     """
     return described_by(rig, companions_of(files))
+
+
+def load_described_rig(rig: str | PathLike[str]) -> tuple[Rig, dict[str, str]]:
+    """A shipped rig or a rig file, with the files beside it as `described_by` them.
+
+    Args:
+        rig: Name of a shipped rig, or path of a ``.toml``.
+
+    Raises:
+        ConfigError: If it cannot be read.
+    """
+    path = Path(rig)
+    return with_descriptions(load_rig(rig), files_near(path) if path.suffix else [])
 
 
 def described_by(rig: Rig, found: Sequence[Companion]) -> tuple[Rig, dict[str, str]]:

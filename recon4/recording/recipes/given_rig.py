@@ -8,8 +8,9 @@ from pathlib import Path
 from recon4.errors import ConfigError
 from recon4.locales.coded import CodedText
 from recon4.model.point_recipes import PointRecipe, parse_fields_text
-from recon4.model.rig import Rig, load_rig, parse_rig
+from recon4.model.rig import Rig, parse_rig
 from recon4.recording.info.describe import describe
+from recon4.recording.packets.companions import load_described_rig
 
 
 def recipe_given(fields: str) -> PointRecipe | None:
@@ -35,7 +36,7 @@ def rig_given(recordings: Sequence[Path], rig: str, fields: str) -> Rig | None:
     """
     recipe = recipe_given(fields)
     if recipe is None:
-        return load_rig(rig) if rig else None
+        return load_described_rig(rig)[0] if rig else None
     if rig:
         raise ConfigError(CodedText("recipe-and-rig", recipe=recipe.toml()))
     found = describe(recordings[0], fields=recipe)

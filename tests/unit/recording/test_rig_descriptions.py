@@ -13,6 +13,8 @@ from recon4.model.rig import format_rig, load_rig, parse_rig
 from recon4.recording.packets.companions import described_in, with_descriptions
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.ouster.encode import metadata_json
+from recon4.recording.recipes.given_rig import rig_given
+from recon4.recording.sources import Sources
 from tests.ouster_models import nominal_metadata
 from tests.unit.recording.hesai_mirrors import mirror_table
 
@@ -35,6 +37,14 @@ def rig_of(*sensors):
     return parse_rig("\n".join(['name = "r"', *rows]), where="rig.toml")
 
 
+def by_library(recording, rig):
+    return Sources.of(recording, rig=rig).rig
+
+
+def by_command(recording, rig):
+    return rig_given([recording], str(rig), "")
+
+
 @pytest.mark.parametrize("model", FILES)
 def test_a_file_beside_the_rig_file_describes_the_only_lidar_of_its_family(tmp_path, model):
     name, content = FILES[model]
@@ -50,6 +60,18 @@ def test_a_file_beside_the_rig_file_describes_the_only_lidar_of_its_family(tmp_p
     (kept,) = described_in(parse_rig(format_rig(rig), where="rig.toml"))
     (family,) = (one for one in FAMILIES if one.name == lidar_model(model).maker)
     assert family.describes(kept)
+
+
+@pytest.mark.parametrize("read", [by_library, by_command])
+def test_a_recording_elsewhere_is_read_with_the_files_beside_the_rig_file(tmp_path, read):
+    name, content = FILES["OS0-32"]
+    rigs, walks = tmp_path / "rigs", tmp_path / "walks"
+    rigs.mkdir()
+    (rigs / name).write_text(content)
+    (rigs / "rig.toml").write_text(format_rig(rig_of(("front", "OS0-32"))))
+
+    assert read(walks / "walk.pcap", rigs / "rig.toml").sensors[0].description == content
+    assert read(walks / "walk.pcap", "4recon").name == "4RECON"
 
 
 def test_of_two_lidars_of_a_family_the_names_of_the_files_decide(tmp_path):
