@@ -91,10 +91,10 @@ hesai-angles-missing = es gibt keine Zeile channel,elevation,azimuth
 hesai-angles-channel = Zeile { $number }: gehört zu Kanal { $channel }
 hesai-angles-number = Zeile { $number }: Höhenwinkel { $elevation } oder Azimut { $azimuth } ist kein Winkel
 hesai-angles-row = Zeile { $number }: erwartet wird channel,elevation,azimuth, erhalten: { $cells }
-hesai-needs-angles = { $name }: ein { $model } braucht seine Winkelkorrektur neben der Aufzeichnung: eine Tabelle Channel,Elevation,Azimuth mit { $channels } Zeilen
+hesai-needs-angles = { $name }: ein { $model } braucht seine Winkelkorrektur neben der Aufzeichnung oder der Rig-Datei: eine Tabelle Channel,Elevation,Azimuth mit { $channels } Zeilen
 packets-no-decoder = { $name }: die Pakete des Modells { QUOTED($model) } werden nicht dekodiert; dekodiert werden: { $known }
 hesai-channels = { $name }: die Pakete enthalten { $got } Kanäle ({ $got_model }), ein { $model } hat { $expected }
-hesai-at128-angles = { $name }: ein AT128 braucht seine Winkelkorrektur (.dat, Version 1.5) neben der Aufzeichnung; eine Texttabelle (.csv) enthält keine Positionen seiner Spiegel
+hesai-at128-angles = { $name }: ein AT128 braucht seine Winkelkorrektur (.dat, Version 1.5) neben der Aufzeichnung oder der Rig-Datei; eine Texttabelle (.csv) enthält keine Positionen seiner Spiegel
 livox-no-packet = { $sensor }: kein Datenpaket eines Livox am Anfang der Aufzeichnung: die Art seiner Daten ist nicht bekannt
 livox-no-decoder = die Pakete des Livox-Modells { QUOTED($name) } werden nicht dekodiert; dekodiert werden: { $models }
 livox-sdk = { $sensor }: die Pakete sind von Livox SDK{ $sdk } ({ $sent }), im Rig steht { $name }
@@ -115,10 +115,10 @@ ouster-numbers = { $name }: { $key }: erwartet werden { $count } Zahlen von höc
 ouster-number = { $name }: { $key }: erwartet wird eine Zahl von höchstens { SIGNIFICANT($limit, digits: 6) }
 ouster-rotation = { $name }: { $key }: oben links stehen 3 x 3 Zahlen, die keine Drehung sind
 ouster-metadata-choice = die Pakete von { $head } können von den Sensoren mehrerer Metadaten-Dateien sein: { $names }; nur die richtige neben der Aufzeichnung lassen, oder die Adresse des Sensors in den Namen seiner Datei schreiben
-robosense-needs-angles = Pakete eines { $model } brauchen die Winkel seiner { $lasers } Laser: auch seine Gerätepakete aufnehmen (DIFOP, Port 7788), oder eine CSV-Datei mit einer Zeile aus Höhenwinkel und Azimut [°] je Laser neben die Aufzeichnung legen, oder als description in das Rig schreiben
+robosense-needs-angles = Pakete eines { $model } brauchen die Winkel seiner { $lasers } Laser: auch seine Gerätepakete aufnehmen (DIFOP, Port 7788), oder eine CSV-Datei mit einer Zeile aus Höhenwinkel und Azimut [°] je Laser neben die Aufzeichnung oder die Rig-Datei legen, oder als description in das Rig schreiben
 robosense-no-decoder = die Pakete des RoboSense-Modells { QUOTED($name) } werden nicht dekodiert; dekodiert werden: { $known }
 velodyne-no-decoder = die Pakete des Modells { QUOTED($name) } werden nicht dekodiert; dekodiert werden: { $known }
-hdl64-needs-calibration = { $name }: Pakete eines HDL-64E brauchen die Kalibrierung genau dieses Sensors: die YAML-Datei des ROS-Treibers (eine Zeile laser_id, rot_correction, vert_correction, … für jeden der 64 Laser) oder die db.xml von VeloView neben die Aufzeichnung legen
+hdl64-needs-calibration = { $name }: Pakete eines HDL-64E brauchen die Kalibrierung genau dieses Sensors: die YAML-Datei des ROS-Treibers (eine Zeile laser_id, rot_correction, vert_correction, … für jeden der 64 Laser) oder die db.xml von VeloView neben die Aufzeichnung oder die Rig-Datei legen
 
 ## Punktwolken und Tabellen
 

@@ -131,7 +131,7 @@ MODEL-UNKNOWN = Modell nicht bekannt
 
 ANGLES-TYPICAL = Typische Winkel der Strahlen
     .text1-if-fitting = { $sensor }: Winkel eines typischen { $model } (bis 0,3° daneben): { $fitting } passen.
-    .text2-if-absent = { $sensor }: Winkel eines typischen { $model } (bis 0,3° daneben): neben der Aufzeichnung liegt keine Korrekturdatei mit { $rows } Zeilen (Channel,Elevation,Azimuth).
+    .text2-if-absent = { $sensor }: Winkel eines typischen { $model } (bis 0,3° daneben): neben der Aufzeichnung oder der Rig-Datei liegt keine Korrekturdatei mit { $rows } Zeilen (Channel,Elevation,Azimuth).
     .text3-if-difop = { $sensor }: die Winkel seiner Laser sind die eines anderen { $model }, etwa 0,1° daneben, bis ein Gerätepaket (DIFOP) kommt.
     .text4-if-fitting = Der Datei dieses Sensors den Namen des Sensors geben.
     .text5-if-difop = Auch seinen Port 7788 aufzeichnen.
@@ -151,7 +151,7 @@ METADATA-ELSEWHERE = Metadaten eines anderen Sensors
     .remedy = Die Metadaten des richtigen angeben.
 
 METADATA-NEEDED = Metadaten eines Sensors fehlen
-    .text1-if-absent = { $sensor }: Pakete eines Ouster enthalten die Winkel seiner Strahlen nicht: die Metadaten (json) des Sensors neben die Aufzeichnung legen. Der Treiber und ouster-cli schreiben sie; http://SENSOR/api/v1/sensor/metadata zeigt sie. Auf der Seite den Ordner mit beidem hochladen. Eine Live-Aufnahme braucht sie im Rig, als dessen Beschreibung (Seite: Rigs; Befehl: eine Datei neben der Rig-Datei).
+    .text1-if-absent = { $sensor }: Pakete eines Ouster enthalten die Winkel seiner Strahlen nicht: die Metadaten (json) des Sensors neben die Aufzeichnung oder die Rig-Datei legen. Der Treiber und ouster-cli schreiben sie; http://SENSOR/api/v1/sensor/metadata zeigt sie. Auf der Seite den Ordner mit beidem hochladen. Eine Live-Aufnahme braucht sie im Rig, als dessen Beschreibung (Seite: Rigs; Befehl: eine Datei neben der Rig-Datei).
     .text2-if-error = { $error }.
     .meaning = Ohne sie können die Pakete nicht dekodiert werden.
 

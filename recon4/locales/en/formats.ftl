@@ -91,10 +91,10 @@ hesai-angles-missing = there is no row channel,elevation,azimuth
 hesai-angles-channel = row { $number }: is of channel { $channel }
 hesai-angles-number = row { $number }: elevation { $elevation } or azimuth { $azimuth } is no angle
 hesai-angles-row = row { $number }: expected channel,elevation,azimuth, got { $cells }
-hesai-needs-angles = { $name }: a { $model } needs its angle correction file beside the recording: a table Channel,Elevation,Azimuth with { $channels } rows
+hesai-needs-angles = { $name }: a { $model } needs its angle correction file beside the recording or the rig file: a table Channel,Elevation,Azimuth with { $channels } rows
 packets-no-decoder = { $name }: no packet decoder for model { QUOTED($model) }; decoded: { $known }
 hesai-channels = { $name }: its packets hold { $got } channels ({ $got_model }), a { $model } has { $expected }
-hesai-at128-angles = { $name }: an AT128 needs its angle correction file (.dat, version 1.5) beside the recording; a table of text (.csv) has no positions of its mirrors
+hesai-at128-angles = { $name }: an AT128 needs its angle correction file (.dat, version 1.5) beside the recording or the rig file; a table of text (.csv) has no positions of its mirrors
 livox-no-packet = { $sensor }: no data packet of a Livox at the head of the recording: its data type is not known
 livox-no-decoder = no packet decoder for Livox model { QUOTED($name) }; decoded: { $models }
 livox-sdk = { $sensor }: its packets are of Livox SDK{ $sdk } ({ $sent }), the rig says { $name }
@@ -115,10 +115,10 @@ ouster-numbers = { $name }: { $key }: expected { $count } numbers of at most { S
 ouster-number = { $name }: { $key }: expected a number of at most { SIGNIFICANT($limit, digits: 6) }
 ouster-rotation = { $name }: { $key }: its upper left 3 x 3 are no rotation
 ouster-metadata-choice = the packets of { $head } may be of the sensors of several metadata files: { $names }; leave the right one beside the recording, or put the address of the sensor into the name of its file
-robosense-needs-angles = packets of a { $model } need the angles of its { $lasers } lasers: record its device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and azimuth [°] per laser beside the recording, or into the rig as its description
+robosense-needs-angles = packets of a { $model } need the angles of its { $lasers } lasers: record its device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and azimuth [°] per laser beside the recording or the rig file, or into the rig as its description
 robosense-no-decoder = no packet decoder for RoboSense model { QUOTED($name) }; decoded: { $known }
 velodyne-no-decoder = no packet decoder for sensor model { QUOTED($name) }; decoded: { $known }
-hdl64-needs-calibration = { $name }: packets of an HDL-64E need the calibration of the very sensor: put the YAML of the ROS driver (a row laser_id, rot_correction, vert_correction, … of each of 64 lasers) or the db.xml of VeloView beside the recording
+hdl64-needs-calibration = { $name }: packets of an HDL-64E need the calibration of the very sensor: put the YAML of the ROS driver (a row laser_id, rot_correction, vert_correction, … of each of 64 lasers) or the db.xml of VeloView beside the recording or the rig file
 
 ## Clouds and tables
 

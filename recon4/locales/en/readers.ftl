@@ -132,7 +132,7 @@ MODEL-UNKNOWN = Model not known
 
 ANGLES-TYPICAL = Typical angles of beams
     .text1-if-fitting = { $sensor }: angles of a typical { $model } (off by up to 0.3°): { $fitting } fit.
-    .text2-if-absent = { $sensor }: angles of a typical { $model } (off by up to 0.3°): no correction file with { $rows } rows (Channel,Elevation,Azimuth) is beside the recording.
+    .text2-if-absent = { $sensor }: angles of a typical { $model } (off by up to 0.3°): no correction file with { $rows } rows (Channel,Elevation,Azimuth) is beside the recording or the rig file.
     .text3-if-difop = { $sensor }: the angles of its lasers are those of another { $model }, some 0.1° off, until a device packet (DIFOP) comes.
     .text4-if-fitting = Give the one of this sensor the name of the sensor.
     .text5-if-difop = Record its port 7788 too.
@@ -152,7 +152,7 @@ METADATA-ELSEWHERE = Metadata of another sensor
     .meaning = Each sensor has angles of its own: surfaces are thicker.
 
 METADATA-NEEDED = Metadata of a sensor missing
-    .text1-if-absent = { $sensor }: packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor beside the recording. The driver and ouster-cli write it; http://SENSOR/api/v1/sensor/metadata shows it. On the page upload the folder with both. A live capture needs it in the rig, as its description (page: Rigs; command: a file beside the rig file).
+    .text1-if-absent = { $sensor }: packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor beside the recording or the rig file. The driver and ouster-cli write it; http://SENSOR/api/v1/sensor/metadata shows it. On the page upload the folder with both. A live capture needs it in the rig, as its description (page: Rigs; command: a file beside the rig file).
     .text2-if-error = { $error }.
     .meaning = Without it the packets cannot be decoded.
 

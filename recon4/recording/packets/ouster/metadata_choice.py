@@ -35,9 +35,9 @@ from recon4.recording.report import warning
 
 NEEDED = (
     "packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor "
-    "beside the recording (the driver and ouster-cli write it; "
-    "http://SENSOR/api/v1/sensor/metadata; page: upload the folder with both), or for a live "
-    "capture into the rig, as its description (page: Rigs; command: a file beside the rig file)"
+    "beside the recording or the rig file (the driver and ouster-cli write it; "
+    "http://SENSOR/api/v1/sensor/metadata; page: upload the folder with both, or for a live "
+    "capture import it with the rig file on the page Rigs)"
 )
 
 
