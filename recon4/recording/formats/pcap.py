@@ -261,26 +261,39 @@ def _datagrams(records: _Records, unread: UnreadRecords, fragments: IpFragments)
         start=udp[kept] + 8,
         buffer=records.buffer,
     )
-    parts = np.flatnonzero(is_udp & ~whole).tolist()
-    joined = [(row, one) for row in parts for one in fragments.push(_fragment(records, row, at))]
+    rows = np.flatnonzero(is_udp & ~whole)
+    parts = zip(rows.tolist(), _fragments(records, rows, at), strict=True)
+    joined = [(row, one) for row, part in parts for one in fragments.push(part)]
     return _with_joined(plain, kept, joined) if joined else plain
 
 
-def _fragment(records: _Records, row: int, at: NDArray[np.int64]) -> Fragment:
-    """An IP fragment; its data end where the IP header or the captured record says."""
-    here = at[row : row + 1]
-    word = int(_word(records, here + 6)[0])
-    begin = int(here[0] + 4 * (_byte(records, here)[0] & 15))
-    end = int(_ip_end(records, at)[row])
-    return Fragment(
-        t_ns=int(records.t_ns[row]),
-        source=int(_long(records, here + 12)[0]),
-        destination=int(_long(records, here + 16)[0]),
-        number=int(_word(records, here + 4)[0]),
-        offset=8 * (word & 0x1FFF),
-        is_last=not word & 0x2000,
-        data=records.buffer[begin:end].tobytes(),
+def _fragments(
+    records: _Records, rows: NDArray[np.intp], at: NDArray[np.int64]
+) -> Iterator[Fragment]:
+    """The IP fragments in some rows."""
+    here = at[rows]
+    word = _word(records, here + 6)
+    columns = (
+        records.t_ns[rows],
+        _long(records, here + 12),
+        _long(records, here + 16),
+        _word(records, here + 4),
+        8 * (word & 0x1FFF),
+        (word & 0x2000) == 0,
+        here + 4 * (_byte(records, here) & 15),
+        _ip_end(records, at)[rows],
     )
+    fields = (column.tolist() for column in columns)
+    for t_ns, source, destination, number, offset, is_last, first, end in zip(*fields, strict=True):
+        yield Fragment(
+            t_ns=t_ns,
+            source=source,
+            destination=destination,
+            number=number,
+            offset=offset,
+            is_last=is_last,
+            data=records.buffer[first:end].tobytes(),
+        )
 
 
 def _ip_end(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
