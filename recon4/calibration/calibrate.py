@@ -137,9 +137,10 @@ def audit(
     found = estimator.estimate(windows, start, parameters)
     if found is not None and _is_near(found, walk.frames.rig):
         return _counted_from(found, walk.frames.rig)
-    walk = walk.with_all_points()
-    windows = walk.windows(s.audit_windows, s.audit_window_s)
-    found = estimator.estimate(windows, start, parameters)
+    if walk.frames.hidden is not None:
+        walk = walk.with_all_points()
+        windows = walk.windows(s.audit_windows, s.audit_window_s)
+        found = estimator.estimate(windows, start, parameters)
     others = _from_other_mounts(walk, start, parameters, settings=settings, progress=progress)
     best = max([found, *others], key=_shared_points)
     if best is None or _shared_points(best) < AUDIT.clearly * _shared_points(found):

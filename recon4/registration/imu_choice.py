@@ -237,8 +237,9 @@ def _track(
     unexplained = other_axes = None
     if hypothesis.doubted is not None and hypothesis.doubted.samples is not None:
         motion = ImuMotion(hypothesis.doubted.samples, frames.rig, settings.odometry)
-        unexplained = unexplained_turns(counted, motion)
-        other_axes = for_other_axes(*_turns(counted, motion))
+        seen, measured = measured_turns(counted, motion)
+        unexplained = unexplained_part(seen, measured)
+        other_axes = for_other_axes(seen, measured)
     score = Score(
         multiframes=sum(len(window.rows) for window in windows),
         lost=sum(step.lost for steps in counted for step in steps),
@@ -249,24 +250,27 @@ def _track(
     return TrackedWindows(score, odometry, steps[-1])
 
 
-def unexplained_turns(windows: Sequence[Sequence[OdometryStep]], motion: ImuMotion) -> float:
-    """Part of the turns between tracked multiframes that a gyroscope does not measure, 0..
+def unexplained_part(seen: Array, measured: Array) -> float:
+    """Part of some turns that a gyroscope does not measure, 0..; infinite without any turn.
 
     Args:
-        windows: Steps in a row of an odometry without the gyroscope.
-        motion: By the gyroscope.
-
-    Returns:
-        Infinite without any turn.
+        seen: By the LiDARs [rad], (N, 3).
+        measured: The same by the gyroscope.
     """
-    seen, measured = _turns(windows, motion)
     total = float((seen**2).sum())
     left = float(((seen - measured) ** 2).sum())
     return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
 
 
-def _turns(windows: Sequence[Sequence[OdometryStep]], motion: ImuMotion) -> tuple[Array, Array]:
-    """Turns between tracked multiframes as seen, and as a gyroscope measures them, (N, 3) each."""
+def measured_turns(
+    windows: Sequence[Sequence[OdometryStep]], motion: ImuMotion
+) -> tuple[Array, Array]:
+    """Turns between tracked multiframes as seen, and as a gyroscope measures them, (N, 3) each.
+
+    Args:
+        windows: Steps in a row of an odometry without the gyroscope.
+        motion: By the gyroscope.
+    """
     pairs = [(a, b) for steps in windows for a, b in pairwise(steps) if not (a.lost or b.lost)]
     seen = [so3_log(a.T_odom_body.R.T @ b.T_odom_body.R) for a, b in pairs]
     measured = [so3_log(motion.turn(a.t_mid_ns, b.t_mid_ns)) for a, b in pairs]

@@ -14,8 +14,9 @@ from recon4.registration.imu_choice import (
     AS_RECORDED,
     TriedWindow,
     choose_imu,
+    measured_turns,
     start_and_fastest_turn,
-    unexplained_turns,
+    unexplained_part,
 )
 from recon4.registration.motion import ImuMotion
 from recon4.registration.score import Score
@@ -110,7 +111,7 @@ def test_a_gyroscope_that_explains_the_turns_is_not_dropped(monkeypatch, frames,
     # Errors of a walk with a LiDAR 1.4 deg off: without the IMU fewer multiframes are lost.
     motion = ImuMotion(altered(frames, lambda gyro: sign * gyro), frames.rig, SETTINGS.odometry)
     true = ImuMotion(frames.imu, frames.rig, SETTINGS.odometry)
-    unexplained = unexplained_turns([turned(frames, true)], motion)
+    unexplained = unexplained_part(*measured_turns([turned(frames, true)], motion))
     worth = {Because.START: (8, 0.031), Because.LIDARS_ALONE: (1, 0.021)}
     monkeypatch.setattr(imu_choice, "_track", scored(worth, unexplained))
 
