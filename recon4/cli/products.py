@@ -158,5 +158,6 @@ def _volume(opened: OpenedMap, polygon: str, *, surface: TerrainKind, base: floa
     if opened.frame.to_crs:
         raised = np.column_stack([corners, np.full(len(corners), up_m)])
         corners = opened.frame.from_crs(raised)[:, :2]
-    found = volume(made, corners, base_m=None if base is None else base - up_m)
+    level = None if base is None else base - up_m
+    found = volume(made, corners, base_m=level, rng=np.random.default_rng(1))
     return replace(found, base_m=found.base_m + up_m).text

@@ -203,6 +203,14 @@ class TerrainTuning(Struct, frozen=True, kw_only=True):
     """The base of a volume is fitted to the ground this near to the border of its polygon [m]."""
     border_cells: int = 8
     """The border has as many cells at least."""
+    hypotheses: int = 300
+    """Planes that are tried as base: 30 % good cells are enough for one of three (p > 0.999)."""
+    triangle_m2: float = 1e-3
+    """Smallest triangle of cells that gives such a plane [m²]."""
+    most_cells: int = 4000
+    """Cells that judge it."""
+    border_sd_m: float = 0.002
+    """Least deviation of heights from the base: cells of a smooth floor [m]."""
 
 
 TERRAIN = TerrainTuning()

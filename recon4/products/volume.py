@@ -30,12 +30,15 @@ class Volume:
     """Height of the plane in the middle of the polygon, in the map [m]."""
     base_sd_m: float
     """Standard deviation of the base in its middle [m]; 0 = the plane was given."""
+    fitted: float = 1.0
+    """Part of the border's cells that the base goes through: walls and other heaps are left out."""
 
     @property
     def text(self) -> str:
         """All figures in words."""
         return CodedText(
             "volume-made",
+            fitted=self.fitted,
             above_m3=self.above_m3,
             below_m3=self.below_m3,
             sd_m3=self.sd_m3,
@@ -45,7 +48,9 @@ class Volume:
         )
 
 
-def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> Volume:
+def volume(
+    terrain: Terrain, polygon: Array, *, rng: np.random.Generator, base_m: float | None = None
+) -> Volume:
     """Sum the cells of a terrain over a plane.
 
     The deviation has three parts: that of each cell (independent), that of the map's heights as
@@ -56,8 +61,9 @@ def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> 
     Args:
         terrain: Heights.
         polygon: Corners in the map, x and y [m], (N, 2).
+        rng: For the hypotheses of the base.
         base_m: Height of a level plane in the map [m]; None = a plane fitted to the terrain along
-            the border.
+            the border, without what stands there.
 
     Raises:
         ConfigError: If the polygon has no area or crosses itself, or nothing was seen in it.
@@ -67,10 +73,10 @@ def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> 
     if not rows.any():
         raise ConfigError(CodedText("heap-nothing"))
     x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
-    plane, base_sd = (np.array([0.0, 0.0, base_m]), 0.0)
+    plane, base_sd, fitted = (np.array([0.0, 0.0, base_m]), 0.0, 1.0)
     map_sd = terrain.position_sd_m
     if base_m is None:
-        plane, base_sd = _fitted_base(terrain, border)
+        plane, base_sd, fitted = _fitted_base(terrain, border, rng)
         map_sd = 0.0
     base = np.column_stack([x, y, np.ones(len(x))]) @ plane
     off = terrain.height_m[rows] - base
@@ -88,6 +94,7 @@ def volume(terrain: Terrain, polygon: Array, *, base_m: float | None = None) -> 
         float(cell * (inside & ~terrain.seen).sum()),
         float(base.mean()),
         base_sd,
+        fitted,
     )
 
 
@@ -110,8 +117,17 @@ def _cells_in(
     return contains_xy(shape, x, y), contains_xy(near, x, y), float(shape.area)
 
 
-def _fitted_base(terrain: Terrain, border: NDArray[np.bool_]) -> tuple[Array, float]:
-    """Plane ``z = a x + b y + c`` through the terrain along a border, and its deviation [m]."""
+def _fitted_base(
+    terrain: Terrain, border: NDArray[np.bool_], rng: np.random.Generator
+) -> tuple[Array, float, float]:
+    """Plane ``z = a x + b y + c`` through the terrain along a border.
+
+    Least median of squares and, through what is within 2.5 robust standard deviations of it, least
+    squares (Rousseeuw and Leroy 1987): a wall beside a heap does not lift the base.
+
+    Returns:
+        Plane, (3,); its deviation [m]; part of the cells that it was fitted to.
+    """
     rows = border & terrain.seen
     if rows.sum() < TERRAIN.border_cells:
         raise ConfigError(
@@ -119,9 +135,22 @@ def _fitted_base(terrain: Terrain, border: NDArray[np.bool_]) -> tuple[Array, fl
         )
     x, y = (axis[rows] for axis in np.meshgrid(*terrain.centers_m()))
     A, z = np.column_stack([x, y, np.ones(len(x))]), terrain.height_m[rows].astype(np.float64)
-    fitted, _, rank, _ = np.linalg.lstsq(A, z, rcond=None)
-    if rank < 3:
+    inside = _on_one_plane(A, z, rng)
+    plane = np.asarray(np.linalg.lstsq(A[inside], z[inside], rcond=None)[0], np.float64)
+    residual, count = (z - A @ plane)[inside], int(inside.sum())
+    sd = float(np.sqrt(residual @ residual / max(1, count - 3) / count))
+    return plane, sd, count / len(z)
+
+
+def _on_one_plane(A: Array, z: Array, rng: np.random.Generator) -> NDArray[np.bool_]:
+    """Which heights are on the plane with the least median of squared residuals, (N,)."""
+    few = slice(None, None, -(-len(z) // TERRAIN.most_cells))
+    triples = rng.integers(0, len(z), (TERRAIN.hypotheses, 3))
+    triples = triples[np.abs(np.linalg.det(A[triples])) > 2.0 * TERRAIN.triangle_m2]
+    if not len(triples):
         raise ConfigError(CodedText("heap-border-line"))
-    plane = np.asarray(fitted, np.float64)
-    residual = z - A @ plane
-    return plane, float(np.sqrt(residual @ residual / max(1, len(z) - 3) / len(z)))
+    planes = np.linalg.solve(A[triples], z[triples, None])[..., 0]
+    off = np.median(np.abs(z[few] - planes @ A[few].T), axis=1)
+    best = int(np.argmin(off))
+    sd = max(1.4826 * float(off[best]), TERRAIN.border_sd_m)
+    return np.abs(z - A @ planes[best]) <= 2.5 * sd

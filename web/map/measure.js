@@ -109,11 +109,13 @@ export function resultOf(measurement, volume = null) {
 function volumeText(/** @type {MapVolume | null} */ found) {
   if (!found) return { value: "…", parts: "" };
   const cubic = (/** @type {number} */ m3) => `${decimal(m3, Math.abs(m3) < 10 ? 3 : 2)} m³`;
-  const { above_m3, below_m3, sd_m3, area_m2, unseen_m2, base_m, cell_m } = found;
+  const { above_m3, below_m3, sd_m3, area_m2, unseen_m2, base_m, fitted, cell_m } = found;
+  const at = t("volume-base", { base: meters(base_m) });
   const parts = [
     t("volume-below", { below: cubic(below_m3), sd: cubic(sd_m3) }),
     t("volume-area", { area: area_m2, unseen: unseen_m2 }),
-    t("volume-base", { base: meters(base_m), cm: 100 * cell_m }),
+    fitted < 1 ? t("volume-fitted", { base: meters(base_m), percent: 100 * fitted }) : at,
+    t("volume-cells", { cm: 100 * cell_m }),
   ];
   return { value: t("volume-above", { above: cubic(above_m3) }), parts: parts.join(", ") };
 }

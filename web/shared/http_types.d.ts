@@ -973,6 +973,7 @@ export interface MapVolume {
   area_m2: number;
   unseen_m2: number;
   base_m: number;
+  fitted: number;
   cell_m: number;
 }
 

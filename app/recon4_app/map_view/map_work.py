@@ -211,7 +211,7 @@ def map_volume(artifacts: Artifacts, ask: VolumeRequest) -> MapVolume:
         float(np.sqrt(np.prod(high - low) / MAP_VOLUMES.most_cells)),
     )
     heights = terrain(tiles, "dsm", cell_m=cell_m, part=part)
-    found = volume(heights, corners, base_m=ask.base_m)
+    found = volume(heights, corners, base_m=ask.base_m, rng=np.random.default_rng(1))
     return MapVolume(
         above_m3=found.above_m3,
         below_m3=found.below_m3,
@@ -219,6 +219,7 @@ def map_volume(artifacts: Artifacts, ask: VolumeRequest) -> MapVolume:
         area_m2=found.area_m2,
         unseen_m2=found.unseen_m2,
         base_m=found.base_m,
+        fitted=found.fitted,
         cell_m=cell_m,
     )
 

@@ -232,5 +232,7 @@ class MapVolume(BaseModel):
     area_m2: float
     unseen_m2: float
     base_m: float
+    fitted: float
+    """Part of the border that the base was fitted to; 1 if its height was given."""
     cell_m: float
     """Edge of the cells that were added up [m]."""

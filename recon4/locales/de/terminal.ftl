@@ -262,7 +262,7 @@ contours-made = { $count ->
    *[other] { $count } Höhenlinien
  }, { SIGNIFICANT($apart_m, digits: 6) } m Abstand
 terrain-made = { $width } x { $height } Zellen von { SIGNIFICANT($cell_m, digits: 6) } m, { DECIMAL($seen_m2, digits: 0) } m² gesehen
-volume-made = { DECIMAL($above_m3, digits: 2) } m³ über und { DECIMAL($below_m3, digits: 2) } m³ unter der Ebene (1 σ der Differenz { DECIMAL($sd_m3, digits: 2) } m³); Fläche { DECIMAL($area_m2, digits: 2) } m², davon { DECIMAL($unseen_m2, digits: 2) } m² nicht gesehen; Ebene auf { DECIMAL($base_m, digits: 3) } m
+volume-made = { DECIMAL($above_m3, digits: 2) } m³ über und { DECIMAL($below_m3, digits: 2) } m³ unter der Ebene (1 σ der Differenz { DECIMAL($sd_m3, digits: 2) } m³); Fläche { DECIMAL($area_m2, digits: 2) } m², davon { DECIMAL($unseen_m2, digits: 2) } m² nicht gesehen; Ebene auf { DECIMAL($base_m, digits: 3) } m, durch { PERCENT($fitted, digits: 0) } des Randes
 layers-made = { COUNTED($layers, of: "gpkg") }
 gpkg-trajectory = Trajektorie
 gpkg-control-and-check-points = Pass- und Kontrollpunkte

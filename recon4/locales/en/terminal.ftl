@@ -265,7 +265,7 @@ contours-made = { $count ->
    *[other] { $count } contours
  }, { SIGNIFICANT($apart_m, digits: 6) } m apart
 terrain-made = { $width } x { $height } cells of { SIGNIFICANT($cell_m, digits: 6) } m, { DECIMAL($seen_m2, digits: 0) } m² seen
-volume-made = { DECIMAL($above_m3, digits: 2) } m³ above and { DECIMAL($below_m3, digits: 2) } m³ below the plane (1 σ of the difference { DECIMAL($sd_m3, digits: 2) } m³); area { DECIMAL($area_m2, digits: 2) } m², of these { DECIMAL($unseen_m2, digits: 2) } m² not seen; base at { DECIMAL($base_m, digits: 3) } m
+volume-made = { DECIMAL($above_m3, digits: 2) } m³ above and { DECIMAL($below_m3, digits: 2) } m³ below the plane (1 σ of the difference { DECIMAL($sd_m3, digits: 2) } m³); area { DECIMAL($area_m2, digits: 2) } m², of these { DECIMAL($unseen_m2, digits: 2) } m² not seen; base at { DECIMAL($base_m, digits: 3) } m, through { PERCENT($fitted, digits: 0) } of the border
 layers-made = { COUNTED($layers, of: "gpkg") }
 gpkg-trajectory = trajectory
 gpkg-control-and-check-points = control and check points

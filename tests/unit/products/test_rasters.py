@@ -2,6 +2,7 @@
 
 import json
 import resource
+from functools import partial
 
 import numpy as np
 import pytest
@@ -14,13 +15,17 @@ from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.products.contours import contours
-from recon4.products.terrain import terrain
+from recon4.products.terrain import TerrainPart, terrain
 from recon4.products.volume import volume
 from recon4.products.write import ProductOptions, ProductSource, write_product
 from recon4.slices.map_crs import LOCAL
-from tests.unit.products.made_buildings import MOUND_M, SLOPE, slope, two_rooms
+from recon4.slices.points import SliceWindow
+from tests.unit.products.made_buildings import FLOOR_M, MOUND_M, SLOPE, slope, two_rooms
 from tests.unit.products.test_plans import PLACED, UTM_M
 
+RNG = partial(np.random.default_rng, 1)
+FLOOR = np.array([[0.2, 0.2], [3.0, 0.2], [3.0, 3.0], [0.2, 3.0]])
+BELOW_CEILING = TerrainPart(SliceWindow(-0.5, -0.5, 4.0, 4.0), high_m=0.5)
 MOUND = np.array([[5.0, 7.0], [11.0, 7.0], [11.0, 13.0], [5.0, 13.0]])
 
 
@@ -144,7 +149,7 @@ def test_contours_are_written_at_their_heights(meadow, tmp_path):
 
 
 def test_the_volume_of_a_mound_over_the_ground_around_it(meadow):
-    found = volume(terrain(meadow, "dsm", cell_m=0.25), MOUND)
+    found = volume(terrain(meadow, "dsm", cell_m=0.25), MOUND, rng=RNG())
 
     assert found.above_m3 - found.below_m3 == pytest.approx(16.0 * MOUND_M, abs=0.3)
     assert found.area_m2 == pytest.approx(36.0)
@@ -152,15 +157,25 @@ def test_the_volume_of_a_mound_over_the_ground_around_it(meadow):
     assert 0.0 < found.sd_m3 < 0.3
 
 
+def test_walls_beside_a_floor_do_not_lift_its_base(tmp_path):
+    heights = terrain(two_rooms(tmp_path / "map"), "dsm", cell_m=0.05, part=BELOW_CEILING)
+    found = volume(heights, FLOOR, rng=RNG())
+
+    assert found.base_m == pytest.approx(FLOOR_M, abs=0.001)
+    assert found.above_m3 == pytest.approx(0.0, abs=0.005)
+    assert found.below_m3 == pytest.approx(0.0, abs=0.005)
+    assert 0.6 < found.fitted < 0.95  # two walls are near its border
+
+
 def test_a_volume_over_a_given_height_and_its_refusals(ground, meadow):
-    flat = volume(terrain(meadow, "dsm", cell_m=0.25), MOUND, base_m=0.0)
+    flat = volume(terrain(meadow, "dsm", cell_m=0.25), MOUND, base_m=0.0, rng=RNG())
 
     assert flat.above_m3 == pytest.approx(16.0 * MOUND_M + 36.0 * 8.0 * SLOPE, abs=0.6)
     assert flat.base_sd_m == 0.0
     with pytest.raises(ConfigError, match="encloses no area"):
-        volume(ground, MOUND[[0, 2, 1, 3]])
+        volume(ground, MOUND[[0, 2, 1, 3]], rng=RNG())
     with pytest.raises(ConfigError, match="nothing was seen"):
-        volume(ground, MOUND + 100.0)
+        volume(ground, MOUND + 100.0, rng=RNG())
 
 
 def two_levels(folder, *, counts):
