@@ -207,3 +207,28 @@ def test_the_panel_of_a_phone_leaves_what_a_tool_says(server, page):
     )
     assert panel["y"] + panel["height"] <= reading["y"]
     assert panel["y"] >= bar["y"] + bar["height"]
+
+
+def test_who_is_faster_than_the_server_loses_no_measurement(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    late = []
+    page.route("**/pick", lambda route: late.append(route))
+
+    page.keyboard.press("q")
+    for corner in ((6.0, 4.0), (10.0, 4.0), (10.0, 6.0), (6.0, 6.0)):
+        with page.expect_request("**/pick"):
+            page.mouse.click(*at(page, *corner))
+    page.keyboard.press("Enter")
+    page.keyboard.press("m")
+    with page.expect_request("**/pick"):
+        page.mouse.click(*at(page, 7.0, 5.0))
+    expect(page.get_by_role("button", name="Distance", exact=True)).to_have_attribute(
+        "aria-pressed", "true"
+    )
+    while late:
+        with page.expect_response("**/pick"):
+            late.pop().continue_()  # the last one first
+
+    expect(page.locator("#panel .value")).to_have_text(re.compile(r"^8\.0\d\d m²$"))
+    expect(page.locator("#status .reading")).to_contain_text("x 7.0")
+    assert len(page.evaluate("recon4Map.page.draft")) == 1

@@ -93,12 +93,22 @@ export function clicked(at, stage) {
   if (page.tool === "brush") return Promise.resolve(paint(at, at, { ...stage, done: true }));
   const answer = pointAt(at, stage);
   answer.catch(() => {}); // it is awaited in its turn
-  const { tool, measuring } = page;
+  const { tool } = page;
+  const begun = begunNow();
   return inTurn(async () => {
     const found = await answer;
-    if (tool === page.tool && measuring === page.measuring) take(found, stage);
+    if (tool === "measure") return add(found, begun, stage);
+    if (tool === page.tool) take(found, stage);
   });
 }
+
+/**
+ * What is being measured. Clicks belong to what they were made in: who is faster than the answers
+ * ends it, and has chosen the next tool when the last point comes.
+ * @typedef {{measuring: MeasureKind, draft: typeof page.draft}} Begun
+ * @returns {Begun}
+ */
+const begunNow = () => ({ measuring: page.measuring, draft: page.draft });
 
 /** What clicks lead to, in the order of the clicks: answers may overtake each other. */
 const clicks = { last: Promise.resolve() };
@@ -120,7 +130,7 @@ function ended(/** @type {HitPoint} */ point, /** @type {SnapPoint | null} */ sn
  * @param {RayHit} hit
  * @param {Stage} stage
  */
-function take({ point: found, snap }, stage) {
+function take({ point: found }, stage) {
   if (!found) return read(t("no-point-here"), stage);
   if (page.tool === "note") {
     choose("", stage);
@@ -131,14 +141,25 @@ function take({ point: found, snap }, stage) {
     choose("", stage);
     return stage.change({});
   }
-  if (page.tool !== "measure") return read(pointText(found), stage);
+  read(pointText(found), stage);
+}
+
+/**
+ * Adds a point to what is being measured.
+ * @param {RayHit} hit
+ * @param {Begun} begun
+ * @param {Stage} stage
+ */
+function add({ point: found, snap }, begun, stage) {
+  const { draft, measuring } = begun;
+  const goesOn = draft === page.draft;
+  if (!found) return goesOn ? read(t("no-point-here"), stage) : undefined;
   const one = ended(found, snap);
-  page.draft.push(one);
-  if (page.draft.length >= KINDS[page.measuring].most) finishMeasurement(stage);
-  else {
-    const there = pointText({ ...found, p_map: one.p, p_crs: one.crs });
-    read([one.snap && t(SNAPPED[one.snap] ?? "snapped"), there].filter(Boolean).join("\n"), stage);
-  }
+  draft.push(one);
+  if (draft.length >= KINDS[measuring].most) return finishMeasurement(begun, stage);
+  if (!goesOn) return;
+  const there = pointText({ ...found, p_map: one.p, p_crs: one.crs });
+  read([one.snap && t(SNAPPED[one.snap] ?? "snapped"), there].filter(Boolean).join("\n"), stage);
 }
 
 /**
@@ -154,31 +175,35 @@ export async function target(at, stage) {
 }
 
 /** Ends the measurement when the answers to its clicks have come. */
-export const finish = (/** @type {Stage} */ stage) =>
-  inTurn(() => {
-    if (page.tool === "measure") finishMeasurement(stage);
-  });
+export function finish(/** @type {Stage} */ stage) {
+  const begun = begunNow();
+  return inTurn(() => finishMeasurement(begun, stage));
+}
 
 /** Removes the last point of the measurement: a click beside what was meant. */
-export const undoPoint = (/** @type {Stage} */ stage) =>
-  inTurn(() => {
-    if (!page.draft.pop()) return;
-    read(page.draft.length ? t("point-undone") : KINDS[page.measuring].hint, stage);
+export function undoPoint(/** @type {Stage} */ stage) {
+  const { draft, measuring } = begunNow();
+  return inTurn(() => {
+    if (!draft.pop() || draft !== page.draft) return;
+    read(draft.length ? t("point-undone") : KINDS[measuring].hint, stage);
   });
+}
 
 /**
  * A double click ends a measurement whose corners are not counted; its second click is no corner.
  * @param {Stage} stage
  */
-export const finishHere = (stage) =>
-  inTurn(() => {
-    const { draft, measuring } = page;
-    if (page.tool !== "measure" || KINDS[measuring].least === KINDS[measuring].most) return;
+export function finishHere(stage) {
+  const begun = begunNow();
+  return inTurn(() => {
+    const { draft, measuring } = begun;
+    if (KINDS[measuring].least === KINDS[measuring].most) return;
     const [a, b] = draft.slice(-2);
     const near = SNAP_PX * pixelM(stage.camera(), stage.screen());
     if (a && b && lengthOf(minus(a.p, b.p)) < near) draft.pop();
-    finishMeasurement(stage);
+    finishMeasurement(begun, stage);
   });
+}
 
 /** A measurement in words; of a volume when it is known. */
 function measuredText(/** @type {Measurement} */ made) {
@@ -186,9 +211,13 @@ function measuredText(/** @type {Measurement} */ made) {
   return [`${made.name}: ${volumeProblem(made) || value}`, parts].filter(Boolean).join("\n");
 }
 
-/** Ends the measurement that has enough points. */
-function finishMeasurement(/** @type {Stage} */ stage) {
-  const { draft, measuring, state } = page;
+/**
+ * Ends the measurement that has enough points.
+ * @param {Begun} begun
+ * @param {Stage} stage
+ */
+function finishMeasurement({ draft, measuring }, stage) {
+  const { state } = page;
   if (draft.length < KINDS[measuring].least) return;
   const same = state.measurements.filter(({ kind }) => kind === measuring).length + 1;
   const made = {
@@ -198,8 +227,8 @@ function finishMeasurement(/** @type {Stage} */ stage) {
     sd: draft.map(({ sd }) => sd),
     snaps: draft.map(({ snap }) => snap),
   };
-  page.draft = [];
-  page.reading = () => measuredText(made);
+  draft.length = 0; // the next one may have been begun by clicks that wait for their answers
+  if (draft === page.draft) page.reading = () => measuredText(made);
   stage.change({ measurements: [...state.measurements, made] });
   if (made.kind === "profile") stage.profile?.(made);
 }
