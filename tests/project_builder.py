@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from recon4.first_view.files import FIRST_FILES, write_first_files
 from recon4.geometry.se3 import SE3
 from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import FIELDS, STORED
 from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tiles import TileSet
 from recon4.model.classes import PointClass
 from recon4.model.figures import FrameFigures, LevelFigures, MapFigures
 from recon4.model.multiframe import Multiframe
@@ -27,6 +30,7 @@ from recon4.review.approval import approve
 from recon4.review.approved import Approval
 from recon4.settings import Settings
 from recon4.settings.reads import ReadsNothing
+from recon4.slices.map_crs import LOCAL
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameWriter
@@ -57,12 +61,14 @@ def build_project(
     strays: int = 0,
     normals: bool = False,
     moved_m: float = 0.0,
+    first: bool = False,
 ) -> None:
     """Make a finished project in an empty folder (or one that has come as far as odometry).
 
     The map has that many stray returns in the middle of each tile, beside its points, and normals
-    of the room's walls if asked for. Its wall at the largest x may have been moved out. Built again
-    in the same folder, it has an earlier map.
+    of the room's walls if asked for. Its wall at the largest x may have been moved out. It may
+    have the files that the page *Map* reads first. Built again in the same folder, it has an
+    earlier map.
     """
     with Project.open(root) as project:
         project.describe(preset="indoor", rig="4RECON")
@@ -83,6 +89,7 @@ def build_project(
             strays=loose,
             normals=faces,
             moved=moved,
+            first=Input("first", value=True) if first else None,
         )
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
     (root / "report.html").write_text(
@@ -261,7 +268,16 @@ def _level(context: StageContext, *, walk: Trajectory) -> LevelFigures:
     return LevelFigures(leveled_by="imu", tilt_deg=0.0, crs="", local="no positions")
 
 
-def _map(
+def _map(context: StageContext, *, first: bool | None, **what: Any) -> MapFigures:
+    figures = _tiles(context, **what)
+    if first:
+        tiles = TileSet.open(context.out)
+        walk_m = loop_walk().T_a_b.t
+        write_first_files(context.out / FIRST_FILES, tiles, LOCAL, walk_m=walk_m)
+    return figures
+
+
+def _tiles(
     context: StageContext, *, points: int, strays: int, normals: bool, moved: float | None
 ) -> MapFigures:
     rng = np.random.default_rng(7)

@@ -15,7 +15,6 @@ from recon4_app.exports.kept import KeptExports
 from recon4_app.jobs.store import JobStore
 from recon4_app.jobs.supervisor import Supervisor
 from recon4_app.live.current_capture import CurrentCapture
-from recon4_app.map_view.shown_map import MapPreparation
 from recon4_app.network.streams import Streams
 from recon4_app.projects.store import ProjectStore
 from recon4_app.projects.thumbnail import Thumbnails
@@ -54,7 +53,6 @@ class ServerParts:
     reviews: Reviews
     presence: Presence
     slices: Slices
-    map_preparation: MapPreparation
     exports: KeptExports
     rigs: RigStore
     rig_uses: RigUses

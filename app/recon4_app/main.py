@@ -53,7 +53,6 @@ from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.logs import Logs
 from recon4_app.maintenance import maintain, rotate_logs
 from recon4_app.map_view import routes as map_view_routes
-from recon4_app.map_view.shown_map import MapPreparation
 from recon4_app.metrics import Metrics, MetricsMiddleware
 from recon4_app.network.behind import ProxyMiddleware, prefix_of
 from recon4_app.network.connections import (
@@ -262,7 +261,6 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         asyncio.create_task(parts.supervisor.run()),
         asyncio.create_task(_maintain(parts)),
         asyncio.create_task(parts.webhooks.run()),
-        asyncio.create_task(parts.map_preparation.run()),
         asyncio.create_task(rotate_logs(settings.state, parts.jobs, parts.current_capture)),
         asyncio.create_task(parts.current_capture.adopt()),
     ]
@@ -296,8 +294,6 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         children=child_register(settings),
     )
     slices = Slices(pool, projects, checks, settings=settings)
-    preparation = MapPreparation(slices)
-    jobs.on_ended.append(lambda job: preparation.want(job.project))
     access = open_access(settings.state, login=settings.login, notice=notice)
     return ServerParts(
         settings=settings,
@@ -317,7 +313,6 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         reviews=Reviews(pool),
         presence=Presence(),
         slices=slices,
-        map_preparation=preparation,
         exports=KeptExports(jobs, settings.state),
         rigs=rigs,
         rig_uses=uses,

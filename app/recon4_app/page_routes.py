@@ -48,8 +48,6 @@ def add_page(router: APIRouter, address: PageAddress, head: PageHead = no_head) 
         if _waits(project_id, server) and address.path != OF_PROJECT:
             progress = OF_PROJECT.format(project_id=quote(project_id, safe=""))
             return RedirectResponse(prefix_of(request.scope) + progress, status_code=303)
-        if address.path == OF_PROJECT:
-            server.map_preparation.want(project_id)  # people go on from here
         return page_response(address.file, request, head=head(project_id, request))
 
     route(read_of_project if address.path.startswith(OF_PROJECT) else read)

@@ -153,7 +153,7 @@ def _map(
     from recon4.store.classes import StoredClasses
     from recon4.store.frames import open_frames
     from recon4.workflows.corrected_classes import corrections_in
-    from recon4.workflows.map_figures import map_figures, write_map_laz
+    from recon4.workflows.map_figures import map_figures, write_map_files
     from recon4.workflows.result_files import covariances_of
 
     store = open_frames(points["frames"], points.get("calibration"), points["odometry"])
@@ -180,7 +180,7 @@ def _map(
             means=MapMeans(workers_of_this_process()),
         )
     return_freed_memory()
-    write_map_laz(context.out, level, progress=context.progress)
+    write_map_files(context.out, level, trajectory.T_a_b.t, progress=context.progress)
     return map_figures(TileSet.open(context.out), placed, bent_ratio)
 
 
@@ -199,6 +199,6 @@ INTENSITY: Stage[IntensityReads, Figures] = Stage(
     "intensity", 2, IntensityReads, _intensity, percent=4.0
 )
 CLASSES = Stage("classes", 9, ReadsNothing, _classes, ClassFigures, percent=5.0)
-MAP = Stage("map", 17, MapReads, _map, MapFigures, percent=21.0)
+MAP = Stage("map", 18, MapReads, _map, MapFigures, percent=21.0)
 TO_MAP = (INTENSITY, CLASSES, MAP)
 """The stages that `make_map` runs, in order."""

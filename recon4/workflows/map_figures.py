@@ -1,4 +1,4 @@
-"""The file and the figures of a map that was made."""
+"""Figures of a map that was made, and its files beside the tiles."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ from pathlib import Path
 from recon4.evaluation.thickness import plane_thickness
 from recon4.export.laz import export_map_laz
 from recon4.export.points import CRS_OF_MAP, OutputCrs
+from recon4.first_view.files import FIRST_FILES, write_first_files
+from recon4.geometry.se3 import Array
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import MapFigures
 from recon4.progress import Progress
+from recon4.slices.map_crs import frame_of
 from recon4.workflows.corrected_classes import CorrectionsInMap, corrected
 
 
@@ -39,8 +42,17 @@ def map_figures(
     )
 
 
-def write_map_laz(folder: Path, level: Path, *, progress: Progress) -> None:
-    """Write ``map.laz`` beside the tiles of a map, in the CRS of the stage ``level``."""
+def write_map_files(folder: Path, level: Path, walk_m: Array, *, progress: Progress) -> None:
+    """Write what lies beside the tiles of a map.
+
+    Args:
+        folder: Artifact with the tiles.
+        level: Of the stage ``level``; ``map.laz`` is in its CRS.
+        walk_m: Positions of the sensors [m], (W, 3).
+        progress: Of the stage.
+    """
     crs = read_crs(level)
     out = OutputCrs(crs.wkt, crs.to_crs) if crs else CRS_OF_MAP
     export_map_laz(folder, folder / "map.laz", out, progress=progress)
+    frame = frame_of({"map": folder, "level": level})
+    write_first_files(folder / FIRST_FILES, TileSet.open(folder), frame, walk_m=walk_m)

@@ -13,11 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from recon4.first_view.files import FIRST_FILES, write_first_files
 from recon4.mapping.columns import BLOCKS, PATHS, index_dtype
+from recon4.mapping.tiles import TileSet
+from recon4.slices.map_crs import LOCAL
 from recon4.store.arrays import load_array
 from recon4.store.project import read_artifacts
 from recon4.store.stage import Input, StageContext
 from tests.benchmarks.large_map import build_with_map
+from tests.project_builder import loop_walk
 
 BETWEEN_M = 5.0
 """Width of what is between copies, at least; they begin at whole tiles."""
@@ -44,6 +48,8 @@ def _map(context: StageContext, *, what: tuple[Path, int]) -> None:
     blocks = load_array(source / "tiles" / BLOCKS, index_dtype(facts["fields"]))
     np.save(tiles / BLOCKS, _repeated(blocks, copies))
     (context.out / "tiles.json").write_text(json.dumps(_spread(facts, copies)))
+    tiles, walk_m = TileSet.open(context.out), loop_walk().T_a_b.t
+    write_first_files(context.out / FIRST_FILES, tiles, LOCAL, walk_m=walk_m)
 
 
 def _repeated(blocks: np.ndarray, copies: int) -> np.ndarray:

@@ -10,8 +10,13 @@ import pytest
 
 from recon4.cli.main import main
 from recon4.evaluation.evaluate import evaluate
+from recon4.findings.walk_record import final_trajectory
+from recon4.first_view.files import FIRST_FILES, write_first_files
+from recon4.mapping.tiles import TileSet
 from recon4.settings import preset, to_json
+from recon4.slices.map_crs import frame_of
 from recon4.store.hashing import hash_file
+from recon4.store.project import read_artifacts
 from recon4.workflows.map_results import RESULTS
 from tests.short_capture import process_short
 
@@ -66,6 +71,18 @@ def test_the_walk_is_tracked_to_a_centimeter(project, office_recording):
     # The last pose is the end of the last revolution, a moment after the end of the truth.
     assert found.coverage_ratio > 0.98
     assert found.aligned.position_m.rmse < 0.01
+
+
+def test_the_map_has_what_its_page_reads_first(project, tmp_path):
+    artifacts = read_artifacts(project)
+    tiles, walk = TileSet.open(artifacts["map"]), final_trajectory(artifacts)
+
+    write_first_files(tmp_path / "first", tiles, frame_of(artifacts), walk_m=walk.T_a_b.t)
+
+    made = {path.name: path.read_bytes() for path in (tmp_path / "first").iterdir()}
+    assert {*made} == {"index.json", "xyz.bin", "normalized.bin"}
+    for name, data in made.items():
+        assert (artifacts["map"] / FIRST_FILES / name).read_bytes() == data
 
 
 def test_the_map_is_level_and_has_the_points_it_says(project):

@@ -105,12 +105,8 @@ def start_no_spare() -> AbstractContextManager[object]:
 
 
 @contextmanager
-def server_thread(root: Path, *, ahead: bool = False, **settings: Any) -> Iterator[Running]:
-    """A server on a free port, in this process; with ``lan=True`` one with TLS and login.
-
-    Only with ``ahead`` it prepares a map when the page of its project is opened: for most tests a
-    child would work for one to two seconds of the processor on what they never look at.
-    """
+def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
+    """A server on a free port, in this process; with ``lan=True`` one with TLS and login."""
     chosen = ServerSettings(root=root, **settings)
     make_state(chosen)
     certificate = certificate_of(chosen)
@@ -122,8 +118,6 @@ def server_thread(root: Path, *, ahead: bool = False, **settings: Any) -> Iterat
         thread.start()
         try:
             assert ready.wait(HANG_S)
-            if not ahead:
-                app.state.parts.map_preparation.want = lambda _: None
             scheme = "https" if certificate else "http"
             yield Running(f"{scheme}://127.0.0.1:{listener.getsockname()[1]}", root, app)
         finally:

@@ -115,12 +115,8 @@ MAY_IMPORT = {
     "recon4/export/bcf.py": STAGE
     | {"recon4.export", "recon4.georeference", "recon4.slices.map_crs"},
     "recon4/export/findings.py": STAGE
-    | {
-        "recon4.export",
-        "recon4.findings.summary_notes",
-        "recon4.georeference",
-        "recon4.review.state",
-    },
+    | {"recon4.export", "recon4.findings.summary_notes", "recon4.georeference"}
+    | {"recon4.review.state"},
     "recon4/export/scan_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.pose_graph", "recon4.profiler"},
     "recon4/evaluation": STAGE
@@ -146,6 +142,8 @@ MAY_IMPORT = {
     "recon4/products": STAGE
     | {f"recon4.{room}" for room in ("mapping", "products", "slices")}
     | {"recon4.review.stamp"},
+    "recon4/first_view": STAGE
+    | {"recon4.first_view", "recon4.mapping", "recon4.products.storeys", "recon4.slices.map_crs"},
     "recon4/slices/site_control.py": STAGE
     | {"recon4.georeference", "recon4.slices"}
     | {f"recon4.pose_graph.{name}" for name in ("files", "uncertainty_files")}

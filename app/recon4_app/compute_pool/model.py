@@ -26,8 +26,6 @@ class Lane(StrEnum):
     """Files of slices."""
     SURVEY = "survey"
     """References, control points, checks of the whole map."""
-    AHEAD = "ahead"
-    """What a page of a map reads first, before somebody asks for it."""
     SIGN = "sign"
     """Approvals and reports: the only lane whose children can read the signing key."""
 
@@ -60,7 +58,6 @@ QUOTAS: Mapping[Lane, Quota] = MappingProxyType(
         # The second slot is for small exports: six whole maps of one person leave it free.
         Lane.EXPORT: Quota(slots=2, per_person=2, waiting_per_person=8, retry_after_s=30.0),
         Lane.SURVEY: Quota(slots=2, per_person=2, waiting_per_person=8, retry_after_s=30.0),
-        Lane.AHEAD: Quota(),
         Lane.SIGN: Quota(waiting_per_person=4, retry_after_s=30.0),
     }
 )

@@ -64,7 +64,7 @@ class JobStore:
         self.notice = _restore(self._copies)
         """Notice for users: set when the file was damaged, else empty."""
         self._engine = open_engine(path)
-        self.on_ended: list[Callable[[Job], object]] = []
+        self.on_ended: Callable[[], object] = lambda: None
         """Called after a job has ended, in any thread."""
         with self._engine.begin() as connection:
             migrate(connection, Path(__file__).parent)
@@ -106,8 +106,7 @@ class JobStore:
             if after.over and after.kind is JobKind.PROCESS:
                 connection.execute(ENDED.insert().values(job=after.id))
         if after.over:
-            for listen in self.on_ended:
-                listen(after)
+            self.on_ended()
         return after
 
     def ended(self) -> list[Job]:

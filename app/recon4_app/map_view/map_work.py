@@ -10,6 +10,11 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.findings.walk_record import final_trajectory
+from recon4.first_view.cubes import write_cubes
+from recon4.first_view.files import write_first_files
+from recon4.first_view.index import class_name
+from recon4.first_view.points import FIELD_OF, encoded
+from recon4.first_view.records import Stored
 from recon4.geometry.se3 import Array
 from recon4.locales.coded import CodedText
 from recon4.mapping.tile import DEVIATION
@@ -22,12 +27,9 @@ from recon4.review.evidence import Evidence
 from recon4.slices.pick import points_near
 from recon4.slices.points import SliceWindow
 from recon4.slices.snap import PickRay, radius_around, snap
-from recon4.store.atomic import atomic_file, write_json
-from recon4_app.map_view.cubes import write_cubes
-from recon4_app.map_view.index import class_name, index_of
+from recon4.store.atomic import atomic_file
 from recon4_app.map_view.model import (
     HitPoint,
-    MapIndex,
     MapVolume,
     MapWalk,
     PointsInCrs,
@@ -35,11 +37,9 @@ from recon4_app.map_view.model import (
     RayHit,
     RayRequest,
     SnapPoint,
-    Stored,
     VolumeRequest,
 )
 from recon4_app.map_view.operator_marks import operator_marks
-from recon4_app.map_view.points import FIELD_OF, encoded
 from recon4_app.map_view.tuning import MAP_PICKS, MAP_VOLUMES, MAP_WALK
 from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, tiles_of
 from recon4_app.viewer.cloud.parts import Cloud
@@ -47,40 +47,17 @@ from recon4_app.viewer.cloud.pick import Ray, hit_point
 
 _MORE = ("normal", "range_m", "intensity_normalized", "classification", DEVIATION, "surface_sd_m")
 
-INDEX = "index.json"
-"""Name of the file of the index."""
-
-
-def coarse_name(stored: Stored) -> str:
-    """Name of the file of coarse points."""
-    return f"{stored}.bin"
-
 
 def write_first(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
-    """Write what the page reads first into a folder: index, coarse points, and their color."""
-    folder = Path(out)
-    folder.mkdir()
-    index = _index(artifacts, evidence)
-    write_json(folder / INDEX, index.model_dump(mode="json"))
-    first: tuple[Stored, ...] = ("xyz",) if index.color == "height" else ("xyz", index.color)
-    for stored in first:
-        write_coarse(artifacts, stored, str(folder / coarse_name(stored)), evidence=evidence)
-
-
-def write_index(artifacts: Artifacts, out: str, *, evidence: Evidence | None) -> None:
-    """Write the index of a map as JSON."""
-    write_json(Path(out), _index(artifacts, evidence).model_dump(mode="json"))
-
-
-def _index(artifacts: Artifacts, evidence: Evidence | None) -> MapIndex:
+    """Write what the page reads first of a map whose artifact does not have it."""
     tiles = map_of(artifacts, evidence)
     walk = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
     walk_m = np.empty((0, 3)) if walk is None else walk.T_a_b.t
-    return index_of(Path(artifacts["map"]).name, tiles, map_frame(artifacts), walk_m=walk_m)
+    write_first_files(Path(out), tiles, map_frame(artifacts), walk_m=walk_m)
 
 
 def write_coarse(
-    artifacts: Artifacts, stored: Stored, out: str, *, evidence: Evidence | None
+    artifacts: Artifacts, out: str, stored: Stored, *, evidence: Evidence | None
 ) -> None:
     """Write the coarse points of a whole map.
 

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated
 
 from pydantic import BaseModel, Field
 
+from recon4.first_view.records import Stored
 from recon4.slices.snap import SnapKind
 from recon4_app.map_view.tuning import MAP_PICKS
 from recon4_app.slices.model import Coordinate, Part, Strict, Xy, Xyz
 
-ColumnName = Literal["intensity", "normalized", "time", "uncertainty", "thickness"]
-"""Values that are stored for each point; height and class come with the positions."""
-Stored = Literal["xyz", "intensity", "normalized", "time", "uncertainty", "thickness"]
-"""What a chunk is read of: positions with normals and classes, or one kind of value."""
 Plane = tuple[Part, Part, Part, Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]]
 """A clip plane (n, d): points with n · p + d < 0 are not shown."""
 
@@ -23,76 +20,6 @@ Version = Annotated[int, Field(ge=0, le=1 << 31)]
 
 
 _PART = "[0-9]{1,9}(:[0-9]{1,12}){2}"
-
-
-class MapTile(BaseModel):
-    """A cube of the map."""
-
-    low_m: Xyz
-    """Smallest coordinates of its points [m]; positions in chunks are fractions of low to high."""
-    high_m: Xyz
-    points: int
-    sample: int
-    """Its first points that are in the sample of the whole map."""
-    coarse: int
-    """Its first points that are in its cube: further ones are read of the tile."""
-    cube: int
-    """Row of the cube that has its coarse points, with those of tiles near it."""
-    spacing_m: float
-    """Distance of neighboring points if all are drawn [m]."""
-
-
-class MapColumn(BaseModel):
-    """A kind of value by which points can be colored: ``offset + scale * stored``."""
-
-    name: ColumnName
-    unit: str
-    offset: float
-    scale: float
-    low: float
-    """Usual low end of the colors."""
-    high: float
-
-
-class Storey(BaseModel):
-    """A storey that was walked through."""
-
-    name: str
-    """As in plans and exports: ``0`` is where the walk begins, ``1`` the next one above."""
-    floor_m: float
-    """Height of its floor [m]."""
-    walk_m: float
-    """Usual height of the sensors [m]."""
-    ceiling: bool
-    """Whether there is something above it that looks like a ceiling, and no walk."""
-
-
-class MapIndex(BaseModel):
-    """What the page needs to know before it reads points."""
-
-    key: str
-    """The map's artifact: chunks of a key never change."""
-    version: int
-    """Of the layout of samples and chunks: part of their addresses."""
-    points: int
-    low_m: Xyz
-    """Extent of nearly all points [m]: few stray ones do not decide it."""
-    high_m: Xyz
-    tiles: list[MapTile]
-    columns: list[MapColumn]
-    color: Literal["normalized", "intensity", "height"]
-    """By what the points are colored at first: not by values that are the same everywhere."""
-    classes: dict[int, str]
-    """Names of the classes in the map, by code."""
-    class_percent: dict[int, float]
-    """Part of its points that have each class [%]; empty = a map of an earlier version."""
-    storeys: list[Storey]
-    crs: str
-    frame: str
-    """Caption of the coordinate frame."""
-    surface: str
-    """Where the points lie: on fitted surfaces, or as measured."""
-    seconds: float
 
 
 class OperatorMark(BaseModel):

@@ -11,6 +11,9 @@ from urllib.parse import quote
 from fastapi import APIRouter, Depends, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
+from recon4.first_view.cubes import CubeFile
+from recon4.first_view.records import MapIndex
+from recon4.first_view.tuning import MAP_CHUNKS
 from recon4.live.session import CaptureSession
 from recon4.locales.coded import CodedText
 from recon4_app.access.people import Permission, Who, needs
@@ -18,10 +21,8 @@ from recon4_app.deps import Server, parts
 from recon4_app.error_responses import problems
 from recon4_app.errors import BadRequest, Conflict, NotFound
 from recon4_app.map_view import map_work
-from recon4_app.map_view.cubes import CubeFile
 from recon4_app.map_view.model import (
     ChunkQuery,
-    MapIndex,
     MapVolume,
     MapWalk,
     PointsInCrs,
@@ -32,7 +33,6 @@ from recon4_app.map_view.model import (
     VolumeRequest,
 )
 from recon4_app.map_view.shown_map import ShownMap
-from recon4_app.map_view.tuning import MAP_CHUNKS
 from recon4_app.network.behind import prefix_of
 from recon4_app.network.request_caller import CalledBy, Caller
 
@@ -69,16 +69,16 @@ def page_preloads(project_id: str, request: Request) -> str:
     return "".join(f"{link.format(escape(one))}\n    " for one in first)
 
 
-@router.get("", summary="What is in the map")
+@router.get("", summary="What is in the map", response_model=MapIndex)
 async def read_index(
     project_id: str, server: Server, caller: CalledBy, *, key: str = ""
-) -> MapIndex:
+) -> Response:
     """Tiles with boxes and counts, columns, an extent without stray points, storeys, frame.
 
     With ``key`` those of an earlier map.
     """
     shown = await ShownMap.of(server.slices, project_id, person=caller.name, key=key)
-    return await caller.wait(shown.index())
+    return Response(await caller.wait(shown.index()), media_type="application/json")
 
 
 @router.get("/walk", summary="The walk and the nodes of the graph")
@@ -127,7 +127,7 @@ async def read_sample(
 async def read_cubes(
     project_id: str, key: str, *, wanted: Annotated[ChunkQuery, Query()], caller: CalledBy
 ) -> Response:
-    """Binary, part by part, each as `recon4_app.map_view.cubes` says; may be kept for ever."""
+    """Binary, part by part, each as `recon4.first_view.cubes` says; may be kept for ever."""
     _check_parts(wanted.rows)
     coarse = await _coarse(caller, project_id, key, query=wanted)
     if coarse is None:
@@ -145,7 +145,7 @@ async def read_points(
     wanted: Annotated[ChunkQuery, Query()],
     caller: CalledBy,
 ) -> Response:
-    """Binary, part by part, each as `recon4_app.map_view.points` says; may be kept for ever."""
+    """Binary, part by part, each as `recon4.first_view.points` says; may be kept for ever."""
     _check_version(wanted.version)
     rows = wanted.rows
     _check_parts(rows)

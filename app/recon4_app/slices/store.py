@@ -302,20 +302,6 @@ class Slices:
         """Run work that may take minutes, or reads a user's file, in a separate child process."""
         return await self._pool.run_background(Lane.SURVEY, terms, function, *args, **kwargs)
 
-    async def run_ahead(
-        self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
-    ) -> T:
-        """Run work for which nobody waits yet, in a separate child process."""
-        return await self._pool.run_background(Lane.AHEAD, terms, function, *args, **kwargs)
-
-    async def kept_before(self, name: str) -> Path:
-        """Place of a cached file, which may be missing; waits while it is made."""
-        path = self._kept / name
-        if making := self._making.get(path):
-            async with making:
-                pass
-        return path
-
     async def kept(self, name: str, make: Callable[[Path], Any]) -> Path:
         """A cached file, made once per map."""
         path = self._kept / name

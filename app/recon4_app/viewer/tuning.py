@@ -159,8 +159,6 @@ class CloudPartTuning(Struct, frozen=True, kw_only=True):
     """Most points of the coarsest sample, which is sent first and always on screen."""
     painted_points: int = 6_000_000
     """Points whose colors are cached, for clients with the same view [3 bytes each]."""
-    surface_m: float = 0.01
-    """Distance of points on a surface in a map that was not thinned [m]."""
 
 
 CLOUD_PARTS = CloudPartTuning()

@@ -46,7 +46,7 @@ class Webhooks:
         """Record of an approval -> its modification time when it was collected."""
         self._loop: asyncio.AbstractEventLoop | None = None
         self._wake = asyncio.Event()
-        jobs.on_ended.append(lambda _: self.wake())
+        jobs.on_ended = self.wake
 
     def wake(self) -> None:
         """Look for news now. Thread-safe."""

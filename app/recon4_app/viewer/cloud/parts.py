@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.first_view.surfaces import cells_m2
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import Surface, TileSet
@@ -113,14 +114,10 @@ class Cloud:
     def boxes(self) -> TileBoxes:
         """Input of the selection of detail."""
         tiles = self.tiles.tiles
-        apart_m = self.tiles.notes.voxel_m or CLOUD_PARTS.surface_m
         low = np.array([tile.low_m for tile in tiles]).reshape(-1, 3)
         high = np.array([tile.high_m for tile in tiles]).reshape(-1, 3)
-        x, y, z = (high - low).T
-        count = np.array([len(tile) for tile in tiles], dtype=np.float64)
-        area = np.minimum(count * apart_m**2, 2.0 * (x * y + y * z + z * x) + apart_m**2)
         sizes = tuple(np.array([len(rows) for rows in chunks]) for chunks in self._chunks)
-        return TileBoxes(low, high, area, sizes)
+        return TileBoxes(low, high, cells_m2(self.tiles), sizes)
 
     @cached_property
     def base(self) -> CloudPart:

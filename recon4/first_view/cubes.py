@@ -8,7 +8,7 @@ A file has the points of all cubes, of one kind of value:
 
     header   number of cubes, then how many of its points are in the sample of the whole map and
              how many there are, of each cube; unsigned, 32 bits
-    xyz      cube after cube, as `recon4_app.map_view.points` says, within the box of the cube; then
+    xyz      cube after cube, as `recon4.first_view.points` says, within the box of the cube; then
              the tile of each point, counted within its cube: 11 bytes a point
     others   16-bit values: 2 bytes a point
 """
@@ -24,19 +24,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, StoreError
-from recon4.locales.coded import CodedText
-from recon4.mapping.tiles import TileSet
-from recon4.mapping.tuning import TILES
-from recon4_app.map_view.model import Stored
-from recon4_app.map_view.points import (
+from recon4.first_view.points import (
     FIELD_OF,
     fractions,
     read_shown,
     sample_sizes,
     shape_and_class,
 )
-from recon4_app.map_view.points import steps as steps_from
-from recon4_app.map_view.tuning import MAP_CHUNKS
+from recon4.first_view.points import steps as steps_from
+from recon4.first_view.records import Stored
+from recon4.first_view.tuning import MAP_CHUNKS
+from recon4.locales.coded import CodedText
+from recon4.mapping.tiles import TileSet
+from recon4.mapping.tuning import TILES
 
 Rows = NDArray[np.intp]
 
@@ -112,8 +112,14 @@ class CubeFile:
     stored: Stored
 
     def sample(self) -> bytes:
-        """The sample of the whole map: the first points of each cube, as parts."""
+        """The sample of the whole map: the first points of each cube, as parts.
+
+        Raises:
+            StoreError: If the file is damaged.
+        """
         counts = self._counts()[:, 0].tolist()
+        if sum(counts) * sum(self._widths) > MAP_CHUNKS.max_sample_bytes:
+            raise StoreError(f"{self.path.name} has a sample of {sum(counts)} points")
         return self.read(tuple((row, 0, count) for row, count in enumerate(counts) if count))
 
     def read(self, parts: tuple[tuple[int, int, int], ...]) -> bytes:
@@ -123,8 +129,7 @@ class CubeFile:
             ConfigError: If there are no such points.
             StoreError: If the file is damaged.
         """
-        counts = self._counts()
-        widths = MAP_CHUNKS.place_bytes if self.stored == "xyz" else MAP_CHUNKS.value_bytes
+        counts, widths = self._counts(), self._widths
         begins = np.concatenate([[0], np.cumsum(counts[:, 1], dtype=np.int64)]) * sum(widths)
         begins += counts.nbytes + 4
         data = []
@@ -137,15 +142,22 @@ class CubeFile:
                 at = int(begins[row])
                 for width in widths:
                     file.seek(at + width * start)
-                    data.append(file.read(width * (stop - start)))
+                    part = file.read(width * (stop - start))
+                    if len(part) < width * (stop - start):
+                        raise StoreError(f"{self.path.name} ends early")
+                    data.append(part)
                     at += width * int(counts[row, 1])
         return b"".join(data)
 
+    @property
+    def _widths(self) -> tuple[int, ...]:
+        return MAP_CHUNKS.place_bytes if self.stored == "xyz" else MAP_CHUNKS.value_bytes
+
     def _counts(self) -> NDArray[Any]:
         with self.path.open("rb") as file:
-            first = np.frombuffer(file.read(4), "<u4")
-            many = int(first[0]) if len(first) else 0
-            counts = np.frombuffer(file.read(8 * many), "<u4")
-        if len(counts) != 2 * many:
+            first = file.read(4)
+            many = int.from_bytes(first, "little")
+            counts = file.read(8 * many)
+        if len(first) < 4 or len(counts) < 8 * many:
             raise StoreError(f"{self.path.name} ends early")
-        return counts.reshape(-1, 2)
+        return np.frombuffer(counts, "<u4").reshape(-1, 2)

@@ -9,27 +9,26 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.first_view.cubes import coarse_sizes, cubes_of
+from recon4.first_view.points import FIELD_OF, read_shown, sample_sizes, steps_of, values_of
+from recon4.first_view.records import ColumnName, MapColumn, MapIndex, MapTile, Storey
+from recon4.first_view.surfaces import cells_m2, sides_m2, surfaces_m2
+from recon4.first_view.tuning import FIRST_VIEW, MAP_CHUNKS
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.classes import CLASSES, PointClass, is_delivered
 from recon4.products.storeys import storey_names
-from recon4.slices.map_crs import MapFrame
-from recon4_app.map_view.cubes import coarse_sizes, cubes_of
-from recon4_app.map_view.model import ColumnName, MapColumn, MapIndex, MapTile, Storey
-from recon4_app.map_view.points import FIELD_OF, read_shown, sample_sizes, steps_of, values_of
-from recon4_app.map_view.tuning import FIRST_VIEW, MAP_CHUNKS
-from recon4_app.viewer.cloud.parts import Cloud
 
 Columns = dict[str, NDArray[Any]]
 
 
-def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> MapIndex:
-    """Make the index.
+def index_of(tiles: TileSet, *, crs: str, frame: str, walk_m: Array) -> MapIndex:
+    """Make the index; it has no key yet, as it is a part of the artifact that has it.
 
     Args:
-        key: Of the map's artifact.
         tiles: The map.
-        frame: Its frame.
+        crs: As `MapIndex` has it.
+        frame: As `MapIndex` has it.
         walk_m: Positions of the sensors [m], (W, 3).
     """
     names = [name for name in get_args(ColumnName) if FIELD_OF[name] in tiles.fields]
@@ -41,7 +40,7 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
     percent = _class_percent(tiles)
     columns = [_column(name, found[FIELD_OF[name]], tiles) for name in names]
     return MapIndex(
-        key=key,
+        key="",
         version=MAP_CHUNKS.version,
         points=len(tiles),
         low_m=_xyz(low),
@@ -52,8 +51,8 @@ def index_of(key: str, tiles: TileSet, frame: MapFrame, *, walk_m: Array) -> Map
         classes={int(code): class_name(int(code)) for code in percent or sampled},
         class_percent=percent,
         storeys=storeys(found["xyz"], found.get("normal"), walk_m),
-        crs=frame.crs,
-        frame=frame.text,
+        crs=crs,
+        frame=frame,
         surface=tiles.surface,
         seconds=(tiles.last_ns - tiles.first_ns) / 1e9,
     )
@@ -71,7 +70,8 @@ def _class_percent(tiles: TileSet) -> dict[int, float]:
     """Part of the points of a map that have each class [%]; empty if they were not counted."""
     codes = np.array(sorted(tiles.notes.classes), np.uint8)
     counts = {code: tiles.notes.classes[code] for code in codes[is_delivered(codes)].tolist()}
-    return {code: round(100.0 * n / sum(counts.values()), 2) for code, n in counts.items()}
+    total = max(sum(counts.values()), 1)
+    return {code: round(100.0 * n / total, 2) for code, n in counts.items()}
 
 
 def class_name(code: int) -> str:
@@ -97,7 +97,7 @@ def storeys(p_map: Array, normal: NDArray[Any] | None, walk_m: Array) -> list[St
     found = [_storey(p_map[:, 2], normal, one, top_m=top_m) for one in _levels(heights)]
     known = sorted((one for one in found if one is not None), key=lambda one: one.floor_m)
     names = storey_names([one.floor_m for one in known], float(walk_m[0, 2]))
-    return [one.model_copy(update={"name": name}) for one, name in zip(known, names, strict=True)]
+    return [replace(one, name=name) for one, name in zip(known, names, strict=True)]
 
 
 def _levels(heights: Array) -> list[Array]:
@@ -138,7 +138,7 @@ def _storey(
         return None
     bins = np.floor(floor / FIRST_VIEW.bin_m).astype(np.int64)
     counts = np.bincount(bins - bins.min())
-    level = FIRST_VIEW.bin_m * (bins.min() + int(np.argmax(counts)) + 0.5)
+    level = FIRST_VIEW.bin_m * (int(bins.min()) + int(np.argmax(counts)) + 0.5)
     above = (z_m > walk) & (z_m < level + 2.0 * far)
     down = np.count_nonzero(above & (np.abs(up) > FIRST_VIEW.upright))
     hidden = normal is not None and top_m < level + far
@@ -181,35 +181,10 @@ def _extent(p_map: Array) -> tuple[Array, Array]:
     return low - margin, high + margin
 
 
-def surfaces_m2(p_map: Array, sizes: NDArray[np.int64], least_m2: Array) -> Array:
-    """Surface that the points of each tile lie on [m²], (T,).
-
-    Of evenly spread points the nearest one is at half the root of the surface that each has, on
-    the average (Clark and Evans 1954, eq. 1). Tiles with few points are as the median of others.
-
-    Args:
-        p_map: Even samples of the tiles, one after the other [m], (N, 3).
-        sizes: Points of each, (T,).
-        least_m2: Smallest surface of each, that of the cells in which a map has one point, (T,).
-    """
-    from scipy.spatial import cKDTree  # only where maps are read, not where a server starts
-
-    ratio = np.full(len(sizes), np.nan)
-    for row in np.flatnonzero(sizes >= FIRST_VIEW.spread_points).tolist():
-        end = int(sizes[: row + 1].sum())
-        part = p_map[end - int(sizes[row]) : end]
-        away_m = cKDTree(part).query(part, k=2)[0][:, 1]
-        ratio[row] = len(part) * (2.0 * away_m.mean()) ** 2 / max(least_m2[row], 1e-9)
-    known = ratio[np.isfinite(ratio)]
-    usual = float(np.median(known)) if len(known) else 1.0
-    return np.asarray(least_m2 * np.maximum(np.where(np.isfinite(ratio), ratio, usual), 1.0))
-
-
 def _tiles(tiles: TileSet, sizes: NDArray[np.int64], sample: Array) -> list[MapTile]:
-    boxes = Cloud(tiles).boxes
-    x, y, z = (boxes.high_m - boxes.low_m).T
-    most_m2 = np.maximum(2.0 * (x * y + y * z + z * x), boxes.area_m2)
-    area_m2 = np.minimum(surfaces_m2(sample, sizes, boxes.area_m2), most_m2)
+    least_m2 = cells_m2(tiles)
+    most_m2 = np.maximum(sides_m2(tiles), least_m2)
+    area_m2 = np.minimum(surfaces_m2(sample, sizes, least_m2), most_m2)
     cube = np.zeros(len(tiles.tiles), np.int64)
     for row, own in enumerate(cubes_of(tiles)):
         cube[own] = row

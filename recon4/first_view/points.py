@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.first_view.records import ColumnName, Stored
+from recon4.first_view.tuning import MAP_CHUNKS
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.mapping.tuning import TILES
-from recon4_app.map_view.model import ColumnName, Stored
-from recon4_app.map_view.tuning import MAP_CHUNKS
 
 FIELD_OF: dict[ColumnName, str] = {
     "intensity": "intensity",

@@ -1,17 +1,26 @@
 """The order, extent and storeys of what the page *Map* draws."""
 
+import hashlib
+import json
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from pydantic import TypeAdapter
 
+from recon4.first_view import index, points
+from recon4.first_view.cubes import CubeFile
+from recon4.first_view.files import read_index, write_first_files
+from recon4.first_view.index import _extent, _values, storeys, usual_color
+from recon4.first_view.points import _shown_order, encoded, read_shown
+from recon4.first_view.records import MapColumn, MapIndex
+from recon4.first_view.surfaces import surfaces_m2
+from recon4.first_view.tuning import FIRST_VIEW, MAP_CHUNKS
 from recon4.mapping.tiles import TileSet
+from recon4.slices.map_crs import LOCAL
 from recon4.store.project import read_artifacts
-from recon4_app.map_view import index, points
-from recon4_app.map_view.index import _extent, _values, storeys, surfaces_m2, usual_color
-from recon4_app.map_view.model import MapColumn
-from recon4_app.map_view.points import _shown_order, encoded, read_shown
-from recon4_app.map_view.tuning import FIRST_VIEW
+from recon4.untrusted.typed import decoded
 from tests.project_builder import build_project
 
 BOX = np.random.default_rng(3).uniform(0.0, (20.0, 10.0, 3.0), (50_000, 3))
@@ -137,3 +146,25 @@ def test_values_that_are_the_same_everywhere_are_not_shown_at_first():
     assert usual_color([intensity, column("normalized", 1.0, 40.0)]) == "normalized"
     assert usual_color([intensity, column("normalized", 0.0, 0.0625)]) == "intensity"
     assert usual_color([column("intensity", 0.0, 0.0625)]) == "height"
+
+
+def test_a_map_without_points_has_an_index_and_no_points(tiles, tmp_path):
+    notes = replace(tiles.notes, classes={1: 0})
+    none = replace(tiles, tiles=(), points=0, first_ns=0, last_ns=0, notes=notes)
+
+    write_first_files(tmp_path / "first", none, LOCAL, walk_m=np.zeros((1, 3)))
+
+    found = decoded(read_index(tmp_path / "first/index.json", "key"), MapIndex)
+    assert (found.key, found.points, found.tiles) == ("key", 0, [])
+    assert CubeFile(tmp_path / "first/xyz.bin", "xyz").sample() == b""
+
+
+def test_a_changed_layout_of_the_index_has_another_version():
+    """Else an index that an earlier version kept would be read as one of this."""
+    layout = json.dumps(TypeAdapter(MapIndex).json_schema(), sort_keys=True)
+    text = re.sub(r'"(description|title)": "[^"]*",? ?', "", layout)
+
+    assert (MAP_CHUNKS.version, hashlib.sha256(text.encode()).hexdigest()[:12]) == (
+        6,
+        "df730ce651c7",
+    )
