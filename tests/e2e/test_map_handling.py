@@ -232,3 +232,20 @@ def test_who_is_faster_than_the_server_loses_no_measurement(server, page):
     expect(page.locator("#panel .value")).to_have_text(re.compile(r"^8\.0\d\d m²$"))
     expect(page.locator("#status .reading")).to_contain_text("x 7.0")
     assert len(page.evaluate("recon4Map.page.draft")) == 1
+
+
+def test_a_note_half_written_is_not_lost_by_a_reload_unasked(server, page):
+    opened(page, server, f"?{TOP}&z=..")
+    asked = []
+    page.on("dialog", lambda dialog: asked.append(dialog.type) or dialog.accept())
+    page.keyboard.press("n")
+    page.mouse.click(*at(page, 6.0, 4.0))
+    expect(page.locator("#panel textarea")).to_be_focused()
+    page.keyboard.type("Crack")
+    page.reload()
+    rested(page)
+    assert asked == ["beforeunload"]
+
+    page.reload()
+    rested(page)
+    assert asked == ["beforeunload"]

@@ -194,6 +194,18 @@ def test_no_double_wall_is_found_where_there_is_none(server, page):
 
 
 @looks("desktop light")
+def test_a_panel_that_is_opened_is_in_view_below_a_long_one(server, page):
+    opened(page, server)
+    for text in ("Control and check points", "Compare with a reference", "Export"):
+        page.get_by_text(text, exact=True).first.click()
+        panel = page.locator("#findings > details", has_text=text).first
+        expect(panel).to_have_attribute("open", "")
+        outer, inner = (one.bounding_box() for one in (page.locator("#findings"), panel))
+        bottom = outer["y"] + outer["height"] + 1
+        assert inner["y"] + inner["height"] <= bottom or inner["y"] <= outer["y"] + 1
+
+
+@looks("desktop light")
 @pytest.mark.study
 def test_findings_are_those_of_the_map_that_is_shown(server, page):
     (server.root / "wall.xyz").write_text("\n".join(f"0 {y / 20} 1.5" for y in range(200)))
@@ -257,7 +269,14 @@ def test_an_invalid_reference_is_rejected_and_another_uploaded_and_shown(server,
     expect(page.get_by_role("button", name="Upload file…")).to_be_enabled()
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Upload file…").click()
-    chooser.value.set_files({"name": "sent.xyz", "mimeType": "text/plain", "buffer": rows.encode()})
+    late = []
+    page.route("**/references/preview", lambda route: late.append(route), times=1)
+    with page.expect_request("**/references/preview"):
+        chooser.value.set_files(
+            {"name": "sent.xyz", "mimeType": "text/plain", "buffer": rows.encode()}
+        )
+    expect(page.get_by_role("button", name="Add reference")).to_be_disabled()  # it is being added
+    late.pop().continue_()
     page.get_by_role("button", name="Use these columns").click()
 
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")

@@ -28,6 +28,7 @@ import { smallPhoto } from "./photo.js";
  * @property {number[]} p [m]
  * @property {string} text
  * @property {NoteView | null} view where its author looks from
+ * @property {boolean} [typed] whether a person has changed its text
  */
 
 const id = idHere();
@@ -40,6 +41,9 @@ const MOST_CHARACTERS = 500;
  */
 export function notesOf(draw, seen) {
   const { notes } = page;
+  addEventListener("beforeunload", (event) => {
+    if (notes.draft?.typed) event.preventDefault(); // the browser asks
+  });
 
   async function read() {
     notes.all = (await readNotes(id)).notes;
@@ -177,7 +181,10 @@ function problem() {
  * @param {NoteDraft} draft
  * @param {Act} act
  */
-function form({ id: note, p, text }, act) {
+function form(draft, act) {
+  const { id: note, p, text } = draft;
+  const type = (/** @type {Event} */ event) =>
+    Object.assign(draft, { text: targetOf(event).value, typed: true });
   const submit = (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
     const { value } = within(targetOf(event), "textarea", HTMLTextAreaElement);
@@ -188,7 +195,13 @@ function form({ id: note, p, text }, act) {
     <label
       ><span
         >${note ? t("note") : t("note-at", { place: p.map((x) => decimal(x, 2)).join(" ") })}</span
-      ><textarea rows="3" maxlength=${MOST_CHARACTERS} required .value=${text}></textarea>
+      ><textarea
+        rows="3"
+        maxlength=${MOST_CHARACTERS}
+        required
+        .value=${text}
+        @input=${type}
+      ></textarea>
     </label>
     <label
       ><span>${t("photo-optional")}</span><input type="file" accept="image/jpeg,image/png"

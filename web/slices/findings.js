@@ -53,6 +53,13 @@ export function keepOpenPanels() {
   sessionStorage.setItem(OPEN, open.join(" "));
 }
 
+/** What a person opens is scrolled into view: a panel above may be longer than the window. */
+function showOpened(/** @type {Event} */ event) {
+  const panel = /** @type {HTMLElement} */ (event.currentTarget).closest("details");
+  const show = () => panel?.open && panel.scrollIntoView({ block: "nearest" });
+  panel?.addEventListener("toggle", show, { once: true });
+}
+
 /**
  * Fills the section; returns callbacks for changes of the slice and of the map.
  * @param {HTMLElement} root
@@ -64,7 +71,7 @@ export function findings(root, page) {
     PANELS.map(
       ([text]) =>
         html`<details class="panel">
-          <summary>${text}</summary>
+          <summary @click=${showOpened}>${text}</summary>
           <div></div>
         </details>`,
     ),

@@ -73,15 +73,16 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
    * A button that cannot be used again before its action is done.
    * @param {string} text
    * @param {() => unknown} action
+   * @param {boolean} [busy] with another
    */
-  const button = (text, action) => {
+  const button = (text, action, busy = false) => {
     const act = async (/** @type {Event} */ event) => {
       const pressed = /** @type {HTMLButtonElement} */ (event.currentTarget);
       pressed.disabled = true;
       await attempt(message(), action);
       pressed.disabled = false;
     };
-    return html`<button type="button" @click=${act}>${text}</button>`;
+    return html`<button type="button" ?disabled=${busy} @click=${act}>${text}</button>`;
   };
 
   /** Sends the file like a recording (it goes on after a break), then uses it. */
@@ -214,6 +215,7 @@ export function referencePanel(host, { id, change, state: slice, reload }) {
           />${button(t("browse"), () => openFolder(""))}${reader.fields}${button(
             t("add-reference"),
             () => reader.read(state.path),
+            busy,
           )}
         </div>
         ${sending ? progress(sending) : nothing} ${folderList()}
