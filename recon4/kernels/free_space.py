@@ -21,6 +21,8 @@ class Verdicts(NamedTuple):
     unknown: int = 0
     seen_through: int = 1
     """Nothing stands there."""
+    hidden: int = 2
+    """All that a scan has around its direction lies before it."""
 
 
 VERDICT = Verdicts()

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.cell_table import place_of
 from recon4.kernels.free_space import VERDICT, Sights, cell_towards, sight, to_sensor
 
 Place = tuple[float, float, float]
@@ -87,28 +88,42 @@ def _limits(range_m: float, rules: SightRules) -> tuple[float, float]:
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _vote(p: Place, own: int, v: int, views: RangeViews, rules: SightRules) -> int:
-    """What a scan says of a place.
+    """What a scan says of a place: one of `VERDICT`."""
+    return _look(p, (v, own), views, rules, False)
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _look(
+    p: Place, scan: tuple[int, int], views: RangeViews, rules: SightRules, asks_hidden: bool
+) -> int:
+    """What a scan says of a place: one of `VERDICT`, hidden in place of unknown only if asked.
 
     It meets a surface if one of its sensors does: that which measured the point is asked first.
     """
-    images = views.sights.images
+    (v, own), images = scan, views.sights.images
     shape, sensors = images.shape[2:], images.shape[1]
-    vote = VERDICT.unknown
+    vote, is_hidden = VERDICT.unknown, False
     for other in range(sensors):
         s = (own + other) % sensors
         x, y, z = to_sensor(p, views.sights, v, s)
         flat = math.sqrt(x * x + y * y)
         if z < views.slopes[v, s, 0] * flat or z > views.slopes[v, s, 1] * flat:
             continue
-        row, column, range_m = cell_towards(x, y, z, shape)
-        if range_m < rules.nearest_m or range_m > rules.farthest_m:
+        # Angles are dear: most places that are too far need none.
+        range_m = math.sqrt(flat * flat + z * z)
+        is_near = rules.nearest_m <= range_m <= rules.farthest_m
+        if not (is_near or asks_hidden):
             continue
+        row, column, _ = cell_towards(x, y, z, shape)
         limits = _limits(range_m, rules)
-        seen = sight(images, (v, s), (row, column), range_m, limits)
-        if seen == VERDICT.met:
-            return VERDICT.met
-        vote = max(vote, seen)
-    return vote
+        if is_near:
+            seen = sight(images, (v, s), (row, column), range_m, limits)
+            if seen == VERDICT.met:
+                return VERDICT.met
+            vote = max(vote, seen)
+        if asks_hidden and not is_hidden and vote == VERDICT.unknown:
+            is_hidden = _is_before(images, (v, s), (row, column), range_m - limits[0])
+    return VERDICT.hidden if is_hidden and vote == VERDICT.unknown else vote
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -160,13 +175,21 @@ def _is_confirmed(p: Place, v: int, views: RangeViews, rules: SightRules) -> boo
         return False
     meets: Any = 0
     hides: Any = 0
+    left: Any = len(views.asked)
     for w in views.asked:
-        if w != v:
-            vote = _vote(end, 0, w, views, rules)
-            meets += vote == VERDICT.met
-            hides += vote == VERDICT.unknown and _hides(end, w, views, rules)
-            if meets - rules.confirmed * hides >= rules.surely_met:
-                return True
+        left -= 1
+        if w == v:
+            continue
+        vote = _look(end, (w, 0), views, rules, True)
+        meets += vote == VERDICT.met
+        hides += vote == VERDICT.hidden
+        if meets - rules.confirmed * hides >= rules.surely_met:
+            return True
+        # What is left changes nothing.
+        if meets >= rules.confirmed * (hides + left):
+            return True
+        if meets + left < rules.confirmed * hides:
+            return False
     return bool(meets >= rules.confirmed * hides)
 
 
@@ -177,7 +200,7 @@ def _end_of_beam(p: Place, v: int, views: RangeViews, rules: SightRules) -> tupl
     for s in range(images.shape[1]):
         x, y, z = to_sensor(p, views.sights, v, s)
         row, column, range_m = cell_towards(x, y, z, images.shape[2:])
-        if range_m < rules.nearest_m or range_m > rules.farthest_m:
+        if not rules.nearest_m <= range_m <= rules.farthest_m:
             continue
         limits = _limits(range_m, rules)
         if sight(images, (v, s), (row, column), range_m, limits) == VERDICT.seen_through:
@@ -203,21 +226,24 @@ def _nearest(images: NDArray[np.float32], image: tuple[int, int], cell: tuple[in
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _hides(p: Place, v: int, views: RangeViews, rules: SightRules) -> bool:
-    """Whether all that a sensor of a scan has around the direction of a place lies before it."""
-    images = views.sights.images
-    for s in range(images.shape[1]):
-        x, y, z = to_sensor(p, views.sights, v, s)
-        row, column, range_m = cell_towards(x, y, z, images.shape[2:])
-        limit_m = range_m - rules.behind_m - rules.behind_per_m * range_m
-        is_hidden = images[v, s, row, column] < limit_m
-        for i in range(max(row - 1, 0), min(row + 2, images.shape[2])):
-            for step in range(-1, 2):
-                seen_m = images[v, s, i, (column + step) % images.shape[3]]
-                is_hidden = is_hidden and (seen_m <= limit_m or seen_m == np.inf)
-        if is_hidden:
-            return True
-    return False
+def _is_before(
+    images: NDArray[np.float32], image: tuple[int, int], cell: tuple[int, int], limit_m: float
+) -> bool:
+    """Whether a cell has a return, and all that it and those around it have are this near."""
+    (v, s), (row, column) = image, cell
+    if images[v, s, row, column] >= limit_m:
+        return False
+    rows, columns = images.shape[2:]
+    for i in range(max(row - 1, 0), min(row + 2, rows)):
+        for step in range(-1, 2):
+            j = column + step
+            if j < 0:
+                j += columns
+            elif j >= columns:
+                j -= columns
+            if limit_m < images[v, s, i, j] < np.inf:
+                return False
+    return True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -234,17 +260,23 @@ def _is_empty(
         `EVIDENCE.moved`; doubted, if too few of their beams are confirmed; met = no.
     """
     passes: Any = 0
+    for v in rows:
+        vote = _vote(p, own, v, views, rules)
+        passes += vote == VERDICT.seen_through
+        if vote == VERDICT.met or passes >= rules.gone:
+            break
+    if passes < rules.gone:
+        return int(EVIDENCE.met)
+    # Most places end above: beams are confirmed only where there are enough.
     sure: Any = 0
     for v in rows:
         vote = _vote(p, own, v, views, rules)
         if vote == VERDICT.met:
             break
-        if vote == VERDICT.seen_through:
-            passes += 1
-            sure += _is_confirmed(p, v, views, rules)
-            if sure >= rules.gone:
-                return int(EVIDENCE.moved)
-    return int(EVIDENCE.doubted if passes >= rules.gone else EVIDENCE.met)
+        sure += vote == VERDICT.seen_through and _is_confirmed(p, v, views, rules)
+        if sure >= rules.gone:
+            return int(EVIDENCE.moved)
+    return int(EVIDENCE.doubted)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -280,8 +312,8 @@ def find_seen_through(
         k = np.int64(math.floor(p[n, 2] / rules.place_m))
         key = ((i & bits) << 40) | ((j & bits) << 20) | (k & bits)
         if key != last_key:
-            # Neighbors are near to each other in the table, too.
-            at = ((i & 127) | ((j & 127) << 7) | (k << 14)) & (size - 1)
+            # Mixed bits: streets repeat low ones, and with these alone, searches were long.
+            at = place_of(key, size - 1)
             while held[at] != 0 and held[at] >> 3 != key:
                 at = (at + 1) & (size - 1)
             if held[at] == 0:
