@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from recon4.geometry.tuning import POSE_BLOCK
+
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Iterator
 
 Array = NDArray[np.float64]
 
@@ -166,6 +168,8 @@ class SE3:
 
     def quat_xyzw(self) -> Array:
         """Unit quaternions (x, y, z, w), w >= 0, (..., 4)."""
+        if self.t.ndim > 1 and len(self) > POSE_BLOCK.poses:
+            return np.concatenate([self[rows].quat_xyzw() for rows in _blocks(len(self))])
         quat = quat_from_matrix(self.R)
         return np.where(quat[..., 3:] < 0.0, -quat, quat)
 
@@ -257,6 +261,25 @@ def interpolate(T_a_b0: SE3, T_a_b1: SE3, fraction: ArrayLike) -> SE3:
     s = np.asarray(fraction, dtype=np.float64)[..., None]
     omega = so3_log(np.swapaxes(T_a_b0.R, -1, -2) @ T_a_b1.R)
     return SE3(T_a_b0.R @ so3_exp(s * omega), T_a_b0.t + s * (T_a_b1.t - T_a_b0.t))
+
+
+def poses_by_blocks(made: Callable[[slice], SE3], count: int) -> SE3:
+    """Many poses, of which only some are in the making at a time.
+
+    Args:
+        made: Makes the poses of some rows, each from what belongs to its row alone.
+        count: Number of poses.
+    """
+    out = SE3(np.empty((count, 3, 3)), np.empty((count, 3)))
+    for rows in _blocks(count):
+        part = made(rows)
+        out.R[rows], out.t[rows] = part.R, part.t
+    return out
+
+
+def _blocks(count: int) -> Iterator[slice]:
+    block = POSE_BLOCK.poses
+    return (slice(start, start + block) for start in range(0, count, block))
 
 
 def mean_rotation(R: Array, weights: Array | None = None) -> Array:

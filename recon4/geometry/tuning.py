@@ -15,6 +15,16 @@ class LineGeometryTuning(Struct, frozen=True, kw_only=True):
 LINES = LineGeometryTuning()
 
 
+class PoseBlockTuning(Struct, frozen=True, kw_only=True):
+    """Poses that are computed at a time."""
+
+    poses: int = 1 << 14
+    """Of a dense trajectory: what interpolation needs in between takes 0.6 kB a pose."""
+
+
+POSE_BLOCK = PoseBlockTuning()
+
+
 class SurfaceReflectivity(Struct, frozen=True, kw_only=True):
     """How much of the light surfaces return."""
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, interpolate
+from recon4.geometry.se3 import SE3, interpolate, poses_by_blocks
 from recon4.model.trajectory import Times, Trajectory
 
 
@@ -30,9 +30,13 @@ def apply_corrections(dense: Trajectory, t_ns: Times, *, T_before: SE3, T_after:
     T_c_a = T_after @ T_before.inverse()
     if len(t_ns) == 1:
         return replace(dense, T_a_b=T_c_a[0] @ dense.T_a_b)
-    left = np.clip(np.searchsorted(t_ns, dense.t_ns, side="right") - 1, 0, len(t_ns) - 2)
-    fraction = (dense.t_ns - t_ns[left]) / (t_ns[left + 1] - t_ns[left])
-    moved = interpolate(
-        T_c_a[left] @ dense.T_a_b, T_c_a[left + 1] @ dense.T_a_b, np.clip(fraction, 0.0, 1.0)
-    )
-    return replace(dense, T_a_b=moved)
+
+    def moved(rows: slice) -> SE3:
+        at_ns, T_a_b = dense.t_ns[rows], dense.T_a_b[rows]
+        left = np.clip(np.searchsorted(t_ns, at_ns, side="right") - 1, 0, len(t_ns) - 2)
+        fraction = (at_ns - t_ns[left]) / (t_ns[left + 1] - t_ns[left])
+        return interpolate(
+            T_c_a[left] @ T_a_b, T_c_a[left + 1] @ T_a_b, np.clip(fraction, 0.0, 1.0)
+        )
+
+    return replace(dense, T_a_b=poses_by_blocks(moved, len(dense)))

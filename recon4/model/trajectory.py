@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import OutOfRange
-from recon4.geometry.se3 import SE3, interpolate
+from recon4.geometry.se3 import SE3, interpolate, poses_by_blocks
 from recon4.locales.coded import CodedText
 
 Times = NDArray[np.int64]
@@ -64,6 +64,11 @@ class Trajectory:
             )
         if len(self.t_ns) == 1:
             return self.T_a_b[np.zeros(t.shape, dtype=np.intp)]
+        if t.ndim == 0:
+            return self._between(t)
+        return poses_by_blocks(lambda rows: self._between(t[rows]), len(t))
+
+    def _between(self, t: Times) -> SE3:
         left = np.clip(np.searchsorted(self.t_ns, t, side="right") - 1, 0, len(self.t_ns) - 2)
         span = self.t_ns[left + 1] - self.t_ns[left]
         fraction = (t - self.t_ns[left]) / span

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, poses_by_blocks
 from recon4.locales.coded import CodedText
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
@@ -69,7 +69,9 @@ def load_trajectory(path: Path) -> Trajectory:
         StoreError: If the file is missing, damaged or of another kind.
     """
     arrays = load_arrays(path, ["t_ns", "quat_xyzw", "t_m"])
-    return Trajectory(arrays["t_ns"], SE3.from_quat(arrays["quat_xyzw"], arrays["t_m"]))
+    quat_xyzw, t_m = arrays["quat_xyzw"], arrays["t_m"]
+    T_a_b = poses_by_blocks(lambda rows: SE3.from_quat(quat_xyzw[rows], t_m[rows]), len(t_m))
+    return Trajectory(arrays["t_ns"], T_a_b)
 
 
 def save_intensity_table(path: Path, table: IntensityTable) -> None:

@@ -1,10 +1,13 @@
 """Interpolated poses within the covered time, and errors outside."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
 from recon4.errors import OutOfRange
-from recon4.geometry.se3 import SE3, so3_exp
+from recon4.geometry.se3 import SE3, matrix_from_quat, quat_from_matrix, so3_exp
+from recon4.geometry.tuning import POSE_BLOCK
 from recon4.model.trajectory import Trajectory
 from recon4.store.arrays import load_trajectory, save_trajectory
 
@@ -85,3 +88,33 @@ def test_a_saved_trajectory_is_read_back(corner, tmp_path):
 
     assert np.array_equal(found.t_ns, corner.t_ns)
     assert np.allclose(found.T_a_b.matrix(), corner.T_a_b.matrix())
+
+
+def test_many_poses_are_interpolated_as_each_alone_in_little_more_memory_than_they_take():
+    rng = np.random.default_rng(1)
+    count = 3 * POSE_BLOCK.poses + 1
+    walk = Trajectory(np.arange(count) * 10**7, SE3.exp(rng.normal(size=(count, 6))))
+    t_ns = walk.t_ns[:-1] + 3_000_000
+
+    tracemalloc.start()
+    found = walk.at(t_ns)
+    peak_bytes = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+
+    assert peak_bytes < 2 * (found.R.nbytes + found.t.nbytes) + 1000 * POSE_BLOCK.poses
+    for row in (0, POSE_BLOCK.poses - 1, POSE_BLOCK.poses, count - 2):
+        alone = walk.at(t_ns[row : row + 1])
+        assert np.array_equal(found.R[row], alone.R[0])
+        assert np.array_equal(found.t[row], alone.t[0])
+
+
+def test_a_long_saved_trajectory_is_read_back_bit_for_bit_as_it_was_computed(tmp_path):
+    count = POSE_BLOCK.poses + 1
+    T = SE3.exp(np.random.default_rng(2).normal(size=(count, 6)))
+    save_trajectory(tmp_path / "trajectory.npz", Trajectory(np.arange(count), T))
+
+    found = load_trajectory(tmp_path / "trajectory.npz").T_a_b
+
+    quat = quat_from_matrix(T.R)
+    R = matrix_from_quat(np.where(quat[:, 3:] < 0.0, -quat, quat))
+    assert np.array_equal(found.R, R) and np.array_equal(found.t, T.t)
