@@ -19,6 +19,7 @@ from recon4.georeference.control_fit import ControlFit, MeasuredTarget, fit_cont
 from recon4.georeference.gnss import tilt_priors
 from recon4.georeference.tuning_control import ADJUSTMENT, CONTROL_FIT
 from recon4.model.corrections import apply_corrections
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.site_control import SeenTarget
 from recon4.model.survey_covariance import covariance_matrix
@@ -184,7 +185,7 @@ def at_rest(graph: PoseGraph, trajectory: Trajectory) -> PoseGraph:
     """
     T = trajectory.at(graph.t_ns)
     return graph.with_edges(
-        tuple(edge.evolve(T_i_j=T[edge.i].inverse() @ T[edge.j]) for edge in graph.edges)
+        EdgeColumns.of(edge.evolve(T_i_j=T[edge.i].inverse() @ T[edge.j]) for edge in graph.edges)
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -309,8 +310,21 @@ class Relations:
         return len(self.i)
 
 
+class EdgeSource(Sequence[Edge]):
+    """Edges that are arrays already."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def relations(self) -> Relations:
+        """The arrays."""
+
+
 def relations_of(edges: Sequence[Edge]) -> Relations:
     """Convert edges to arrays; for a graph use `PoseGraph.relations`."""
+    if isinstance(edges, EdgeSource):
+        return edges.relations
     return Relations(
         i=np.array([edge.i for edge in edges], dtype=np.intp),
         j=np.array([edge.j for edge in edges], dtype=np.intp),
@@ -342,7 +356,7 @@ class PoseGraph:
     """Time of each node [ns], (N,)."""
     T_map_body: SE3
     """Pose of each node, a batch of N."""
-    edges: tuple[Edge, ...]
+    edges: Sequence[Edge]
 
     def __len__(self) -> int:
         return len(self.frame_ids)
@@ -359,14 +373,15 @@ class PoseGraph:
 
     def verdict_counts(self) -> dict[str, int]:
         """Number of edges with each verdict."""
-        return {str(v): sum(edge.verdict is v for edge in self.edges) for v in Verdict}
+        counts = Counter(edge.verdict for edge in self.edges)
+        return {str(verdict): counts[verdict] for verdict in Verdict}
 
     def loop_verdicts(self) -> Counter[Verdict]:
         """Number of loop closures, manual ones included, with each verdict."""
         loops = (EdgeKind.LOOP, EdgeKind.MANUAL)
         return Counter(edge.verdict for edge in self.edges if edge.kind in loops)
 
-    def with_edges(self, edges: tuple[Edge, ...]) -> PoseGraph:
+    def with_edges(self, edges: Sequence[Edge]) -> PoseGraph:
         """The same nodes with other edges."""
         return replace(self, edges=edges)
 

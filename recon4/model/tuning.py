@@ -124,3 +124,13 @@ class SurveyCovarianceLimits(Struct, frozen=True, kw_only=True):
 
 
 SURVEY_COVARIANCES = SurveyCovarianceLimits()
+
+
+class EdgeColumnTuning(Struct, frozen=True, kw_only=True):
+    """Edges as columns."""
+
+    block: int = 4096
+    """Edges that are objects at a time: 7 MB."""
+
+
+EDGE_COLUMNS = EdgeColumnTuning()

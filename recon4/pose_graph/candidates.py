@@ -80,7 +80,8 @@ def revisit_pairs(graph: PoseGraph, *, settings: GraphTuning, limit: int) -> lis
     """
     t = graph.T_map_body.t
     walked_m = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(t, axis=0), axis=1))])
-    tried = {(e.i, e.j) for e in graph.edges}
+    of = graph.relations
+    tried = set(zip(of.i.tolist(), of.j.tolist(), strict=True))
     ends: list[Ends] = []
     for j in range(settings.neighbors + 1, len(t)):
         earlier = slice(0, j - settings.neighbors)

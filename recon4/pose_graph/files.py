@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,15 +15,14 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.locales.coded import CodedText, at, text_of
+from recon4.model.edge_columns import COUNTS, NUMBERS, EdgeColumns, numbers_of
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.pose_graph.histories import judgment_columns, judgments_in, judgments_of
+from recon4.pose_graph.histories import Columns, judgment_columns, judgments_in, judgments_of
 from recon4.pose_graph.tuning_solve import GRAPH_FILES
 from recon4.store.arrays import load_arrays, save_arrays
 
-_NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
-_COUNTS = ("iterations", "paths")
 _NODES = ("frame_ids", "t_ns", "node_R", "node_t")
 _EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged", "kind")
 
@@ -33,24 +32,18 @@ HISTORY = ("by", "verdict", "reason", "measure", "value", "limit", "person", "no
 
 def save_graph(folder: Path, graph: PoseGraph) -> None:
     """Write ``graph.npz`` (all data, exact) and ``edges.json`` (every registered pair)."""
-    of = graph.relations
+    edges = EdgeColumns.of(graph.edges)
+    of = edges.columns
     columns: dict[str, NDArray[Any]] = {
         "frame_ids": graph.frame_ids,
         "t_ns": graph.t_ns,
         "node_R": graph.T_map_body.R,
         "node_t": graph.T_map_body.t,
-        "i": of.i.astype(np.int64),
-        "j": of.j.astype(np.int64),
-        "edge_R": of.T_i_j.R,
-        "edge_t": of.T_i_j.t,
-        "information": of.information,
-        "converged": np.array([edge.converged for edge in graph.edges], dtype=np.bool_),
-        "kind": np.array([edge.kind for edge in graph.edges], dtype=np.str_),
-        **judgment_columns(graph.edges),
+        **{name: of[name] for name in _EDGES if name != "kind"},
+        "kind": np.array(edges.kinds, dtype=np.str_),
+        **judgment_columns(edges.histories),
+        **{name: of[name] for name in (*NUMBERS, *COUNTS)},
     }
-    for names, kind in ((_NUMBERS, np.float64), (_COUNTS, np.int64)):
-        for name in names:
-            columns[name] = np.array([getattr(edge, name) for edge in graph.edges], dtype=kind)
     save_arrays(folder / "graph.npz", columns)
     write_edges_json(folder / "edges.json", graph)
 
@@ -63,7 +56,7 @@ def load_graph(folder: Path) -> PoseGraph:
     Raises:
         StoreError: If the file is missing, damaged or its columns do not fit together.
     """
-    names = [*_NODES, *_EDGES, *_NUMBERS, *_COUNTS]
+    names = [*_NODES, *_EDGES, *NUMBERS, *COUNTS]
     columns = load_arrays(folder / "graph.npz")
     if missing := [name for name in names if name not in columns]:
         raise StoreError(
@@ -76,10 +69,12 @@ def load_graph(folder: Path) -> PoseGraph:
                 f"graph.npz: {name}: expected {expected} rows, got {len(columns[name])}"
             )
     try:
-        histories = zip(range(len(columns["i"])), judgments_in(columns), strict=True)
-        edges = tuple(_edge(columns, row, judgments) for row, judgments in histories)
+        kind = numbers_of(columns["kind"].tolist())
+        edges = EdgeColumns(_checked({**columns, "kind": kind}), judgments_in(columns))
     except ValueError as error:
         raise StoreError(at("graph.npz", text_of(error))) from error
+    if len(edges.histories.count) != len(edges):
+        raise StoreError("graph.npz: the judgments do not fit the edges")
     T_map_body = SE3(columns["node_R"], columns["node_t"])
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
 
@@ -120,26 +115,22 @@ def load_history(folder: Path, frames: tuple[int, int]) -> tuple[Judgment, ...]:
         raise StoreError(at("graph.npz", text_of(error))) from error
 
 
-def _edge(columns: Mapping[str, NDArray[Any]], row: int, judgments: tuple[Judgment, ...]) -> Edge:
-    number = {name: float(columns[name][row]) for name in _NUMBERS}
-    count = {name: int(columns[name][row]) for name in _COUNTS}
-    return Edge(
-        i=int(columns["i"][row]),
-        j=int(columns["j"][row]),
-        T_i_j=SE3(columns["edge_R"][row], columns["edge_t"][row]),
-        kind=EdgeKind(str(columns["kind"][row])),
-        judgments=judgments,
-        information=columns["information"][row],
-        converged=bool(columns["converged"][row]),
-        overlap=number["overlap"],
-        error_m=number["error_m"],
-        limit_m=number["limit_m"],
-        degeneracy=number["degeneracy"],
-        verification_m=number["verification_m"],
-        chi2=number["chi2"],
-        iterations=count["iterations"],
-        paths=count["paths"],
-    )
+def _checked(columns: Columns) -> dict[str, NDArray[Any]]:
+    """The columns of the edges.
+
+    Raises:
+        StoreError: If one has another type, or other rows, than an edge has.
+    """
+    found = {}
+    for name, meant in EdgeColumns.of(()).columns.items():
+        one = columns[name]
+        if one.shape[1:] != meant.shape[1:] or not np.can_cast(one.dtype, meant.dtype, "same_kind"):
+            raise StoreError(
+                f"graph.npz: {name}: expected rows of {meant.dtype} with the shape "
+                f"{meant.shape[1:]}, got {one.dtype} with {one.shape[1:]}"
+            )
+        found[name] = one.astype(meant.dtype, copy=False)
+    return found
 
 
 def write_edges_json(path: Path, graph: PoseGraph) -> None:

@@ -6,8 +6,7 @@ wording is stored once.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -15,8 +14,8 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.locales.coded import CodedText
+from recon4.model.edge_columns import Histories, Wording, wording_of
 from recon4.model.pose_graph import (
-    Edge,
     EdgeKind,
     Judge,
     Judgment,
@@ -35,7 +34,7 @@ _BEFORE_HISTORIES = ("verdict", "reason", "decided_by")
 """Columns of a file from before edges had a history."""
 
 
-def judgment_columns(edges: Iterable[Edge]) -> dict[str, NDArray[Any]]:
+def judgment_columns(histories: Histories) -> dict[str, NDArray[Any]]:
     """Columns of the judgments of all edges.
 
     Returns:
@@ -43,28 +42,26 @@ def judgment_columns(edges: Iterable[Edge]) -> dict[str, NDArray[Any]]:
         ``verdicts``, ``reasons``, ``measures``, ``persons`` and ``notes``; ``judged_value`` and
         ``judged_limit``: its figures, NaN = not known, (J,) each.
     """
-    wordings: dict[tuple[str, ...], int] = {}
-    counts, rows, values, limits = [], [], [], []
-    for edge in edges:
-        counts.append(len(edge.judgments))
-        for one in edge.judgments:
-            wording = (one.by, one.verdict, one.reason, one.measure, one.person, one.note)
-            rows.append(wordings.setdefault(wording, len(wordings)))
-            values.append(math.nan if one.value is None else one.value)
-            limits.append(math.nan if one.limit is None else one.limit)
+    rows = histories.rows()
+    # Wordings in the order in which they appear, without those of judgments that were replaced.
+    used, first, wording = np.unique(
+        histories.wording[rows], return_index=True, return_inverse=True
+    )
+    order = np.argsort(first)
+    wordings = [histories.wordings[row] for row in used[order].tolist()]
     fields = zip(_FIELDS, zip(*wordings, strict=True), strict=True) if wordings else ()
     texts = {name: np.array(column, dtype=np.str_) for name, column in fields}
     return {
-        "judgments": np.array(counts, dtype=np.int64),
-        "judgment": np.array(rows, dtype=np.int64),
-        "judged_value": np.array(values, dtype=np.float64),
-        "judged_limit": np.array(limits, dtype=np.float64),
+        "judgments": histories.count,
+        "judgment": np.argsort(order)[wording],
+        "judged_value": histories.value[rows],
+        "judged_limit": histories.limit[rows],
         **(texts or {name: np.array([], dtype=np.str_) for name in _FIELDS}),
     }
 
 
-def judgments_in(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
-    """The judgments of each edge.
+def judgments_in(columns: Columns) -> Histories:
+    """The judgments of all edges.
 
     Args:
         columns: Of ``graph.npz``.
@@ -74,8 +71,7 @@ def judgments_in(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
         ValueError: If a word is not known.
     """
     if "judgments" not in columns:
-        yield from _known_alone(columns)
-        return
+        return Histories.of(_known_alone(columns))
     _check(columns, [*_FIELDS, *_ROWS, "judgments"])
     wordings, count = _wordings(columns), columns["judgments"]
     row, ends = columns["judgment"], np.cumsum(count)
@@ -83,13 +79,8 @@ def judgments_in(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
     fits = len(texts) == 1 and {len(columns[name]) for name in _ROWS} == {int(count.sum())}
     if not fits or np.any(count < 1) or np.any((row < 0) | (row >= len(wordings))):
         raise StoreError("graph.npz: the judgments do not fit the edges")
-    values, limits = (_numbers(columns[name]) for name in _ROWS[1:])
-    every = [
-        _judgment(wordings[at], value, limit)
-        for at, value, limit in zip(row.tolist(), values, limits, strict=True)
-    ]
-    for start, end in zip((ends - count).tolist(), ends.tolist(), strict=True):
-        yield tuple(every[start:end])
+    value, limit = (_finite(columns[name]) for name in _ROWS[1:])
+    return Histories(ends - count, count, row, value, limit, tuple(wordings))
 
 
 def judgments_of(columns: Columns, row: int) -> tuple[Judgment, ...]:
@@ -109,28 +100,20 @@ def judgments_of(columns: Columns, row: int) -> tuple[Judgment, ...]:
     else:
         _check(columns, ["kind", *_BEFORE_HISTORIES])
         own = {name: columns[name][row : row + 1] for name in ("kind", *_BEFORE_HISTORIES)}
-    return next(judgments_in({**columns, **own}))
+    return next(iter(judgments_in({**columns, **own})))
 
 
-_Wording = tuple[Judge, Verdict, Reason, Measure, str, str]
-"""Fields of a judgment without its figures; the last two are person and note."""
-
-
-def _wordings(columns: Columns) -> list[_Wording]:
+def _wordings(columns: Columns) -> list[Wording]:
     texts = zip(*(columns[name].tolist() for name in _FIELDS), strict=False)
-    return [
-        (Judge(by), Verdict(verdict), Reason(reason), Measure(measure), person, note)
-        for by, verdict, reason, measure, person, note in texts
+    judgments = [
+        Judgment(Judge(by), Verdict(verdict), Reason(reason), Measure(measure), None, None, *person)
+        for by, verdict, reason, measure, *person in texts
     ]
+    return [wording_of(one) for one in judgments]
 
 
-def _judgment(wording: _Wording, value: float | None, limit: float | None) -> Judgment:
-    by, verdict, reason, measure, person, note = wording
-    return Judgment(by, verdict, reason, measure, value, limit, person, note)
-
-
-def _numbers(column: NDArray[Any]) -> list[float | None]:
-    return [value if math.isfinite(value) else None for value in column.tolist()]
+def _finite(column: NDArray[Any]) -> NDArray[np.float64]:
+    return np.where(np.isfinite(column), column, np.nan).astype(np.float64)
 
 
 def _known_alone(columns: Columns) -> Iterator[tuple[Judgment, ...]]:

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
 from recon4.pose_graph.density_images import Overlay, yaws_within
 from recon4.pose_graph.pair import Pair
@@ -108,23 +109,20 @@ def without_settled(graph: PoseGraph) -> PoseGraph:
     """
     closed = _closed_nodes(graph)
     settled = Judgment(Judge.PLACES, Verdict.REJECTED, Reason.UNCONFIRMED)
-    return graph.with_edges(
-        tuple(
-            edge.judged(settled) if edge.reason is Reason.AMBIGUOUS and closed[edge.j] else edge
-            for edge in graph.edges
-        )
-    )
+    edges = EdgeColumns.of(graph.edges)
+    ambiguous = edges.histories.where_last(lambda words: words[2] is Reason.AMBIGUOUS)
+    rows = np.flatnonzero(ambiguous & closed[edges.relations.j]).tolist()
+    return graph.with_edges(edges.replaced({row: edges[row].judged(settled) for row in rows}))
 
 
 def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
     """Nodes at the later end of a loop closure, with their neighbors, (N,)."""
-    closed = np.zeros(len(graph), np.bool_)
-    for edge in graph.edges:
-        known = edge.in_graph or edge.reason is Reason.DEGENERATE
-        if edge.kind is EdgeKind.LOOP and known:
-            closed[
-                max(edge.j - RECOGNITION.closed_nodes, 0) : edge.j + RECOGNITION.closed_nodes + 1
-            ] = True
+    closed, edges = np.zeros(len(graph), np.bool_), EdgeColumns.of(graph.edges)
+    known = edges.histories.where_last(
+        lambda words: words[1] is not Verdict.REJECTED or words[2] is Reason.DEGENERATE
+    )
+    for j in edges.relations.j[edges.are(EdgeKind.LOOP) & known].tolist():
+        closed[max(j - RECOGNITION.closed_nodes, 0) : j + RECOGNITION.closed_nodes + 1] = True
     return closed
 
 

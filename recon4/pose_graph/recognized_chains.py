@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.pose_graph import (
     Edge,
     EdgeKind,
@@ -152,8 +153,10 @@ def _recognized(i: int, j: int, T_i_j: SE3) -> Pair:
 
 def taken_pairs(graph: PoseGraph) -> set[tuple[int, int]]:
     """Pairs that are not registered again; better poses may decide what was not clear before."""
-    unclear = (Reason.AMBIGUOUS, Reason.UNCONFIRMED)
-    return {(e.i, e.j) for e in graph.edges if e.in_graph or e.reason not in unclear}
+    unclear, of = (Reason.AMBIGUOUS, Reason.UNCONFIRMED), graph.relations
+    clear = EdgeColumns.of(graph.edges).histories.where_last(lambda words: words[2] not in unclear)
+    taken = of.in_graph | clear
+    return set(zip(of.i[taken].tolist(), of.j[taken].tolist(), strict=True))
 
 
 def register_recognized(

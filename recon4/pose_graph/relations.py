@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Relations, Rows
 
 
@@ -17,9 +18,8 @@ def squared_residuals(T_map_body: SE3, of: Relations) -> Array:
 
 def with_residuals(graph: PoseGraph) -> PoseGraph:
     """The graph with ``chi2`` of every edge at its current poses, also of those not used."""
-    chi2 = squared_residuals(graph.T_map_body, graph.relations).tolist()
-    edges = (edge.evolve(chi2=value) for edge, value in zip(graph.edges, chi2, strict=True))
-    return graph.with_edges(tuple(edges))
+    chi2 = squared_residuals(graph.T_map_body, graph.relations)
+    return graph.with_edges(EdgeColumns.of(graph.edges).with_columns(chi2=chi2))
 
 
 def adjoint(T_a_b: SE3) -> Array:
@@ -45,12 +45,9 @@ def in_map_axes(T_map_body: SE3, cov: Array) -> Array:
 
 def odometry_steps(graph: PoseGraph) -> Rows:
     """Rows of the odometry edges from each node to the next."""
-    steps = [
-        row
-        for row, edge in enumerate(graph.edges)
-        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1
-    ]
-    return np.array(steps, np.intp)
+    of = graph.relations
+    is_walk = EdgeColumns.of(graph.edges).are(EdgeKind.ODOMETRY)
+    return np.flatnonzero(is_walk & (of.j == of.i + 1))
 
 
 def reverse(T_i_j: SE3, information: Array) -> tuple[SE3, Array]:

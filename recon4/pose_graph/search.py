@@ -7,6 +7,7 @@ again. Every pair is kept with the verdict of its last registration.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.events import NodesPlaced, positions_of
 from recon4.model.figures import GraphFigures
 from recon4.model.pose_graph import (
@@ -108,7 +110,7 @@ def build_graph(
     return GraphFigures(
         nodes=len(graph),
         edges=len(graph.edges),
-        accepted=sum(e.in_graph for e in graph.edges),
+        accepted=int(graph.relations.in_graph.sum()),
     )
 
 
@@ -158,7 +160,7 @@ def start_graph(frames: FrameStore, odometry: OdometryTrack, *, settings: GraphT
         T_odom_body, rows, lost, motion_cov=odometry.motion_cov, settings=settings
     )
     edges = weakened(edges, odometry.piece[rows], t_ns)
-    return PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, edges)
+    return PoseGraph(rows.astype(np.int64), t_ns, T_odom_body, EdgeColumns.of(edges))
 
 
 def make_registrar(
@@ -309,11 +311,12 @@ class _Attempts:
         return graph.with_poses(solution.T_map_body)
 
 
-def _newest(edges: tuple[Edge, ...], tried: list[Edge]) -> tuple[Edge, ...]:
+def _newest(edges: Sequence[Edge], tried: list[Edge]) -> EdgeColumns:
     """One edge per pair: a new registration replaces the one before, and keeps its history."""
-    newest = {(edge.i, edge.j): edge for edge in tried}
-    kept = []
-    for edge in edges:
-        again = None if edge.kind is EdgeKind.ODOMETRY else newest.pop((edge.i, edge.j), None)
-        kept.append(again.after(edge) if again else edge)
-    return (*kept, *newest.values())
+    newest, known = {(edge.i, edge.j): edge for edge in tried}, EdgeColumns.of(edges)
+    rows = np.flatnonzero(~known.are(EdgeKind.ODOMETRY)).tolist()
+    of, again = known.relations, {}
+    for row, i, j in zip(rows, of.i[rows].tolist(), of.j[rows].tolist(), strict=True):
+        if (edge := newest.pop((i, j), None)) is not None:
+            again[row] = edge.after(known[row])
+    return known.replaced(again, newest.values())

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.events import VerdictsChanged
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import (
@@ -113,8 +114,8 @@ def verify(
         GraphError: If the graph cannot be solved.
         Cancelled: If the caller requested to stop.
     """
-    watcher, given = progress or Silent(), graph.edges
-    graph = graph.with_edges(tuple(edge.before(CHECKS_OF_THE_GRAPH) for edge in given))
+    watcher, given = progress or Silent(), EdgeColumns.of(graph.edges)
+    graph = graph.with_edges(replace(given, histories=given.histories.before(CHECKS_OF_THE_GRAPH)))
     of = graph.relations
     duplicates = check_relations(graph.T_map_body, of)
     chi2_before = float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum())
@@ -130,8 +131,11 @@ def verify(
     paths.remove(outliers)
     watcher.advance()
     over = of.protected & paths.alive & (paths.median_m > settings.limit_m)
-    edges = _with_figures(graph.edges, paths, solution.edge_chi2, limit_m=settings.limit_m)
-    unconfirmed = [row for row, edge in enumerate(edges) if edge.verdict is Verdict.UNVERIFIED]
+    edges = EdgeColumns.of(
+        _with_figures(graph.edges, paths, solution.edge_chi2, limit_m=settings.limit_m)
+    )
+    is_open = edges.histories.where_last(lambda words: words[1] is Verdict.UNVERIFIED)
+    unconfirmed = np.flatnonzero(is_open).tolist()
     _report_verdicts(edges, [*outliers, *unconfirmed], watcher)
     return Verification(
         graph=graph.with_edges(_after(edges, given)),
@@ -151,17 +155,17 @@ def confirmed_again(graph: PoseGraph, *, settings: VerificationSettings) -> Pose
     becomes unverified. Odometry and decisions of a person are treated as in `verify`.
     """
     paths = _index(graph.relations, nodes=len(graph), settings=settings)
-    edges = list(graph.edges)
-    for row, edge in enumerate(edges):
+    changed = {}
+    for row, edge in enumerate(graph.edges):
         if not edge.in_graph or edge.paths == 0:  # it was not confirmed before either
             continue
-        edges[row] = edge.evolve(
+        changed[row] = edge.evolve(
             verification_m=float(paths.median_m[row]), paths=int(paths.count[row])
         )
         if edge.decided_by == AUTOMATIC and paths.count[row] == 0:
             unverified = _by_paths(paths, row, Verdict.UNVERIFIED, limit_m=settings.limit_m)
-            edges[row] = edges[row].judged(unverified)
-    return graph.with_edges(tuple(edges))
+            changed[row] = changed[row].judged(unverified)
+    return graph.with_edges(EdgeColumns.of(graph.edges).replaced(changed))
 
 
 def _index(of: Relations, *, nodes: int, settings: VerificationSettings) -> PathIndex:
@@ -174,10 +178,9 @@ def _index(of: Relations, *, nodes: int, settings: VerificationSettings) -> Path
 
 def with_judgments(graph: PoseGraph, judgments: Mapping[int, Judgment]) -> PoseGraph:
     """The graph with further verdicts on some edges, by their row."""
-    edges = list(graph.edges)
-    for row, judgment in judgments.items():
-        edges[row] = edges[row].judged(judgment)
-    return graph.with_edges(tuple(edges))
+    edges = EdgeColumns.of(graph.edges)
+    judged = {row: edges[row].judged(judgment) for row, judgment in judgments.items()}
+    return graph.with_edges(edges.replaced(judged))
 
 
 def outlier_judgments(solution: Solution, rows: Iterable[int], *, by: Judge) -> dict[int, Judgment]:
@@ -235,29 +238,28 @@ def _solve(
 
 
 def _with_figures(
-    edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array, *, limit_m: float
-) -> tuple[Edge, ...]:
+    edges: Sequence[Edge], paths: PathIndex, edge_chi2: Array, *, limit_m: float
+) -> Iterator[Edge]:
     """Edges with path discrepancy, path count and chi-square; unconfirmed ones are unverified."""
-    out = []
-    for row, edge in enumerate(edges):
-        edge = edge.evolve(
-            verification_m=float(paths.median_m[row]),
-            paths=int(paths.count[row]),
-            chi2=float(edge_chi2[row]),
-        )
+    found = EdgeColumns.of(edges).with_columns(
+        verification_m=paths.median_m, paths=paths.count, chi2=edge_chi2
+    )
+    for row, edge in enumerate(found):
         if edge.in_graph and edge.decided_by == AUTOMATIC:
             verdict = Verdict.ACCEPTED if paths.count[row] else Verdict.UNVERIFIED
-            edge = edge.judged(_by_paths(paths, row, verdict, limit_m=limit_m))
-        out.append(edge)
-    return tuple(out)
+            yield edge.judged(_by_paths(paths, row, verdict, limit_m=limit_m))
+        else:
+            yield edge
 
 
-def _after(edges: tuple[Edge, ...], given: tuple[Edge, ...]) -> tuple[Edge, ...]:
+def _after(edges: EdgeColumns, given: EdgeColumns) -> EdgeColumns:
     """The edges with the history that they had before they were verified again."""
-    return tuple(edge.after(earlier) for edge, earlier in zip(edges, given, strict=True))
+    again = given.histories.before(CHECKS_OF_THE_GRAPH).count < given.histories.count
+    rows = np.flatnonzero(again).tolist()
+    return edges.replaced({row: edges[row].after(given[row]) for row in rows})
 
 
-def _report_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:
+def _report_verdicts(edges: Sequence[Edge], rows: list[int], watcher: Progress) -> None:
     """Report the verdicts of some edges as an event, for the display of a running job."""
     if rows:
         judged = tuple(edges[row] for row in rows)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import (
     Edge,
@@ -39,27 +40,29 @@ def apply_decisions(graph: PoseGraph, standing: Sequence[Standing]) -> Applied:
     """Accept, reject, replace or add the edge of each decision."""
     row_of = rows_by_pair(graph)
     node_of = {int(frame): node for node, frame in enumerate(graph.frame_ids)}
-    edges = list(graph.edges)
+    edges, decided, added = EdgeColumns.of(graph.edges), dict[int, Edge](), list[Edge]()
     missing, changed = [], []
     for one in standing:
         row = row_of.get(one.pair)
         if row is not None:
-            if one.measurement is None and one.accepted and not is_measured(edges[row]):
+            edge = decided.get(row, edges[row])
+            if one.measurement is None and one.accepted and not is_measured(edge):
                 missing.append(one)
                 continue
-            if one.measurement is None and _differs(edges[row], one):
+            if one.measurement is None and _differs(edge, one):
                 changed.append(one)
-            edges[row] = _decided(edges[row], one)
+            decided[row] = _decided(edge, one)
         elif one.measurement is not None and all(frame in node_of for frame in one.pair):
             i, j = (node_of[frame] for frame in one.pair)
             judged = (_judgment(one),)
-            added = Edge(
+            manual = Edge(
                 i=i, j=j, T_i_j=one.measurement.motion(), kind=EdgeKind.MANUAL, judgments=judged
             )
-            edges.append(_measured(added, one.measurement))
+            added.append(_measured(manual, one.measurement))
         else:
             missing.append(one)
-    return Applied(graph.with_edges(tuple(edges)), tuple(missing), tuple(changed))
+    graph = graph.with_edges(edges.replaced(decided, added))
+    return Applied(graph, tuple(missing), tuple(changed))
 
 
 def rows_by_pair(graph: PoseGraph) -> dict[Pair, int]:

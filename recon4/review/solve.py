@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3
+from recon4.model.edge_columns import EdgeColumns
 from recon4.model.figures import ReviewFigures
 from recon4.model.plain import finite_or_none, to_plain
 from recon4.model.pose_graph import AUTOMATIC, Edge, PoseGraph, Relations
@@ -221,11 +222,8 @@ def _has_same_factors(before: Relations, after: Relations) -> bool:
 
 def _solved(graph: PoseGraph) -> PoseGraph:
     solution = optimize(graph, kernel="cauchy")
-    fields = [
-        edge.evolve(chi2=float(chi2))
-        for edge, chi2 in zip(graph.edges, solution.edge_chi2, strict=True)
-    ]
-    return graph.with_poses(solution.T_map_body).with_edges(tuple(fields))
+    edges = EdgeColumns.of(graph.edges).with_columns(chi2=solution.edge_chi2)
+    return graph.with_poses(solution.T_map_body).with_edges(edges)
 
 
 def conflicts(graph: PoseGraph, *, probability: float) -> tuple[EdgeConflict, ...]:

@@ -87,7 +87,7 @@ def test_a_graph_without_edges_is_saved(tmp_path: Path) -> None:
 
     save_graph(tmp_path, graph)
 
-    assert load_graph(tmp_path).edges == ()
+    assert len(load_graph(tmp_path).edges) == 0
     assert json.loads((tmp_path / "edges.json").read_text("utf-8"))["edges"] == []
 
 
@@ -178,6 +178,37 @@ def test_judgments_that_do_not_fit_are_refused(
     save_arrays(tmp_path / "graph.npz", {**columns, name: column})
 
     with pytest.raises(StoreError, match=message):
+        load_graph(tmp_path)
+
+
+@pytest.mark.parametrize(("name", "column"), [
+    ("edge_R", np.zeros((11, 9))),
+    ("information", np.zeros((11, 6, 5))),
+    ("i", np.zeros(11)),
+    ("overlap", np.array(["0.5"] * 11)),
+])  # fmt: skip
+def test_edges_with_columns_of_another_kind_are_refused(
+    tmp_path: Path, name: str, column: np.ndarray
+) -> None:
+    graph = sample()
+    save_graph(tmp_path, graph)
+    rows = np.zeros(len(graph.edges), np.intp)
+    columns = load_arrays(tmp_path / "graph.npz")
+    save_arrays(tmp_path / "graph.npz", {**columns, name: column[rows]})
+
+    with pytest.raises(StoreError, match=f"graph.npz: {name}: expected rows of"):
+        load_graph(tmp_path)
+
+
+def test_edges_of_which_some_have_no_judgment_are_refused(tmp_path: Path) -> None:
+    save_graph(tmp_path, sample())
+    columns = load_arrays(tmp_path / "graph.npz")
+    last = int(columns["judgments"][-1])
+    fewer = {name: columns[name][:-last] for name in ("judgment", "judged_value", "judged_limit")}
+    fewer["judgments"] = columns["judgments"][:-1]
+    save_arrays(tmp_path / "graph.npz", {**columns, **fewer})
+
+    with pytest.raises(StoreError, match="judgments do not fit"):
         load_graph(tmp_path)
 
 
