@@ -20,11 +20,15 @@ def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
     phasors ``exp(i (a -+ 2 pi f t))`` agree best: neither holes in the view nor the order matter.
 
     Args:
-        t_ns: Times of the points [ns], (N,); half a second of them is enough.
+        t_ns: Times of the points [ns], (N,); half a second of them is enough, and those that are
+            far from most others do not count.
         xyz: Points in the frame of the sensor [m], (N, 3).
     """
     if len(t_ns) < 50:
         return float("nan")
+    median_ns = np.partition(t_ns, len(t_ns) // 2)[len(t_ns) // 2]
+    together = np.abs(t_ns - median_ns) <= ROTATION.longest_ns
+    t_ns, xyz = t_ns[together], xyz[together]
     rows = np.linspace(0, len(t_ns) - 1, min(ROTATION.points, len(t_ns))).astype(np.intp)
     t_s = (t_ns[rows] - t_ns[0]) * 1e-9
     span_s = float(np.ptp(t_s))

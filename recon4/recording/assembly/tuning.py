@@ -50,6 +50,8 @@ class RotationTuning(Struct, frozen=True, kw_only=True):
     """Rates that are searched."""
     points: int = 3000
     """Points that are looked at."""
+    longest_ns: int = 2_000_000_000
+    """Points whose times are farther from the median are not of the same turns [ns]."""
     clear: float = 0.6
     """Length of the mean phasor above which the azimuth follows a rotation."""
     snap: float = 0.005
