@@ -69,6 +69,7 @@ class Follower:
         self.walk, self.axes = walk, np.array([gyro_axes or imu_axes, imu_axes])
         self.map = LiveMap(walk.store.rig, preset("indoor"))
         self.start, self.rate, self.with_imu = None, np.zeros(3), with_imu
+        self.mount = np.eye(3)
 
     def copy(self):
         """Another follower that has been pushed the same; both go on by themselves."""
@@ -84,6 +85,7 @@ class Follower:
         before_ns = 0 if self.start else 2_000_000_000
         imu = self.walk.imu(row, shift_ns, before_ns=before_ns)
         gyro, accel = imu.gyro_rad_s * self.axes[0] + self.rate, imu.accel_m_s2 * self.axes[1]
+        gyro, accel = gyro @ self.mount, accel @ self.mount
         if self.with_imu:
             self.map.extend_imu(ImuSamples(imu.t_ns, gyro, accel))
         pose, _ = self.map.push(self.walk.frame(row, shift_ns, noise=noise))

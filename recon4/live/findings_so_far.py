@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from recon4.findings.imu_axes import axes_findings
 from recon4.findings.verdict import verdict_of
 from recon4.findings.wording import text_of
 from recon4.live.findings import CaptureFinding, capture_texts
@@ -30,6 +31,8 @@ class WalkSoFar:
         """Where the walk had these problems."""
         self._stretch_s = 0.0
         self._t_ns: int | None = None
+        self._of_imu: list[Finding] = []
+        """What is wrong with the axes of the IMU."""
 
     def take(self, pose: Pose) -> None:
         """Count a pose; one that is not newer than the last was counted before."""
@@ -39,6 +42,7 @@ class WalkSoFar:
         self._t_ns = pose.t_ns
         self.multiframes += 1
         self.lost += pose.lost
+        self._of_imu = list(axes_findings(pose.imu_turn, pose.imu_axes)) or self._of_imu
         weak = (
             not pose.lost and pose.weak_sd_m is not None and pose.weak_sd_m > OBSERVATION.weak_sd_m
         )
@@ -68,7 +72,7 @@ class WalkSoFar:
 
     def problems(self) -> list[Finding]:
         """Findings about the walk so far."""
-        found = []
+        found = list(self._of_imu)
         if self.lost:
             values: dict[str, Value] = {
                 "lost": self.lost,

@@ -17,6 +17,7 @@ import msgspec
 
 from recon4.errors import Recon4Error
 from recon4.model.finding import Finding
+from recon4.model.odometry_figures import ImuAxes, ImuTurn
 
 _T = TypeVar("_T")
 Text = Annotated[str, msgspec.Meta(max_length=4000)]
@@ -165,6 +166,9 @@ class Pose(msgspec.Struct, tag_field="kind", tag="pose", kw_only=True):
     """Whether the odometry uses the IMU."""
     remark: str
     """Code of a warning about the IMU or the map, and why; empty = none."""
+    imu_turn: ImuTurn | None = None
+    imu_axes: ImuAxes | None = None
+    """What was found wrong with the axes of the IMU, whose samples are repaired; None = nothing."""
     unobserved: str = ""
     """Direction that a 2-D laser does not observe now: ``along`` or ``across`` the heading; empty =
     it observes all, or there are LiDARs."""

@@ -63,7 +63,17 @@ def with_right_axes(
     if turned is None or frames.imu is None:
         return None
     right = frames.with_imu(turned.repair.of(frames.imu))
-    return right, ImuRepairs(turned.repair, _mount(turned, frames.rig), _axes(turned))
+    return right, repairs_of(turned, frames.rig)
+
+
+def repairs_of(turned: TurnedImu, rig: Rig) -> ImuRepairs:
+    """What was found wrong with the axes of an IMU.
+
+    Args:
+        turned: Its axes.
+        rig: Where it is said to be.
+    """
+    return ImuRepairs(turned.repair, _mount(turned, rig), _axes(turned))
 
 
 def _mount(turned: TurnedImu, rig: Rig) -> ImuTurn | None:

@@ -9,6 +9,7 @@ then the axes of the accelerometer that make its forces change the speed as the 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import permutations, product
 
@@ -80,7 +81,17 @@ def turned_imu(frames: RecordedFrames, settings: OdometryReads) -> TurnedImu | N
         return None
     odometry = Odometry(frames.rig, settings)
     pushed = (odometry.push(frames[k]) for k in _most_turns(frames.t_mid_ns, imu))
-    steps = [step for step in pushed if not step.lost]
+    return turned_by([step for step in pushed if not step.lost], imu, frames.rig)
+
+
+def turned_by(steps: Sequence[OdometryStep], imu: ImuSamples, rig: Rig) -> TurnedImu | None:
+    """Axes of an IMU that are not those of its rig; None = they are, or nothing shows it surely.
+
+    Args:
+        steps: Of an odometry that does not use what may be wrong with the IMU; none is lost.
+        imu: Its samples.
+        rig: Where it is said to be.
+    """
     if len(steps) < 2:
         return None
     t_ns = np.array([step.t_mid_ns for step in steps], np.int64)
@@ -88,12 +99,12 @@ def turned_imu(frames: RecordedFrames, settings: OdometryReads) -> TurnedImu | N
     turns = compare_turns(walk, t_ns, imu)
     if turns is None:
         return None
-    R_body_imu = frames.rig.T_body_imu.R
+    R_body_imu = rig.T_body_imu.R
     found = _of_any_hand(turns)
     if not _is_known(turns, found):
         return None
     gyro = _simplest(turns, found, R_body_imu)
-    accel = _of_forces(steps, _while_tracked(imu, t_ns, found.clock_s), frames.rig, gyro=gyro)
+    accel = _of_forces(steps, _while_tracked(imu, t_ns, found.clock_s), rig, gyro=gyro)
     if np.array_equal(gyro, np.eye(3)) and np.array_equal(accel, np.eye(3)):
         return None
     return TurnedImu(ImuRepair(gyro, accel), turns.explained_by(R_body_imu), found.explained)
@@ -147,7 +158,7 @@ def _while_tracked(imu: ImuSamples, t_ns: Times, clock_s: float) -> ImuSamples:
     return ImuSamples(imu_ns[rows], imu.gyro_rad_s[rows], imu.accel_m_s2[rows])
 
 
-def _of_forces(steps: list[OdometryStep], imu: ImuSamples, rig: Rig, *, gyro: Array) -> Array:
+def _of_forces(steps: Sequence[OdometryStep], imu: ImuSamples, rig: Rig, *, gyro: Array) -> Array:
     """Axes of the accelerometer, (3, 3): those of the gyroscope if nothing else is sure.
 
     Along each axis of the walk its forces change the speed as the LiDARs do, beside an error of

@@ -72,7 +72,7 @@ MAY_IMPORT = {
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured_channels")}
     | {f"recon4.recording.packets.{name}" for name in ("replay", "sensor_clock", "velodyne.models")}
     | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
-    | {f"recon4.findings.{name}" for name in ("verdict", "wording")},
+    | {f"recon4.findings.{name}" for name in ("imu_axes", "verdict", "wording")},
     "recon4/live/project_files.py": STAGE
     | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},

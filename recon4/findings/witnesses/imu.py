@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from msgspec.structs import replace
 
+from recon4.findings.imu_axes import axes_findings
 from recon4.findings.walk_record import WalkRecord
 from recon4.findings.witnesses.base import Witness, finding
 from recon4.findings.witnesses.tuning import IMU_WITNESS
@@ -16,10 +17,8 @@ from recon4.model.finding_kinds import FindingKind
 from recon4.model.import_notes import CLOUDS_EVENED, CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import (
     HeightDoubt,
-    ImuAxes,
     ImuChoice,
     ImuFault,
-    ImuTurn,
     OdometryFigures,
 )
 from recon4.registration.imu_gravity import wrong_gravity
@@ -46,10 +45,7 @@ class ImuUse(Witness):
             yield finding(FindingKind.IMU_MISSING, Level.NOTE, known_to(walk))
         if figures.imu_choice is not None and figures.imu_choice.outcome in _OUTCOMES:
             yield _choice(figures.imu_choice)
-        if figures.imu_turn is not None:
-            yield _turned(figures.imu_turn)
-        if figures.imu_axes is not None:
-            yield _exchanged(figures.imu_axes)
+        yield from axes_findings(figures.imu_turn, figures.imu_axes)
         if figures.forces_reversed is not None:
             samples = len(walk.imu) if walk.imu is not None else 0
             values: dict[str, Value] = {"correlation": figures.forces_reversed, "samples": samples}
@@ -210,21 +206,6 @@ def _fault_values(fault: ImuFault) -> dict[str, Value]:
     way = "large" if value > 0.0 else "small"
     percent = 100.0 * value
     return {"gyroscope": True, "size": abs(value), "sd": sd, "way": way, "percent": percent}
-
-
-def _turned(turn: ImuTurn) -> Finding:
-    values: dict[str, Value] = {
-        "angle_rad": turn.angle_rad,
-        "explained": max(turn.explained, 0.0),
-        "explained_turned": turn.explained_turned,
-        "rpy_deg": ", ".join(f"{angle:g}" for angle in turn.rpy_deg),
-    }
-    return replace(finding(FindingKind.IMU_TURNED, Level.CHECK, values), sensor="IMU")
-
-
-def _exchanged(axes: ImuAxes) -> Finding:
-    values: dict[str, Value] = {"gyro": axes.gyro, "accel": axes.accel}
-    return replace(finding(FindingKind.IMU_AXES, Level.CHECK, values), sensor="IMU")
 
 
 def _choice(choice: ImuChoice) -> Finding:

@@ -189,6 +189,8 @@ class LiveMap:
             lately=self._recent.message(frame.t_ns),
             imu=self.tracker.with_imu,
             remark=self.tracker.remark,
+            imu_turn=self.tracker.repairs.turn,
+            imu_axes=self.tracker.repairs.axes,
         )
 
     def _largest_offset_m(self, t_ns: int, prediction_offset_m: float) -> float:

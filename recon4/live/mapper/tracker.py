@@ -10,14 +10,21 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.live.mapper.last_known import LastKnown
 from recon4.live.mapper.live_attitude import NOT_UPRIGHT, is_upright
+from recon4.live.mapper.live_imu import AxesWitness, ImuTreatment, LiveImu
 from recon4.live.mapper.tuning import LIVE_TRACKER
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.recording.samples.clean import join
-from recon4.recording.samples.measured_channels import feels_gravity, imu_channels
+from recon4.recording.samples.measured_channels import imu_channels
 from recon4.registration.hypothesis import ImuAssumption
-from recon4.registration.imu_choice import AS_RECORDED, choose_imu, without_imu
+from recon4.registration.imu_choice import (
+    AS_RECORDED,
+    LESS_USED,
+    TrackedWindows,
+    choose_imu,
+    without_imu,
+)
+from recon4.registration.imu_repairs import NO_REPAIRS, ImuRepairs
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning
@@ -37,21 +44,17 @@ class Tracker:
         )
         self._rig = rig
         self._settings = replace(part_of(settings, OdometryReads), odometry=shorter)
-        self._offset_ns = round(rig.imu_clock_offset_s * 1e9)
-        self._waiting: list[ImuSamples] = []
         self._odometry: Odometry | None = None
         self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=LIVE_TRACKER.tried_frames)
-        self._imu: deque[ImuSamples] = deque(maxlen=1000)
+        self._imu = LiveImu(rig)
+        self._axes = AxesWitness(rig, self._settings)
+        self._doubted = False
+        """Whether something of the IMU contradicts the LiDARs, and is not used."""
+        self.repairs = NO_REPAIRS
+        """What was repaired of the samples that are used."""
         self._since_check = self._frames = 0
         self._end_ns: int | None = None
         """End of the last multiframe."""
-        self._with_forces: bool | None = None
-        """Whether the odometry began with accelerations; None = it has not begun."""
-        self._bias_rad_s = np.zeros(3)
-        """Of the gyroscope, subtracted."""
-        self._imu_ns: int | None = None
-        self._imu_hole_ns = 0
-        """Longest time without an IMU sample since the last multiframe."""
         self.map_reset = False
         """Whether the last multiframe started a new map frame; the map before it is void."""
         self._tracked = SE3.identity()
@@ -62,40 +65,21 @@ class Tracker:
         """Pose of the odometry frame in the map; moved by loop closures and relocalization."""
         self.with_imu = False
         """Whether the odometry uses an IMU."""
-        self._turn_rate_changes = False
-        """Whether its gyroscope measures: one that does not is not left to be seen by chance."""
         self.remark = ""
         """Code of a warning about the IMU, and why; empty = none."""
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Add IMU samples."""
-        imu = self._measured(ImuSamples(imu.t_ns + self._offset_ns, imu.gyro_rad_s, imu.accel_m_s2))
-        if not len(imu):
+        used = self._imu.extend(imu)
+        if not len(used):
             return
-        self._imu.append(imu)
-        self.last_known.extend(imu)
-        self._turn_rate_changes |= bool(np.any(imu.gyro_rad_s != self._imu[0].gyro_rad_s[0]))
-        if self._imu_ns is not None:
-            self._imu_hole_ns = max(self._imu_hole_ns, int(imu.t_ns[0]) - self._imu_ns)
-        self._imu_ns = int(imu.t_ns[-1])
-        if self._odometry is None:
-            self._waiting.append(imu)
-        else:
-            self._odometry.extend_imu(imu)
-
-    def _measured(self, imu: ImuSamples) -> ImuSamples:
-        """The samples as the odometry began with them: all with accelerations, or all without."""
-        imu = replace(imu, gyro_rad_s=imu.gyro_rad_s - self._bias_rad_s)
-        if self._with_forces is None:
-            return imu
-        if not self._with_forces:
-            return replace(imu, accel_m_s2=np.full_like(imu.accel_m_s2, np.nan))
-        rows = feels_gravity(imu.accel_m_s2)
-        return ImuSamples(imu.t_ns[rows], imu.gyro_rad_s[rows], imu.accel_m_s2[rows])
+        self.last_known.extend(used)
+        if self._odometry is not None:
+            self._odometry.extend_imu(used)
 
     def interrupted(self, frame: Multiframe) -> bool:
         """Whether the motion between the last multiframe and this one is unknown."""
-        blind = not self.with_imu or self._imu_hole_ns > LIVE_TRACKER.interrupted_ns
+        blind = not self.with_imu or self._imu.hole_ns > LIVE_TRACKER.interrupted_ns
         return (
             blind
             and self._end_ns is not None
@@ -116,34 +100,37 @@ class Tracker:
         bad = sum(is_bad for _, is_bad in self._recent)
         if (
             self.with_imu
-            and (bad >= LIVE_TRACKER.bad_frames or not self._turn_rate_changes)
+            and (bad >= LIVE_TRACKER.bad_frames or not self._imu.turn_rate_changes)
             and self._since_check >= LIVE_TRACKER.tried_frames
         ):
             self._since_check = 0
             return self._check_imu(step)
+        if self.repairs is NO_REPAIRS and (self.with_imu or self._doubted):
+            repairs = self._axes.look(frame, step, self._imu, doubted=self._doubted)
+            return step if repairs is None else self._repair(repairs, step)
         return step
 
     def _begin(self) -> Odometry:
-        imu = join(self._waiting)
-        self._waiting.clear()
+        imu = self._imu.recorded()
         if imu is not None:
             channels = imu_channels(imu)
-            self._with_forces = not channels.no_accelerometer
-            imu = self._measured(imu)
-            self._imu = deque([imu], maxlen=self._imu.maxlen)
+            with_forces = not channels.no_accelerometer
+            self._imu.treatment = ImuTreatment(with_forces=with_forces)
+            imu = self._imu.used()
             if channels.no_accelerometer:
                 self.remark = f"no-accelerometer {channels.no_accelerometer.why}"
         self.with_imu = imu is not None and len(imu) > 1
         if self.with_imu and imu is not None and not _upright(imu, self._rig):
             self.with_imu, imu = False, None
-            self.remark = NOT_UPRIGHT
+            self.remark, self._doubted = NOT_UPRIGHT, True
         return Odometry(self._rig, self._settings, imu)
 
     def restart(self, frame: Multiframe) -> OdometryStep:
         """Start a new odometry with a multiframe, at the last tracked pose."""
         self._note(frame)
         last = self._tracked
-        imu = join(list(self._imu)) if self.with_imu else None
+        self._axes.restarted()
+        imu = self._imu.used() if self.with_imu else None
         before, self._odometry = self._odometry, Odometry(self._rig, self._settings, imu)
         if before is not None and before.imu_state is not None:
             self._odometry.remember_imu(before.imu_state)
@@ -152,7 +139,7 @@ class Tracker:
         return step
 
     def _note(self, frame: Multiframe) -> None:
-        self._end_ns, self._imu_hole_ns = frame.t_ns + frame.duration_ns, 0
+        self._end_ns, self._imu.hole_ns = frame.t_ns + frame.duration_ns, 0
 
     def move(self, T_map_body: SE3, step: OdometryStep) -> None:
         """Set `T_map_odom` so that the step has this pose in the map."""
@@ -160,8 +147,8 @@ class Tracker:
 
     def _check_imu(self, step: OdometryStep) -> OdometryStep:
         """Choose the IMU again by the last multiframes, and go on with what was chosen."""
-        imu = join(list(self._imu))
-        recent = _Recent(self._rig, [frame for frame, _ in self._recent], imu)
+        imu = self._imu.used()
+        recent = self._with(imu)
         # Certain, so it needs no proof by the LiDARs.
         certain = imu is not None and bool(imu_channels(imu).no_gyroscope)
         if certain:
@@ -173,9 +160,32 @@ class Tracker:
         if not certain and found.best.score.lost > LIVE_TRACKER.still_lost:
             return step  # LiDARs that see nothing accuse no IMU
         self._use(found.imu)
-        T_map_body, last = self.T_map_odom @ step.T_odom_body, found.best.last
-        self._odometry = found.best.odometry
         self.map_reset = self._frames < LIVE_TRACKER.early_frames
+        return self._go_on(found.best, step)
+
+    def _repair(self, repairs: ImuRepairs, step: OdometryStep) -> OdometryStep:
+        """Go on with repaired samples, unless they contradict the last multiframes, too."""
+        recorded = self._imu.recorded()
+        assert recorded is not None, "nothing was repaired"
+        with_forces = not imu_channels(recorded).no_accelerometer
+        treatment = ImuTreatment(repairs.repair, with_forces=with_forces)
+        recent = self._with(treatment.of(recorded))
+        found = choose_imu(recent, self._settings, [range(len(recent))])
+        if found.best is None or found.imu.choice.outcome in LESS_USED:
+            return step
+        self.map_reset = self.with_imu and self._frames < LIVE_TRACKER.early_frames
+        self._imu.treatment, self.repairs, self.remark = treatment, repairs, ""
+        self._use(found.imu)
+        self._since_check = 0
+        return self._go_on(found.best, step)
+
+    def _with(self, imu: ImuSamples | None) -> _Recent:
+        return _Recent(self._rig, [frame for frame, _ in self._recent], imu)
+
+    def _go_on(self, tracked: TrackedWindows, step: OdometryStep) -> OdometryStep:
+        """Replace the odometry by one that has tracked the last multiframes, at the same pose."""
+        T_map_body, last = self.T_map_odom @ step.T_odom_body, tracked.last
+        self._odometry = tracked.odometry
         if self.map_reset:
             self.T_map_odom = SE3.identity()
             self._tracked = last.T_odom_body
@@ -185,17 +195,22 @@ class Tracker:
 
     def _use(self, imu: ImuAssumption) -> None:
         """Treat the samples to come as those of the choice, and say what is wrong with them."""
-        recorded = join(list(self._imu))
         self.with_imu = imu.samples is not None
-        self._imu = deque([imu.samples] if imu.samples else [], maxlen=self._imu.maxlen)
+        self._doubted = imu.choice.outcome in LESS_USED
+        self._axes.restarted()
+        before = self._imu.treatment
         match imu.choice.outcome:
+            case "as recorded":
+                pass
             case "bias removed":
-                self._bias_rad_s += np.array(imu.choice.bias_rad_s)
+                bias_rad_s = before.bias_rad_s + np.array(imu.choice.bias_rad_s)
+                self._imu.treatment = replace(before, bias_rad_s=bias_rad_s)
                 self.remark = "gyroscope-bias"
             case "accelerometer not used":
-                self._with_forces = False
+                self._imu.treatment = replace(before, with_forces=False)
                 self.remark = "accelerometer-contradicts"
             case _:
+                recorded = self._imu.recorded()
                 fault = imu_channels(recorded).no_gyroscope if recorded else None
                 self.remark = f"no-gyroscope {fault.why}" if fault else "imu-contradicts"
 

@@ -331,6 +331,9 @@ class LiveTrackerTuning(Struct, frozen=True, kw_only=True):
     """Number of them, lost or with a large residual, that starts a check."""
     far_m: float = 0.08
     """A larger residual [m]."""
+    moved_m: float = 0.003
+    """LiDARs that move what the IMU predicts by more in most of them doubt its axes [m]: up to
+    0.8 mm in five right walks, 4 to 23 mm with axes that are 10° and more off."""
     still_lost: int = 4
     """Number of them that may still be lost by the IMU that a check chose."""
     early_frames: int = 100

@@ -238,13 +238,13 @@ IMU-UPSIDE-DOWN = Träger kopfüber
     .detection = Die mittlere Beschleunigung der Begehung ist mehr als 115° von der z-Achse des Trägers entfernt. Ein Hinweis; *prüfen*, wenn die Verfolgung verloren ging.
 
 IMU-TURNED = IMU anders eingebaut
-    .text1 = Die IMU ist anders eingebaut, als das Rig sagt, um { DEGREES($angle_rad, digits: 0) } verdreht: nach dem Rig misst ihr Kreisel { PERCENT($explained, digits: 1) } der Drehungen der LiDARs, verdreht { PERCENT($explained_turned, digits: 1) }. Alle ihre Messwerte wurden gedreht.
+    .text1 = Die IMU ist anders eingebaut, als das Rig sagt, um { DEGREES($angle_rad, digits: 0) } verdreht: nach dem Rig misst ihr Kreisel { PERCENT($explained, digits: 1) } der Drehungen der LiDARs, verdreht { PERCENT($explained_turned, digits: 1) }. Ihre Messwerte wurden gedreht.
     .remedy = Ihren Einbau in [imu] der Rig-Datei angeben: rpy_deg = [{ $rpy_deg }].
     .meaning = Die Achsen der IMU sind vertauscht: sie hängt kopfüber, ihre x-Achse zeigt nach links, oder der Treiber gibt ein anderes Koordinatensystem an. Die Bewegung würde um falsche Achsen vorhergesagt.
     .detection = Wo sich die IMU am meisten um zwei Achsen dreht, verfolgen die LiDARs 40 Multiframes allein. Eine Drehung von mehr als 3°, die auf 3° bekannt ist, lässt den Kreisel über 90 % ihrer Drehungen messen, und mindestens vier Standardabweichungen mehr als nach dem Rig.
 
 IMU-AXES = Achsen der IMU vertauscht
-    .text1 = Der Treiber der IMU vertauscht Achsen oder Vorzeichen. Aus den aufgenommenen Achsen sind ihre Drehraten ({ $gyro }) und ihre Beschleunigungen ({ $accel }), wie die Bewegung der LiDARs zeigt. Alle ihre Messwerte wurden repariert.
+    .text1 = Der Treiber der IMU vertauscht Achsen oder Vorzeichen. Aus den aufgenommenen Achsen sind ihre Drehraten ({ $gyro }) und ihre Beschleunigungen ({ $accel }), wie die Bewegung der LiDARs zeigt. Ihre Messwerte wurden repariert.
     .remedy = Den Treiber Drehraten ({ $gyro }) und Beschleunigungen ({ $accel }) veröffentlichen lassen: kein Einbau in einer Rig-Datei sagt das. Oder reparierte Messwerte mit --imu angeben.
     .meaning = Die Achsen der IMU sind linkshändig, oder ihr Kreisel oder ihr Beschleunigungsmesser hat ein eigenes Vorzeichen. Die Bewegung würde falsch herum vorhergesagt.
     .detection = Wo sich die IMU am meisten um zwei Achsen dreht, verfolgen die LiDARs 40 Multiframes allein. Eine Spiegelung lässt den Kreisel über 90 % ihrer Drehungen messen, oder mit anderen Achsen ändern die Kräfte die Geschwindigkeit wie die LiDARs; jede passt um mindestens vier Standardabweichungen besser als alle anderen.

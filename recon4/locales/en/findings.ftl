@@ -242,13 +242,13 @@ IMU-UPSIDE-DOWN = Body upside down
     .detection = The mean acceleration of the walk is more than 115° away from the z axis of the body. A note; *check* if tracking was lost.
 
 IMU-TURNED = IMU mounted otherwise
-    .text1 = The IMU is mounted otherwise than the rig says, rotated by { DEGREES($angle_rad, digits: 0) }: by the rig its gyroscope measures { PERCENT($explained, digits: 1) } of the turns of the LiDARs, and rotated { PERCENT($explained_turned, digits: 1) }. All of its samples were rotated.
+    .text1 = The IMU is mounted otherwise than the rig says, rotated by { DEGREES($angle_rad, digits: 0) }: by the rig its gyroscope measures { PERCENT($explained, digits: 1) } of the turns of the LiDARs, and rotated { PERCENT($explained_turned, digits: 1) }. Its samples were rotated.
     .remedy = Give its mount in [imu] of the rig file: rpy_deg = [{ $rpy_deg }].
     .meaning = The axes of the IMU are exchanged: it hangs upside down, its x axis points to the left, or the driver states another frame. The motion would be predicted about wrong axes.
     .detection = Where the IMU turns most about two axes the LiDARs track 40 multiframes alone. A rotation of more than 3° that is known to 3° makes the gyroscope measure over 90 % of their turns, and more than by the rig by at least four standard deviations.
 
 IMU-AXES = Axes of the IMU exchanged
-    .text1 = The driver of the IMU exchanges axes or signs. Of the axes that were recorded, its turn rates are ({ $gyro }) and its accelerations ({ $accel }), as the motion of the LiDARs shows. All of its samples were repaired.
+    .text1 = The driver of the IMU exchanges axes or signs. Of the axes that were recorded, its turn rates are ({ $gyro }) and its accelerations ({ $accel }), as the motion of the LiDARs shows. Its samples were repaired.
     .remedy = Let the driver publish turn rates ({ $gyro }) and accelerations ({ $accel }): no mount in a rig file says this. Or give repaired samples with --imu.
     .meaning = The axes of the IMU are left-handed, or its gyroscope or its accelerometer states a sign of its own. The motion would be predicted the wrong way.
     .detection = Where the IMU turns most about two axes the LiDARs track 40 multiframes alone. A reflection makes the gyroscope measure over 90 % of their turns, or other axes make forces change the speed as the LiDARs do; each fits better than any other by at least four standard deviations.

@@ -4,6 +4,7 @@ import pytest
 
 from recon4.live.findings_so_far import WalkSoFar
 from recon4.live.tuning import STRETCHES
+from recon4.model.odometry_figures import ImuAxes, ImuTurn
 from recon4_app.live.stream_state import StreamState
 from tests.live_messages import pose
 
@@ -45,6 +46,27 @@ def test_problems_of_the_walk_are_not_forgotten(parts, text):
 
     assert [one.text for one in found] == ([] if text is None else [f"Map so far: {text}"])
     assert {one.level for one in found} <= {"warning"}
+
+
+@pytest.mark.parametrize(
+    ("language", "turned", "exchanged"),
+    [
+        ("en", "Map so far: check. The IMU is mounted otherwise", "turn rates are (x, y, -z)"),
+        ("de", "Karte bisher: prüfen. Die IMU ist anders eingebaut", "Drehraten (x, y, -z)"),
+    ],
+)
+def test_axes_of_an_imu_that_were_repaired_stay_said_in_the_words_of_the_report(
+    language, turned, exchanged
+):
+    turn = ImuTurn(angle_rad=3.1, explained=0.3, explained_turned=0.99, rpy_deg=(180.0, 0.0, 0.0))
+    axes = ImuAxes(gyro="x, y, -z", accel="x, y, z")
+    so_far = walked((10, GOOD), (10, {"imu_turn": turn, "imu_axes": axes}), (10, GOOD))
+
+    (said,) = so_far.findings(records=True, language=language)
+
+    assert said.level == "warning"
+    assert said.text.startswith(turned)
+    assert exchanged in said.text
 
 
 def test_after_the_walk_an_unusable_map_is_an_error():

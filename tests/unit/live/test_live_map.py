@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from msgspec import structs
 
-from recon4.live.mapper import tracker
+from recon4.geometry.se3 import so3_exp
+from recon4.live.mapper import live_imu, tracker
 from recon4.live.mapper.live_map import LiveMap
 from recon4.live.mapper.tuning import LIVE_TRACKER
 from recon4.live.protocol import RecentFrames
@@ -78,33 +79,62 @@ def test_noise_before_the_lidars_accuses_no_imu(walk, monkeypatch):
     assert all(pose.imu and not pose.remark for pose in message)
 
 
-@pytest.mark.study
-def test_an_imu_upside_down_is_said_and_mapping_goes_on_without_it(walk):
+def test_an_imu_upside_down_is_said_and_used_once_the_lidars_have_shown_its_axes(walk):
     follower = Follower(walk, imu_axes=[1.0, -1.0, -1.0])
 
     message = [follower.push(row) for row in range(60)]
 
-    assert not any(pose.imu or pose.lost for pose, _ in message)
-    assert message[0][0].remark == "not-upright"
-    assert max(error for _, error in message) < 0.15
+    (before, _), (after, _) = message[0], message[-1]
+    assert (before.imu, before.remark, before.imu_turn) == (False, "not-upright", None)
+    assert (after.imu, after.remark, after.imu_turn.rpy_deg) == (True, "", (180.0, 0.0, 0.0))
+    assert not any(pose.lost for pose, _ in message)
+    assert max(error for _, error in message) < 0.05
+
+
+def test_an_imu_whose_x_axis_points_30_degrees_to_the_left_is_found_out_by_who_walks(walk):
+    """Its gravity is right, and the walk loses no multiframe before it bends away."""
+    follower = Follower(walk)
+    follower.mount = so3_exp([0.0, 0.0, np.pi / 6])
+
+    message = [follower.push(row)[0] for row in range(100)]
+
+    begun = next(k for k, pose in enumerate(message) if pose.imu_turn)
+    assert all(pose.imu and not pose.remark for pose in message)
+    assert message[-1].imu_turn.rpy_deg[2] == pytest.approx(30.0, abs=2.0)
+    assert follower.map.snapshot().messages()[1].generation == 1
+    assert shape_error_m(walk, message, range(begun, 100)) < 0.05
+
+
+def shape_error_m(walk, message, rows):
+    """How far the distances from the first of some places are from the true ones."""
+    p_m = np.array([message[row].p for row in rows])
+    truth_m = np.array([walk.at(row).t for row in rows])
+    far, true = (np.linalg.norm(p[1:] - p[0], axis=1) for p in (p_m, truth_m))
+    return float(np.abs(far - true).max())
 
 
 @pytest.mark.study
-def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(walk):
+def test_a_gyroscope_that_turns_the_wrong_way_is_repaired_and_the_map_begins_anew(walk):
     follower = Follower(walk, gyro_axes=[1.0, 1.0, -1.0])
 
-    message = [follower.push(row)[0] for row in range(65)]
+    message = [follower.push(row)[0] for row in range(110)]
 
-    begun = next(k for k, pose in enumerate(message) if pose.remark)
-    assert (message[0].imu, message[-1].imu) == (True, False)
+    begun = next(k for k, pose in enumerate(message) if pose.imu_axes)
+    assert (message[-1].imu_axes.gyro, message[-1].imu_axes.accel) == ("x, y, -z", "x, y, z")
     assert not any(pose.lost for pose in message[begun:])
-    path, points = follower.map.snapshot().messages()[:2]
-    assert points.generation == 1
-    walked_m = np.linalg.norm(np.diff(path.points, axis=0), axis=1).sum()
-    truth_m = np.array([walk.at(row).t for row in range(begun, 65)])
-    assert walked_m == pytest.approx(
-        np.linalg.norm(np.diff(truth_m, axis=0), axis=1).sum(), abs=0.4
-    )
+    assert follower.map.snapshot().messages()[1].generation == 1
+    assert shape_error_m(walk, message, range(begun, 110)) < 0.05
+
+
+def test_nobody_asks_for_the_axes_of_an_imu_that_is_right(walk, monkeypatch):
+    asked = []
+    monkeypatch.setattr(live_imu, "Odometry", lambda *args: asked.append(args))
+    follower = Follower(walk)
+
+    message = [follower.push(row)[0] for row in range(100)]
+
+    assert not asked
+    assert all(pose.imu and not pose.remark and not pose.imu_turn for pose in message)
 
 
 @pytest.mark.study
