@@ -118,7 +118,7 @@ def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float
 
     Args:
         graph: The graph with its current poses.
-        expected: Initial ``T_i_j`` of the last registration of each pair.
+        expected: Initial ``T_i_j`` of the last registration of each rejected pair.
         move_m: Smaller moves are ignored [m, rotation as at 5 m].
     """
     rejected = [e for e in graph.edges if not e.in_graph and (e.i, e.j) in expected]

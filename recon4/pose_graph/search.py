@@ -267,7 +267,7 @@ class _Attempts:
     def __init__(self, registrar: PairRegistrar, pieces: Pieces, progress: Progress) -> None:
         self._registrar, self._pieces, self._progress = registrar, pieces, progress
         self.expected: dict[Ends, SE3] = {}
-        """Initial ``T_i_j`` of the last registration of each pair."""
+        """Initial ``T_i_j`` of the last registration of each pair that it rejected."""
         self._is_coarse = False
 
     def run(
@@ -278,8 +278,9 @@ class _Attempts:
         pairs = [pair for pair in pairs if joined[pair.i] == joined[pair.j]]
         if not pairs:
             return graph
-        self.expected.update({(pair.i, pair.j): pair.T_i_j for pair in pairs})
         edges = self._registrar.register(pairs, self._progress)
+        tried = zip(pairs, edges, strict=True)
+        self.expected.update({(p.i, p.j): p.T_i_j for p, edge in tried if not edge.in_graph})
         graph = graph.with_edges(_newest(graph.edges, edges))
         # Without further edges in use the poses are those of the last solve.
         is_more = any(edge.in_graph for edge in edges)
