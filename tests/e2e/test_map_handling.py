@@ -8,9 +8,10 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import both_looks, looks
-from tests.e2e.test_map_page import TOP, at, opened, rested
+from tests.e2e.test_map_page import TOP, WINDOW, at, opened, rested
 from tests.project_builder import build_project, put_on_site_grid
 from tests.served import office, served
+from tests.service.cuttable import cuttable
 
 pytestmark = [pytest.mark.e2e, looks("desktop light")]
 
@@ -249,3 +250,21 @@ def test_a_note_half_written_is_not_lost_by_a_reload_unasked(server, page):
     page.reload()
     rested(page)
     assert asked == ["beforeunload"]
+
+
+def test_a_map_whose_server_was_gone_goes_on_when_it_is_back(server, context):
+    page = context.new_page()  # its browser complains of the cut
+    page.set_viewport_size(WINDOW)
+    with cuttable(int(server.url.rsplit(":", 1)[1])) as link:
+        page.goto(f"{link.url}/projects/office/map/?{TOP}&z=..")
+        rested(page)
+        link.cut()
+        expect(page.get_by_text("Connection lost")).to_be_visible()
+        page.mouse.click(*at(page, 6.0, 4.0))
+        expect(page.locator("#message")).to_contain_text("does not answer")
+        link.restore()
+
+        expect(page.locator("#message")).to_have_text("")
+        page.mouse.click(*at(page, 6.0, 4.0))
+        expect(page.locator("#status .reading")).to_contain_text("x 6.0")
+        page.close()  # before the link goes

@@ -321,6 +321,12 @@ function listen() {
   only("map-verdict").addEventListener("click", marking.followLinks);
 }
 
+/** The server answers again: what it did not say is asked again. */
+function answersAgain() {
+  say(byId("message"), "");
+  run.canvas?.tiles.again();
+}
+
 async function begin() {
   drawHelp(byId("help"));
   const [project, me] = await Promise.all([readProject(id), readCurrentUser()]);
@@ -337,7 +343,7 @@ async function begin() {
   new ResizeObserver(draw).observe(place());
   listen();
   if (takeNews()) page.reading = t("new-map-shown");
-  if (!page.guest) followJobs(byId("news"));
+  if (!page.guest) followJobs(byId("news"), answersAgain);
   draw();
   canvas.refine();
   addEventListener("pagehide", () => leaveMap(id, format(page.state)));

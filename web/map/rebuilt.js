@@ -40,12 +40,14 @@ async function newest() {
 /**
  * Follows the jobs of the project.
  * @param {HTMLElement} element where the page says what happens
+ * @param {() => void} [back] the server answers again
  */
-export function followJobs(element) {
+export function followJobs(element, back) {
   followMap(element, {
     hasMap: () => Boolean(page.index),
     newest,
     isBusy: () => page.draft.length > 0 || page.notes.draft !== null || page.drag !== null,
     reload,
+    back,
   });
 }

@@ -79,6 +79,12 @@ export class MapTiles {
     this.#chunks = this.nodes.map(() => []);
   }
 
+  /** Asks again for what was refused. */
+  again() {
+    this.#refused = null;
+    this.onNews();
+  }
+
   /** Points that have been read of each node. */
   get have() {
     return this.#chunks.map((chunks) => chunks.at(-1)?.stop ?? 0);

@@ -21,8 +21,9 @@ import { t } from "./texts.js";
  * @param {() => Promise<Newest>} page.newest the map that the project has now
  * @param {() => boolean} page.isBusy whether something is being done that a new page would lose
  * @param {(newest: Newest) => void} page.reload shows the new map
+ * @param {() => void} [page.back] the server answers again
  */
-export function followMap(element, { hasMap, opening, newest, isBusy, reload }) {
+export function followMap(element, { hasMap, opening, newest, isBusy, reload, back }) {
   const id = idHere();
   let open = "";
 
@@ -48,7 +49,10 @@ export function followMap(element, { hasMap, opening, newest, isBusy, reload }) 
       look().catch(() => render("", element)); // it has no map now: what is shown stays
     }
   };
+  let lost = false;
   watchJobs(onJob, (linked) => {
     only("page-head").linked = linked;
+    if (linked && lost) back?.();
+    lost = !linked;
   });
 }
