@@ -215,8 +215,8 @@ class DifferenceTally:
         return DistanceFigures(
             mean_m=mean,
             sd_m=float(np.sqrt(max(0.0, self._squares / n - mean**2))),
-            p50_m=_percentile(self._distances, 0.5),
-            p95_m=_percentile(self._distances, 0.95),
+            p50_m=min(_percentile(self._distances, 0.5), self._largest),
+            p95_m=min(_percentile(self._distances, 0.95), self._largest),
             largest_m=self._largest,
             lod_p50_m=_percentile(self._lods, 0.5),
         )

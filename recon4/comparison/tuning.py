@@ -29,7 +29,7 @@ class M3C2Tuning(Struct, frozen=True, kw_only=True):
     """Half a layer is at least as many voxels thick."""
     kept_bytes: int = 160 << 20
     """Memory for the tiles of each map that were read last [bytes]."""
-    step_m: float = 0.001
+    step_m: float = 0.0001
     """Classes of the histograms of absolute distances and levels of detection [m]."""
 
 

@@ -61,6 +61,23 @@ def test_a_map_does_not_differ_from_itself(tmp_path):
     assert known.mean() > 0.9 and np.all(found["distance_m"][known] == 0.0)
 
 
+@pytest.mark.parametrize("shift_m", [None, 0.004])
+def test_figures_of_small_differences_are_those_of_the_points(tmp_path, shift_m):
+    rng = np.random.default_rng(1)
+    first = second = plane_map(tmp_path / "a", rng)
+    if shift_m is not None:
+        second = plane_map(tmp_path / "b", rng, x_m=shift_m)
+    tally, points = DifferenceTally(), compared(first, second)
+    for part in differences(first, second, SE3.identity(), scales=M3C2Scales()):
+        tally.add(part)
+
+    found = tally.figures()
+    off = np.abs(points["distance_m"][points["state"] <= CoreState.SIGNIFICANT])
+    assert found.p50_m == pytest.approx(np.median(off), abs=1e-4)
+    assert found.p95_m == pytest.approx(np.percentile(off, 95.0), abs=2e-4)
+    assert found.p50_m <= found.p95_m <= found.largest_m
+
+
 def test_the_noise_of_a_still_plane_exceeds_the_level_in_a_twentieth_of_the_places(tmp_path):
     rng = np.random.default_rng(3)
     first, second = (plane_map(tmp_path / name, rng) for name in "ab")
