@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.findings.derived import derived_text
 from recon4.findings.wording import whole_text
-from recon4.locales.coded import CODE, KINDS, CodedText, coded, flat_values
+from recon4.locales.coded import CODE, KINDS, CodedText, coded, flat_values, joined
 from recon4.model.count_meanings import JUMPS_OF
 from recon4.model.derived import Derived
 from recon4.model.derived_kinds import DerivedKind
@@ -146,8 +146,8 @@ class ImportReport:
             seen: What the recording has against its rig; said if no packet was one of a sensor.
         """
         counted = "; ".join(self.text(name) for name in sorted(self.counts))
-        more = f"; {seen}" * bool(seen and self._nothing_decoded)
-        return f"no usable points ({counted or 'nothing read'}){more}"
+        none = CodedText("no-usable-points", counted=counted or CodedText("nothing-read"))
+        return joined([none, seen] if seen and self._nothing_decoded else [none])
 
     @property
     def _nothing_decoded(self) -> bool:

@@ -114,6 +114,11 @@ ouster-integer = { $name }: { $key }: erwartet wird eine ganze Zahl von { $least
 ouster-numbers = { $name }: { $key }: erwartet werden { $count } Zahlen von höchstens { SIGNIFICANT($limit, digits: 6) }
 ouster-number = { $name }: { $key }: erwartet wird eine Zahl von höchstens { SIGNIFICANT($limit, digits: 6) }
 ouster-rotation = { $name }: { $key }: oben links stehen 3 x 3 Zahlen, die keine Drehung sind
+ouster-metadata-needed = { $sensor }: Pakete eines Ouster enthalten die Winkel seiner Strahlen nicht: die Metadaten (json) des Sensors neben die Aufzeichnung oder die Rig-Datei legen (der Treiber und ouster-cli schreiben sie; http://SENSOR/api/v1/sensor/metadata; Seite: den Ordner mit beidem hochladen, oder für eine Live-Aufnahme auf der Seite Rigs mit der Rig-Datei importieren)
+ouster-metadata-of-others = { $name } ist von Paketen mit { $bytes } Bytes ({ $profile }, { $beams } Strahlen, { $columns } Spalten), die Pakete hier { $here ->
+    [sizes] haben { $sizes }
+   *[contents] haben dieselbe Größe und anderen Inhalt
+ }
 ouster-metadata-choice = die Pakete von { $head } können von den Sensoren mehrerer Metadaten-Dateien sein: { $names }; nur die richtige neben der Aufzeichnung lassen, oder die Adresse des Sensors in den Namen seiner Datei schreiben
 robosense-needs-angles = Pakete eines { $model } brauchen die Winkel seiner { $lasers } Laser: auch seine Gerätepakete aufnehmen (DIFOP, Port 7788), oder eine CSV-Datei mit einer Zeile aus Höhenwinkel und Azimut [°] je Laser neben die Aufzeichnung oder die Rig-Datei legen, oder als description in das Rig schreiben
 robosense-no-decoder = die Pakete des RoboSense-Modells { QUOTED($name) } werden nicht dekodiert; dekodiert werden: { $known }
@@ -399,6 +404,29 @@ no-column-names = keine Namen
 laser-table-no-scan = { $file }: kein Scan eines 2-D-Lasers ist lesbar
 laser-table-angles = { $where }: erwartet werden Winkel, die sich von Strahl zu Strahl ändern, sie tun es nicht
 laser-table-beams = { $where }: erwartet werden höchstens { $limit } Strahlen, erhalten: { $got }
+no-usable-points = keine brauchbaren Punkte ({ $counted })
+nothing-read = nichts gelesen
+rig-expects = das Rig { QUOTED($rig) } erwartet { $sensors }{ $more ->
+    [some] {" "}…
+   *[none] {""}
+ }; die Aufzeichnung hat { $found }; das Rig berichtigen oder keines angeben; recon4 schreibt ein Rig aus dem, was in der Aufzeichnung ist (Befehl: recon4 info RECORDING --rig-out rig.toml; Seite: das Hochladen bietet es an)
+rig-expects-topic = { $name }: { $model } in { $topic }
+rig-expects-port = { $name }: { $model } von { $address ->
+    [any] beliebiger Adresse
+   *[other] { $address }
+ } an Port { $port }
+rig-no-packets = keine Pakete eines LiDAR
+rig-topic-packets = { $topic }: Pakete eines { $model }
+clocks-differ = die Uhren der LiDARs gehen verschieden: { $ahead }. In der Rig-Datei angeben: { $remedy }
+clock-ahead = { $name } geht gegen { $first } vor um { $offset }
+clock-remedy = { $name } time_offset_s = { $exact ->
+    [about] ungefähr { $offset }
+   *[exact] { $offset }
+ }
+points-unnamed =
+    { $name }: die Spalten der Punkte haben keine üblichen Namen; Vorschlag für eine Rig-Datei:
+    { "  " }{ $proposed }
+    Ansehen, was unsicher ist, dann verwenden (Seite: Rig aus diesen Sensoren erstellen; Befehl: recon4 info RECORDING --rig-out rig.toml, dann --rig rig.toml; oder --fields { $fields })
 rig-not-recorded = kein LiDAR des Rigs ist in der Aufzeichnung: { $why }
 rig-no-sensor-known = { $file }: es ist kein Sensor bekannt, für den eine Rig-Datei geschrieben werden könnte
 rig-file-exists = { $file } gibt es schon: eine neue Datei angeben

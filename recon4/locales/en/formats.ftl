@@ -114,6 +114,11 @@ ouster-integer = { $name }: { $key }: expected a whole number from { $least } to
 ouster-numbers = { $name }: { $key }: expected { $count } numbers of at most { SIGNIFICANT($limit, digits: 6) }
 ouster-number = { $name }: { $key }: expected a number of at most { SIGNIFICANT($limit, digits: 6) }
 ouster-rotation = { $name }: { $key }: its upper left 3 x 3 are no rotation
+ouster-metadata-needed = { $sensor }: packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor beside the recording or the rig file (the driver and ouster-cli write it; http://SENSOR/api/v1/sensor/metadata; page: upload the folder with both, or for a live capture import it with the rig file on the page Rigs)
+ouster-metadata-of-others = { $name } is of packets of { $bytes } bytes ({ $profile }, { $beams } beams, { $columns } columns), those here { $here ->
+    [sizes] have { $sizes }
+   *[contents] have that size and other contents
+ }
 ouster-metadata-choice = the packets of { $head } may be of the sensors of several metadata files: { $names }; leave the right one beside the recording, or put the address of the sensor into the name of its file
 robosense-needs-angles = packets of a { $model } need the angles of its { $lasers } lasers: record its device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and azimuth [°] per laser beside the recording or the rig file, or into the rig as its description
 robosense-no-decoder = no packet decoder for RoboSense model { QUOTED($name) }; decoded: { $known }
@@ -399,6 +404,29 @@ no-column-names = no names
 laser-table-no-scan = { $file }: no scan of a 2-D laser can be read
 laser-table-angles = { $where }: expected angles that change from beam to beam, got none
 laser-table-beams = { $where }: expected at most { $limit } beams, got { $got }
+no-usable-points = no usable points ({ $counted })
+nothing-read = nothing read
+rig-expects = the rig { QUOTED($rig) } expects { $sensors }{ $more ->
+    [some] {" "}…
+   *[none] {""}
+ }; the recording has { $found }; correct the rig, or give none; recon4 writes a rig of what is in the recording (command: recon4 info RECORDING --rig-out rig.toml; page: the upload offers it)
+rig-expects-topic = { $name }: { $model } in { $topic }
+rig-expects-port = { $name }: { $model } from { $address ->
+    [any] any address
+   *[other] { $address }
+ } to port { $port }
+rig-no-packets = no packets of a LiDAR
+rig-topic-packets = { $topic }: packets of a { $model }
+clocks-differ = the clocks of the LiDARs differ: { $ahead }. In the rig file give { $remedy }
+clock-ahead = { $name } is ahead of { $first } by { $offset }
+clock-remedy = { $name } time_offset_s = { $exact ->
+    [about] about { $offset }
+   *[exact] { $offset }
+ }
+points-unnamed =
+    { $name }: the columns of the points have no common names; proposed for a rig file:
+    { "  " }{ $proposed }
+    Look at what is uncertain, then use it (page: Make a rig of these sensors; command: recon4 info RECORDING --rig-out rig.toml, then --rig rig.toml; or --fields { $fields })
 rig-not-recorded = no LiDAR of the rig is in the recording: { $why }
 rig-no-sensor-known = { $file }: no sensor is known to write a rig file of
 rig-file-exists = { $file } exists: give a new file

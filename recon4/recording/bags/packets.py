@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.locales.coded import CodedText
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.assembly.shots import Shots
@@ -136,7 +137,8 @@ class PacketTopics:
         found, head = self.packets.found(sensor.topic), self.packets.head(sensor.topic)
         if not can_be_of(sensor, found, head=head, companions=self.packets.companions):
             model = found.model or found.family if found else ""
-            raise ConfigError(mismatch_text(self.rig, f"{sensor.topic}: packets of a {model}"))
+            found = CodedText("rig-topic-packets", topic=sensor.topic, model=model)
+            raise ConfigError(mismatch_text(self.rig, found))
         beside = self._samples_of(sensor)
         of = PacketSensor(
             row=row,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recon4.locales.coded import CodedText, joined
 from recon4.model.finding import Value
 from recon4.recording.clocks.tuning import CLOCK_NAMES
 from recon4.units import HOUR_S
@@ -52,7 +53,7 @@ def described(offset_s: float) -> str:
     return f"{offset_s:+z.3f} s{f' ({name})' if name else ''}"
 
 
-def clocks_text(starts: Sequence[tuple[str, int]]) -> str:
+def clocks_text(starts: Sequence[tuple[str, int]]) -> CodedText:
     """How far the clocks of LiDARs are apart, what that looks like, and the remedy.
 
     Args:
@@ -61,10 +62,17 @@ def clocks_text(starts: Sequence[tuple[str, int]]) -> str:
     (first, start_ns), *others = starts
     ahead_s = {name: (t_ns - start_ns) / 1e9 for name, t_ns in others}
     exact_s = {name: known_offset_s(s) for name, s in ahead_s.items() if looks_like(s)}
-    said = [f"{name} is ahead of {first} by {described(s)}" for name, s in ahead_s.items()]
-    remedies = [
-        f"{name} time_offset_s = {'' if name in exact_s else 'about '}{-exact_s.get(name, s):.3f}"
+    ahead = [
+        CodedText("clock-ahead", name=name, first=first, offset=described(s))
         for name, s in ahead_s.items()
     ]
-    remedy = ", ".join(remedies)
-    return f"the clocks of the LiDARs differ: {'; '.join(said)}. In the rig file give {remedy}"
+    remedies = [
+        CodedText(
+            "clock-remedy",
+            name=name,
+            offset=f"{-exact_s.get(name, s):.3f}",
+            exact="exact" if name in exact_s else "about",
+        )
+        for name, s in ahead_s.items()
+    ]
+    return CodedText("clocks-differ", ahead=joined(ahead), remedy=joined(remedies))

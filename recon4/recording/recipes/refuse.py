@@ -59,14 +59,9 @@ def require_known(unknown: Sequence[tuple[Stream, Proposal]], name: str) -> None
     if not ready:
         lacking = "; ".join(proposal_text(stream.label, one) for stream, one in unknown)
         raise EmptyRecording(CodedText("no-lidar-data", name=name, lacking=lacking))
-    lines = [f"{name}: the columns of the points have no common names; proposed for a rig file:"]
-    lines += [f"  {proposal_text(stream.label, one)}" for stream, one in ready]
     recipe = ready[0][1].recipe
     assert recipe is not None
-    lines.append(
-        "Look at what is uncertain, then use it (page: Make a rig of these sensors; command: "
-        f"recon4 info RECORDING --rig-out rig.toml, then --rig rig.toml; or --fields "
-        f"{recipe.text()})"
-    )
+    proposed = "\n  ".join(proposal_text(stream.label, one) for stream, one in ready)
+    text = CodedText("points-unnamed", name=name, proposed=proposed, fields=recipe.text())
     doubts = [text for stream, one in ready for text in _doubts(stream.label, one)]
-    raise UnknownFields("\n".join(lines), rig_to_complete([s for s, _ in ready]), doubts)
+    raise UnknownFields(text, rig_to_complete([s for s, _ in ready]), doubts)

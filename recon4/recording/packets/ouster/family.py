@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.distinct import distinct
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, joined
 from recon4.model.derived_kinds import DerivedKind
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
@@ -218,7 +218,7 @@ def _recognized_part(head: Datagrams, companions: Sequence[Companion]) -> Recogn
         return _unknown(head, warning(FindingKind.METADATA_NEEDED, error=error))
     if fit is not None and _most_are_known(head, fit.metadata.layout.size):
         return _recognized(head, fit)
-    damaged = "; ".join(found.damaged)
+    damaged = joined(found.damaged)
     return _unknown(head, warning(FindingKind.METADATA_NEEDED, absent=True, error=damaged))
 
 

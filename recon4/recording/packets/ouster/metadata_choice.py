@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile
 from recon4.geometry.distinct import distinct
-from recon4.locales.coded import CodedText
+from recon4.locales.coded import CodedText, joined, text_of
 from recon4.model.finding import Finding
 from recon4.model.finding_kinds import FindingKind
 from recon4.model.rig import Sensor
@@ -32,13 +32,6 @@ from recon4.recording.packets.ouster.metadata import OusterMetadata, read_metada
 from recon4.recording.packets.ouster.tuning import SHARED_ADDRESS
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import warning
-
-NEEDED = (
-    "packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor "
-    "beside the recording or the rig file (the driver and ouster-cli write it; "
-    "http://SENSOR/api/v1/sensor/metadata; page: upload the folder with both, or for a live "
-    "capture import it with the rig file on the page Rigs)"
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +61,7 @@ def find_metadata(companions: Sequence[Companion]) -> MetadataFiles:
         try:
             metadata = read_metadata(companion)
         except CorruptFile as error:
-            damaged.append(str(error))
+            damaged.append(text_of(error))
         else:
             found += [metadata] if metadata else []
     return MetadataFiles(tuple(found), tuple(damaged))
@@ -184,17 +177,23 @@ def _doubts(head: Datagrams, item: OusterMetadata) -> tuple[Finding, ...]:
 def missing_text(head: Datagrams, found: MetadataFiles, sensor: Sensor) -> str:
     """Why there is no metadata for a sensor, for a message."""
     sizes = distinct(head.length).tolist()
-    seen = [
-        f"{item.name} is of packets of {item.layout.size} bytes ({item.layout.profile.name}, "
-        f"{item.layout.beams} beams, {item.layout.columns} columns), those here "
-        + (
-            "have that size and other contents"
-            if item.layout.size in sizes
-            else f"have {', '.join(map(str, sizes[:4]))}"
-        )
-        for item in found.metadata
-    ]
-    return "; ".join([f"{_sender(head, sensor)}: {NEEDED}", *seen, *found.damaged])
+    seen = [_other_packets(item, sizes) for item in found.metadata]
+    needed = CodedText("ouster-metadata-needed", sensor=_sender(head, sensor))
+    return joined([needed, *seen, *found.damaged])
+
+
+def _other_packets(item: OusterMetadata, sizes: Sequence[int]) -> CodedText:
+    same = item.layout.size in sizes
+    return CodedText(
+        "ouster-metadata-of-others",
+        name=item.name,
+        bytes=item.layout.size,
+        profile=item.layout.profile.name,
+        beams=item.layout.beams,
+        columns=item.layout.columns,
+        sizes="" if same else ", ".join(map(str, sizes[:4])),
+        here="contents" if same else "sizes",
+    )
 
 
 def _sender(head: Datagrams, sensor: Sensor | None) -> str:
