@@ -169,7 +169,7 @@ class SE3:
     def quat_xyzw(self) -> Array:
         """Unit quaternions (x, y, z, w), w >= 0, (..., 4)."""
         if self.t.ndim > 1 and len(self) > POSE_BLOCK.poses:
-            return np.concatenate([self[rows].quat_xyzw() for rows in _blocks(len(self))])
+            return np.concatenate([self[rows].quat_xyzw() for rows in pose_blocks(len(self))])
         quat = quat_from_matrix(self.R)
         return np.where(quat[..., 3:] < 0.0, -quat, quat)
 
@@ -271,13 +271,14 @@ def poses_by_blocks(made: Callable[[slice], SE3], count: int) -> SE3:
         count: Number of poses.
     """
     out = SE3(np.empty((count, 3, 3)), np.empty((count, 3)))
-    for rows in _blocks(count):
+    for rows in pose_blocks(count):
         part = made(rows)
         out.R[rows], out.t[rows] = part.R, part.t
     return out
 
 
-def _blocks(count: int) -> Iterator[slice]:
+def pose_blocks(count: int) -> Iterator[slice]:
+    """Rows of many poses, as many at a time as are computed at once."""
     block = POSE_BLOCK.poses
     return (slice(start, start + block) for start in range(0, count, block))
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, pose_blocks, skew
 from recon4.model.edge_columns import EdgeColumns
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Relations, Rows
 
 
 def squared_residuals(T_map_body: SE3, of: Relations) -> Array:
     """Squared Mahalanobis length of ``log(T_i_j^-1 T_map_i^-1 T_map_j)`` of each edge, (E,)."""
-    predicted = T_map_body[of.i].inverse() @ T_map_body[of.j]
-    xi = (of.T_i_j.inverse() @ predicted).log()
-    return np.einsum("ea,eab,eb->e", xi, of.information, xi)
+    chi2 = np.empty(len(of))
+    for rows in pose_blocks(len(of)):
+        predicted = T_map_body[of.i[rows]].inverse() @ T_map_body[of.j[rows]]
+        xi = (of.T_i_j[rows].inverse() @ predicted).log()
+        chi2[rows] = np.einsum("ea,eab,eb->e", xi, of.information[rows], xi)
+    return chi2
 
 
 def with_residuals(graph: PoseGraph) -> PoseGraph:
