@@ -39,6 +39,7 @@ import { PerspectiveCamera, Scene } from "../shared/vendor/three/three.module.mi
  */
 
 const REST_MS = 160;
+const COMING_MS = 1000; // after the last movement: what is read for its images is awaited
 const WARM_UP = 2; // first frames, in which shaders are compiled
 const FIRST_SHARPNESS = 0.5; // of the first image: it is soon drawn again
 const SHARPEST = 2; // pixels of the canvas per pixel of the page
@@ -61,6 +62,8 @@ export class MapCanvas {
   /** @type {{queue: ReturnType<MapTiles["show"]>, next: number, late: boolean} | null} */
   #refining = null;
   #finished = false;
+  #rough = false; // the image shown is one of a moving camera
+  #fresh = false; // points have arrived that it lacks
   /** @type {boolean | null} */
   #hadPoints = null;
   /** @type {{sync: WebGLSync, began: number, points: number, moving: boolean} | null} */
@@ -166,8 +169,12 @@ export class MapCanvas {
     this.#ask();
   }
 
-  /** Points have arrived: a drawing that has begun is shown before, so that one sees progress. */
+  /**
+   * Points have arrived: a drawing that has begun is shown before, so that one sees progress. One
+   * at rest takes long: those of a view that is new are shown before it begins.
+   */
   #arrived() {
+    this.#fresh = this.#rough;
     if (!this.#refining) return this.#news();
     this.#refining.late = true;
     this.drawn.rested = false;
@@ -186,10 +193,13 @@ export class MapCanvas {
     const drawing = this.#drawing;
     if (!drawing || !this.tiles.begun) return;
     if (!this.#isReady()) return this.#ask();
-    const moving = performance.now() - this.#moved < REST_MS;
+    const still = performance.now() - this.#moved;
+    const moving = still < REST_MS;
     const first = this.#hadPoints !== this.tiles.total > 0; // few at once, before many
-    if (moving || first) this.#drawCoarse(drawing);
-    else if (!this.#finished && this.#refines) this.#refine(drawing);
+    const fresh = this.#fresh && !this.#refining;
+    const coming = this.#rough && still < COMING_MS && this.#sides().some((one) => one.tiles.reads);
+    if (moving || first || fresh) this.#drawCoarse(drawing);
+    else if (!this.#finished && this.#refines && !coming) this.#refine(drawing);
     if (moving || (!this.#finished && this.#refines) || this.#pending) this.#ask();
     this.onDrawn();
   }
@@ -218,7 +228,10 @@ export class MapCanvas {
 
   #drawCoarse(/** @type {Drawing} */ drawing) {
     const began = performance.now();
+    const drawnBefore = !this.#fresh; // new points take longer: they are handed to WebGL
     this.#refining = null;
+    this.#rough = true;
+    this.#fresh = false;
     this.#hadPoints = this.tiles.total > 0;
     const parts = this.#parts(drawing, this.pace.moving);
     this.#begin(drawing, this.#coarse);
@@ -226,7 +239,7 @@ export class MapCanvas {
     this.#finish(drawing, this.#coarse);
     const points = parts.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
     Object.assign(this.drawn, { points, rested: false });
-    this.#begun(began, points, true);
+    this.#begun(began, points, drawnBefore);
   }
 
   /** Draws the next points of the drawing at rest; it is shown when it is complete. */
@@ -248,6 +261,7 @@ export class MapCanvas {
     this.#paint(this.#fine);
     if (this.#refining.next >= queue.length) {
       this.#finish(drawing, this.#fine);
+      this.#rough = this.#fresh = false;
       this.#finished = !this.#refining.late;
       const all = queue.reduce((sum, part) => sum + part.points, this.#differences?.count ?? 0);
       Object.assign(this.drawn, {

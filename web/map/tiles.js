@@ -90,6 +90,11 @@ export class MapTiles {
     return this.#chunks.map((chunks) => chunks.at(-1)?.stop ?? 0);
   }
 
+  /** Whether something is being read. */
+  get reads() {
+    return this.#requests > 0;
+  }
+
   /** Whether all that is wanted has been read. */
   get complete() {
     const have = this.have;
