@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import StrEnum
 from typing import Literal
 
@@ -30,6 +31,8 @@ class Because(StrEnum):
     """The trajectory of a GNSS/INS shows what moves."""
     MOVING_BY_WALK = "moving objects by walk"
     """The trajectory that was tracked before shows what moves."""
+    AXES_REPAIRED = "IMU axes repaired"
+    """The LiDARs have shown that its axes are not those of its rig."""
     CALIBRATED = "rig calibrated"
     """The calibration changed the rig; the points that were left out before stay out."""
 
@@ -83,3 +86,16 @@ class TriedHypothesis(msgspec.Struct, frozen=True, kw_only=True):
     verdict: TrialVerdict
     chosen: bool = False
     """Whether the odometry is made of it; of windows: whether the walk began with it."""
+
+
+def not_chosen(tried: Sequence[TriedHypothesis]) -> tuple[TriedHypothesis, ...]:
+    """The rows of a choice that was made again otherwise."""
+    return tuple(msgspec.structs.replace(row, chosen=False) for row in tried)
+
+
+def walks_of(tried: Sequence[TriedHypothesis]) -> int:
+    """How often the whole recording was tracked since the axes of its IMU are right."""
+    whole = [row.because for row in tried if row.whole]
+    return len(whole) - (
+        whole.index(Because.AXES_REPAIRED) if Because.AXES_REPAIRED in whole else 0
+    )

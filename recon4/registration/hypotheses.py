@@ -123,7 +123,7 @@ class _WalkHypotheses:
         recording, earlier = self._recording, self._recording.earlier
         hidden = earlier.hidden if earlier else None
         return Hypothesis(
-            because=Because.CALIBRATED if earlier else Because.START,
+            because=_because(recording),
             imu=self._imu(recording.seen(hidden), trusted=hidden is not None),
             hidden=hidden,
             aiding=recording.aiding,
@@ -202,6 +202,14 @@ class _WalkHypotheses:
                 yield from _with_corrected_imu(trials)
                 return
             shown, imu = _shown_by(before.tracked), _as_found(before)
+
+
+def _because(recording: WalkInputs) -> Because:
+    """Why the first walk is tracked."""
+    repairs = recording.repairs
+    if repairs.turn is not None or repairs.axes is not None:
+        return Because.AXES_REPAIRED
+    return Because.START if recording.earlier is None else Because.CALIBRATED
 
 
 def is_settled(trials: Trials[TrackedWalk]) -> bool:

@@ -12,6 +12,7 @@ from recon4.model.imu_repair import IMU_REPAIR
 from recon4.model.odometry_figures import OdometryFigures, TurnDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
+from recon4.model.tried_hypotheses import TrialVerdict, not_chosen, walks_of
 from recon4.registration.felt_motion import are_carried, carried, felt_motion, moved_back
 from recon4.registration.hypotheses import Choice, choose_walk, doubts_imu
 from recon4.registration.pulled_motion import less_sure
@@ -39,7 +40,7 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     """
     choice = choose_walk(recording)
     if doubts_imu(choice) and (turned := recording.with_right_axes()) is not None:
-        recording, choice = turned, choose_walk(turned)
+        recording, choice = _with_right_axes(recording, choice, turned)
     if recording.repairs.repair is not None:
         save_record(out / IMU_REPAIR, recording.repairs.repair)
     hypothesis = choice.best.hypothesis
@@ -54,6 +55,21 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     steps.update(less_sure(steps, choice.moving, with_imu=used is not None))
     _save_steps(out / "steps.npz", steps)
     return _figures(recording, choice, with_imu=used is not None)
+
+
+def _with_right_axes(
+    recording: WalkInputs, first: Choice, turned: WalkInputs
+) -> tuple[WalkInputs, Choice]:
+    """The walk with repaired axes, unless the one before is clearly better; the table has both.
+
+    Forty multiframes have shown the axes, so what it must not do is contradict the whole walk.
+    """
+    again = choose_walk(turned)
+    before, after = first.best.tracked.score, again.best.tracked.score
+    if before.clearly_better(after) is TrialVerdict.CLEARLY_BETTER:
+        tried = (*first.tried, *not_chosen(again.tried))
+        return recording, dataclasses.replace(first, tried=tried)
+    return turned, dataclasses.replace(again, tried=(*not_chosen(first.tried), *again.tried))
 
 
 def carried_by_accelerometer(recording: WalkInputs, choice: Choice, imu: ImuSamples) -> Choice:
@@ -93,7 +109,7 @@ def earlier_walks(odometry: Path) -> EarlierWalks:
     Raises:
         StoreError: If a file is missing or damaged.
     """
-    walks = sum(row.whole for row in read_tried(odometry))
+    walks = walks_of(read_tried(odometry))
     if not (odometry / MOVING_POINTS).exists():
         return EarlierWalks(walks)
     positions_m = load_arrays(odometry / "steps.npz", ["t_m"])["t_m"]

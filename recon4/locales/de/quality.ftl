@@ -96,6 +96,7 @@ quality =
     .imu-faults-found = Fehler der IMU gefunden
     .moving-objects-by-fixes = bewegte Objekte durch GNSS
     .moving-objects-by-walk = bewegte Objekte durch die Begehung
+    .imu-axes-repaired = Achsen der IMU repariert
     .rig-calibrated = Rig kalibriert
     .first = erste
     .clearly-better = deutlich besser

@@ -96,6 +96,7 @@ quality =
     .imu-faults-found = IMU faults found
     .moving-objects-by-fixes = moving objects by fixes
     .moving-objects-by-walk = moving objects by walk
+    .imu-axes-repaired = IMU axes repaired
     .rig-calibrated = rig calibrated
     .first = first
     .clearly-better = clearly better

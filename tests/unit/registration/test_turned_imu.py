@@ -7,9 +7,12 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.model.imu_repair import ImuRepair
+from recon4.model.imu_repair import IMU_REPAIR, ImuRepair
+from recon4.model.multiframe import COLUMNS, Multiframe
+from recon4.model.odometry_figures import ImuAxes
+from recon4.model.tried_hypotheses import Because, walks_of
 from recon4.progress import Silent
-from recon4.registration.imu_repairs import with_right_axes
+from recon4.registration.imu_repairs import ImuRepairs, with_right_axes
 from recon4.registration.stage import run_odometry
 from recon4.registration.tracked_walk import WalkInputs
 from recon4.registration.turned_imu import turned_imu
@@ -148,3 +151,42 @@ def test_turns_about_one_axis_show_no_rotation(frames):
     imu = replace(frames.imu, gyro_rad_s=(yaw + noise * [1.0, 1.0, 0.0]) @ OVER.T)
 
     assert turned_imu(Walk(frames, imu=imu), SETTINGS) is None
+
+
+def test_a_walk_tracked_again_with_right_axes_keeps_the_table_of_the_one_before(frames, tmp_path):
+    turned = mounted(frames, LEFT)
+    right, repairs = with_right_axes(turned, SETTINGS)
+    again = WalkInputs(right, SETTINGS, Silent(), repairs=repairs)
+    walk = WalkInputs(turned, SETTINGS, Silent(), with_right_axes=lambda: again)
+
+    tried = run_odometry(walk, tmp_path).tried
+
+    whole = [(row.because, row.chosen) for row in tried if row.whole]
+    assert whole[0] == (Because.START, False)
+    assert (Because.AXES_REPAIRED, True) in whole
+    assert sum(chosen for _, chosen in whole) == 1
+    assert walks_of(tried) == len(whole) - whole.index((Because.AXES_REPAIRED, True))
+
+
+class _Blurred(Walk):
+    """A walk whose points err by 5 cm: nothing fits it well."""
+
+    def __getitem__(self, k):
+        frame = super().__getitem__(k)
+        xyz = frame.xyz + NOISE.normal(0.0, 0.05, frame.xyz.shape).astype(np.float32)
+        columns = {name: getattr(frame, name) for name in COLUMNS} | {"xyz": xyz}
+        return Multiframe(frame.frame_id, frame.t_ns, frame.duration_ns, **columns)
+
+
+def test_axes_of_a_walk_that_is_clearly_worse_are_not_repaired(frames, tmp_path):
+    found = ImuRepairs(ImuRepair.turned(LEFT), axes=ImuAxes(gyro="y", accel="y"))
+    worse = WalkInputs(_Blurred(frames), SETTINGS, Silent(), repairs=found)
+    walk = WalkInputs(mounted(frames, LEFT), SETTINGS, Silent(), with_right_axes=lambda: worse)
+
+    figures = run_odometry(walk, tmp_path)
+
+    assert figures.imu_axes is None
+    assert not (tmp_path / IMU_REPAIR).exists()
+    chosen = [row.because for row in figures.tried if row.chosen and row.whole]
+    assert chosen and Because.AXES_REPAIRED not in chosen
+    assert Because.AXES_REPAIRED in [row.because for row in figures.tried]
