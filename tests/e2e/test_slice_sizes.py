@@ -39,3 +39,13 @@ def test_all_of_a_slice_stays_in_sight_when_a_result_is_opened(server, page):
     export.click()
     again = seen(page, "===", width)
     assert again == pytest.approx(whole, abs=0.05)
+
+
+def test_on_a_tablet_the_slice_begins_right_below_the_names_of_results(server, page):
+    page.set_viewport_size({"width": 1024, "height": 768})
+    page.goto(f"{server.url}/projects/office/slices/?kind=horizontal&z=1.5")
+    expect(page.locator(".facing strong")).to_be_visible()
+
+    names, tools = (page.locator(one) for one in (".findings > details", ".tools"))
+    bottom = max(box["y"] + box["height"] for box in (one.bounding_box() for one in names.all()))
+    assert 0 <= tools.bounding_box()["y"] - bottom <= 20
