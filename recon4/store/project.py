@@ -159,7 +159,8 @@ def read_description(root: Path) -> dict[str, Any]:
     """
     path = root / "project.json"
     if not path.exists():
-        raise StoreError(CodedText("project-none", folder=str(root)))
+        code = "project-none" if root.exists() else "project-missing"
+        raise StoreError(CodedText(code, folder=str(root)))
     found = read_object(path, max_bytes=LIMITS.description_bytes)
     if found.get("format") != FORMATS.project:
         raise StoreError(CodedText("project-format", file=str(path), format=FORMATS.project))

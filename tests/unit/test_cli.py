@@ -143,6 +143,8 @@ def test_a_known_error_is_one_line_on_stderr_and_exits_with_1(tmp_path, capsys):
     said = capsys.readouterr()
     assert said.out == ""
     assert said.err == f"recon4: {tmp_path} is not a recon4 project: it has no project.json\n"
+    assert main(["verify", str(tmp_path / "none.zip")]) == 1
+    assert capsys.readouterr().err == f"recon4: {tmp_path / 'none.zip'} does not exist\n"
 
 
 @pytest.mark.parametrize(

@@ -143,6 +143,7 @@ seal-block-differs = { $file }, Bytes { $start } bis { $stop }: erwartet wird { 
 file-size = { $file }: erwartet werden { $expected } Byte, erhalten: { $got } Byte
 lock-failed = { $folder } kann nicht gesperrt werden: { $why }
 project-file-unreadable = { $file } ist nicht lesbar: { $why }
+project-missing = { $folder } gibt es nicht
 project-none = { $folder } ist kein Projekt von recon4: dort ist keine project.json
 project-format = { $file }: erwartet wird Format { $format }
 project-no-artifact = es gibt kein Artefakt der Stufe { $stage }: es wurde gelöscht, oder die Stufe lief noch nicht. Die Aufzeichnung erneut verarbeiten

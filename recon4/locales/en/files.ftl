@@ -143,6 +143,7 @@ seal-block-differs = { $file }, bytes { $start } to { $stop }: expected { $expec
 file-size = { $file }: expected { $expected } bytes, got { $got } bytes
 lock-failed = cannot lock { $folder }: { $why }
 project-file-unreadable = { $file } cannot be read: { $why }
+project-missing = { $folder } does not exist
 project-none = { $folder } is not a recon4 project: it has no project.json
 project-format = { $file }: expected format { $format }
 project-no-artifact = there is no artifact of the stage { $stage }: it was freed, or has not run yet. Process the recording again
