@@ -155,8 +155,12 @@ function add({ point: found, snap }, begun, stage) {
   const goesOn = draft === page.draft;
   if (!found) return goesOn ? read(t("no-point-here"), stage) : undefined;
   const one = ended(found, snap);
+  const { least, most } = KINDS[measuring];
+  const near = PICK_PX * pixelM(stage.camera(), stage.screen());
+  const before = least === most ? draft.at(-1) : null; // others end by a double click
+  if (before && lengthOf(minus(before.p, one.p)) < near) return; // a double click is one point
   draft.push(one);
-  if (draft.length >= KINDS[measuring].most) return finishMeasurement(begun, stage);
+  if (draft.length >= most) return finishMeasurement(begun, stage);
   if (!goesOn) return;
   const there = pointText({ ...found, p_map: one.p, p_crs: one.crs });
   read([one.snap && t(SNAPPED[one.snap] ?? "snapped"), there].filter(Boolean).join("\n"), stage);
