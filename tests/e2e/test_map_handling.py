@@ -260,13 +260,13 @@ def test_a_map_whose_server_was_gone_goes_on_when_it_is_back(server, context):
         rested(page)
         link.cut()
         expect(page.get_by_text("Connection lost")).to_be_visible()
-        page.mouse.click(*at(page, 6.0, 4.0))
+        page.mouse.click(*at(page, 9.0, 5.5))
         expect(page.locator("#message")).to_contain_text("does not answer")
         link.restore()
 
         expect(page.locator("#message")).to_have_text("")
-        page.mouse.click(*at(page, 6.0, 4.0))
-        expect(page.locator("#status .reading")).to_contain_text("x 6.0")
+        page.mouse.click(*at(page, 9.0, 5.5))
+        expect(page.locator("#status .reading")).to_contain_text("x 9.0")
         page.close()  # before the link goes
 
 
@@ -274,7 +274,7 @@ def test_a_double_click_is_one_end_of_a_distance(server, page):
     opened(page, server, f"?{TOP}&z=..")
     page.keyboard.press("m")
     with page.expect_response("**/pick"):
-        page.mouse.dblclick(*at(page, 6.0, 4.0))
-    page.mouse.click(*at(page, 9.0, 4.0))
+        page.mouse.dblclick(*at(page, 6.5, 5.5))
+    page.mouse.click(*at(page, 9.5, 5.5))
 
     expect(page.locator("#panel .value")).to_have_text(re.compile(r"^3\.0\d\d m$"))
