@@ -24,8 +24,11 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.octree import by_octant, first_of_cells
 from recon4.kernels.signatures import SIGNATURES, kernel_name, spelled
 from recon4.live.mapper.live_map import LiveMap
+from recon4.mapping.carry import moved_points
 from recon4.mapping.class_corrections import ClassVolumes
+from recon4.mapping.mirrors import Mirror, Sight, Wall
 from recon4.mapping.tiles import TileSet
+from recon4.model.figures import MirrorFigures
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.rig import Sensor
 from recon4.pipeline import process
@@ -128,6 +131,7 @@ def _lidars(folder: Path) -> None:
         live.push(frame)
         without_imu.push(frame)
     _longer_walk(frames[0].xyz.astype(np.float64), load_graph(made["graph"]))
+    _carried_and_mirrored()
 
 
 def _longer_walk(p: Array, graph: PoseGraph) -> None:
@@ -138,6 +142,15 @@ def _longer_walk(p: Array, graph: PoseGraph) -> None:
     overlay_plans(make_scan(p), make_scan(p), count=1, height_m=0.0)
     paths = PathIndex.build(graph.relations, nodes=len(graph), max_edges=3)
     paths.remove([0])
+
+
+def _carried_and_mirrored() -> None:
+    """What an office before any decision lacks: points carried along, a mirror that is found."""
+    p, moves = np.zeros((1, 3)), SE3(np.eye(3)[None], np.zeros((1, 3)))
+    moved_points(p.astype(np.float32), np.zeros(1, np.uint32), moves, origin_m=p[0])
+    figures = MirrorFigures(area_m2=1.0, middle_m=(0.0, 0.0), behind=0.0)
+    mirror = Mirror(Wall(np.array([1.0, 0.0, 0.0]), 1.0), np.zeros((1, 2), np.int64), figures)
+    mirror.reflects(Sight(p, p))
 
 
 def _backpack(folder: Path) -> None:
