@@ -119,7 +119,7 @@ class CubeFile:
         """
         counts = self._counts()[:, 0].tolist()
         if sum(counts) * sum(self._widths) > MAP_CHUNKS.max_sample_bytes:
-            raise StoreError(f"{self.path.name} has a sample of {sum(counts)} points")
+            raise StoreError(CodedText("file-sample-large", file=self.path.name, count=sum(counts)))
         return self.read(tuple((row, 0, count) for row, count in enumerate(counts) if count))
 
     def read(self, parts: tuple[tuple[int, int, int], ...]) -> bytes:
@@ -144,7 +144,7 @@ class CubeFile:
                     file.seek(at + width * start)
                     part = file.read(width * (stop - start))
                     if len(part) < width * (stop - start):
-                        raise StoreError(f"{self.path.name} ends early")
+                        raise StoreError(CodedText("file-ends-early", file=self.path.name))
                     data.append(part)
                     at += width * int(counts[row, 1])
         return b"".join(data)
@@ -159,5 +159,5 @@ class CubeFile:
             many = int.from_bytes(first, "little")
             counts = file.read(8 * many)
         if len(first) < 4 or len(counts) < 8 * many:
-            raise StoreError(f"{self.path.name} ends early")
+            raise StoreError(CodedText("file-ends-early", file=self.path.name))
         return np.frombuffer(counts, "<u4").reshape(-1, 2)

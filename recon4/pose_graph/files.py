@@ -125,9 +125,9 @@ def _checked(columns: Columns) -> dict[str, NDArray[Any]]:
     for name, meant in EdgeColumns.of(()).columns.items():
         one = columns[name]
         if one.shape[1:] != meant.shape[1:] or not np.can_cast(one.dtype, meant.dtype, "same_kind"):
+            expected, got = (f"{of.dtype} {of.shape[1:]}" for of in (meant, one))
             raise StoreError(
-                f"graph.npz: {name}: expected rows of {meant.dtype} with the shape "
-                f"{meant.shape[1:]}, got {one.dtype} with {one.shape[1:]}"
+                CodedText("array-rows", file="graph.npz", name=name, expected=expected, got=got)
             )
         found[name] = one.astype(meant.dtype, copy=False)
     return found

@@ -531,6 +531,9 @@ scheduler-silent = kein Scheduler antwortet auf { $scheduler }: { $why }
 ## Gespeicherte Dateien
 
 arrays-missing = { $file }: erwartet werden die Arrays { $names }, erhalten: keines von { $missing }
+array-rows = { $file }: { $name }: erwartet werden Zeilen von { $expected }, erhalten: { $got }
+file-ends-early = { $file } endet vorzeitig
+file-sample-large = { $file } hat eine Stichprobe von { $count } Punkten
 name-no-utf8 = { $wrong }: der Name ist kein Text in UTF-8: umbenennen
 cannot-read = { $file } ist nicht lesbar: { $why }
 json-not-object = { $what } ist nicht lesbar: erwartet wird ein Objekt, erhalten: { $kind }

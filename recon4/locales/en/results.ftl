@@ -531,6 +531,9 @@ scheduler-silent = no scheduler answers at { $scheduler }: { $why }
 ## Stored files
 
 arrays-missing = { $file }: expected arrays { $names }, got none of { $missing }
+array-rows = { $file }: { $name }: expected rows of { $expected }, got { $got }
+file-ends-early = { $file } ends early
+file-sample-large = { $file } has a sample of { $count } points
 name-no-utf8 = { $wrong }: the name is no UTF-8 text: rename it
 cannot-read = cannot read { $file }: { $why }
 json-not-object = { $what } cannot be read: expected an object, got { $kind }

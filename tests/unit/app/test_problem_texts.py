@@ -49,7 +49,7 @@ SAME = {
     "missing-imu-table",
     "zip-entry",
 }
-SAME |= {"missing-topic", "samples-sender", "samples-topic", "word-topic-imu"}
+SAME |= {"missing-topic", "samples-sender", "samples-topic", "word-topic-imu", "rig-expects-topic"}
 SAME |= {"info-head", "info-start", "held-one", "held-more", "detail-times", "detail-protocols"}
 """Codes whose text is the same in German."""
 
