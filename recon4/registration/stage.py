@@ -15,6 +15,7 @@ from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import TrialVerdict, not_chosen, walks_of
 from recon4.registration.felt_motion import are_carried, carried, felt_motion, moved_back
 from recon4.registration.hypotheses import Choice, choose_walk, doubts_imu
+from recon4.registration.imu_choice import LESS_USED
 from recon4.registration.pulled_motion import less_sure
 from recon4.registration.tracked_walk import EarlierWalks, WalkInputs
 from recon4.registration.tuning import OdometryTuning
@@ -60,16 +61,23 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
 def _with_right_axes(
     recording: WalkInputs, first: Choice, turned: WalkInputs
 ) -> tuple[WalkInputs, Choice]:
-    """The walk with repaired axes, unless the one before is clearly better; the table has both.
+    """The walk with repaired axes, unless the one before fits better; the table has both.
 
-    Forty multiframes have shown the axes, so what it must not do is contradict the whole walk.
+    Forty multiframes have shown the axes, by LiDARs that may see little: all of them must agree.
     """
     again = choose_walk(turned)
-    before, after = first.best.tracked.score, again.best.tracked.score
-    if before.clearly_better(after) is TrialVerdict.CLEARLY_BETTER:
+    if not _agrees(again, first):
         tried = (*first.tried, *not_chosen(again.tried))
         return recording, dataclasses.replace(first, tried=tried)
     return turned, dataclasses.replace(again, tried=(*not_chosen(first.tried), *again.tried))
+
+
+def _agrees(repaired: Choice, first: Choice) -> bool:
+    """Whether a walk with repaired axes is as good; one that knew less must have been better."""
+    after, before = repaired.best.tracked.score, first.best.tracked.score
+    if first.best.hypothesis.imu.choice.outcome in LESS_USED:
+        return before.clearly_better(after) is not TrialVerdict.CLEARLY_BETTER
+    return after.no_worse(before).wins
 
 
 def carried_by_accelerometer(recording: WalkInputs, choice: Choice, imu: ImuSamples) -> Choice:

@@ -126,7 +126,7 @@ def _refine(
     return found.save(context.out)
 
 
-ODOMETRY = Stage("odometry", 64, OdometryReads, _odometry, OdometryFigures, percent=14.0)
+ODOMETRY = Stage("odometry", 65, OdometryReads, _odometry, OdometryFigures, percent=14.0)
 GRAPH = Stage("graph", 15, GraphReads, _graph, GraphFigures, percent=25.0)
 REFINE = Stage("refine", 5, RefineReads, _refine, RefineFigures, percent=8.0)
 LIDAR = Workflow(

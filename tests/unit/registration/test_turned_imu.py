@@ -178,7 +178,7 @@ class _Blurred(Walk):
         return Multiframe(frame.frame_id, frame.t_ns, frame.duration_ns, **columns)
 
 
-def test_axes_of_a_walk_that_is_clearly_worse_are_not_repaired(frames, tmp_path):
+def test_axes_of_a_walk_that_fits_worse_are_not_repaired(frames, tmp_path):
     found = ImuRepairs(ImuRepair.turned(LEFT), axes=ImuAxes(gyro="y", accel="y"))
     worse = WalkInputs(_Blurred(frames), SETTINGS, Silent(), repairs=found)
     walk = WalkInputs(mounted(frames, LEFT), SETTINGS, Silent(), with_right_axes=lambda: worse)
@@ -190,3 +190,17 @@ def test_axes_of_a_walk_that_is_clearly_worse_are_not_repaired(frames, tmp_path)
     chosen = [row.because for row in figures.tried if row.chosen and row.whole]
     assert chosen and Because.AXES_REPAIRED not in chosen
     assert Because.AXES_REPAIRED in [row.because for row in figures.tried]
+
+
+def test_a_small_turn_that_the_whole_walk_contradicts_is_not_repaired(frames, tmp_path):
+    """Few turns by LiDARs that see little may speak for it."""
+    wrong = so3_exp([0.0, 0.0, 0.07])
+    scaled = Walk(frames, imu=replace(frames.imu, gyro_rad_s=1.03 * frames.imu.gyro_rad_s))
+    found = ImuRepairs(ImuRepair.turned(wrong), axes=ImuAxes(gyro="x", accel="x"))
+    turned = WalkInputs(mounted(scaled, wrong), SETTINGS, Silent(), repairs=found)
+    walk = WalkInputs(scaled, SETTINGS, Silent(), with_right_axes=lambda: turned)
+
+    figures = run_odometry(walk, tmp_path)
+
+    assert Because.AXES_REPAIRED in [row.because for row in figures.tried]
+    assert figures.imu_axes is None
