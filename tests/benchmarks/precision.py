@@ -41,7 +41,7 @@ NAMES = {
     "extrinsics": {"RIG-CONTRADICTED", "IMU-GYRO-ROTATION"},
     "swap-lidars": {"RIG-EXCHANGED", "RIG-CONTRADICTED"},
     "lidar-clock": {"RIG-CONTRADICTED", "IMU-CLOCK"},
-    "imu-rotation": {"RIG-CONTRADICTED", "IMU-GYRO-ROTATION", "IMU-TURNED"},
+    "imu-rotation": {"RIG-CONTRADICTED", "IMU-GYRO-ROTATION"},
     "imu-clock": {"RIG-CONTRADICTED", "IMU-CLOCK"},
     "imu-scale": {"IMU-GYRO-SCALE", "IMU-GRAVITY", "IMU-SCALE", "TURN-SCALE"},
     "imu-unit": {"IMU-UNIT", "GYROSCOPE-UNIT", "ACCELEROMETER-UNIT", "IMPORT-REMARK"},
