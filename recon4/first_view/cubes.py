@@ -157,7 +157,7 @@ class CubeFile:
         with self.path.open("rb") as file:
             first = file.read(4)
             many = int.from_bytes(first, "little")
-            counts = file.read(8 * many)
+            counts = file.read(min(8 * many, self.path.stat().st_size))
         if len(first) < 4 or len(counts) < 8 * many:
             raise StoreError(CodedText("file-ends-early", file=self.path.name))
         return np.frombuffer(counts, "<u4").reshape(-1, 2)

@@ -3,12 +3,14 @@
 import hashlib
 import json
 import re
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
 
+from recon4.errors import StoreError
 from recon4.first_view import index, points
 from recon4.first_view.cubes import CubeFile
 from recon4.first_view.files import read_index, write_first_files
@@ -157,6 +159,19 @@ def test_a_map_without_points_has_an_index_and_no_points(tiles, tmp_path):
     found = decoded(read_index(tmp_path / "first/index.json", "key"), MapIndex)
     assert (found.key, found.points, found.tiles) == ("key", 0, [])
     assert CubeFile(tmp_path / "first/xyz.bin", "xyz").sample() == b""
+
+
+@pytest.mark.parametrize("head", [b"", b"\x01\x00", b"\xff\xff\xff\xff" + bytes(64)])
+def test_a_damaged_head_of_coarse_points_takes_no_memory(head, tmp_path):
+    (tmp_path / "xyz.bin").write_bytes(head)
+    tracemalloc.start()
+
+    with pytest.raises(StoreError, match=r"xyz\.bin ends early"):
+        CubeFile(tmp_path / "xyz.bin", "xyz").sample()
+
+    most_bytes = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most_bytes < 1 << 26  # texts of errors are loaded, too
 
 
 def test_a_changed_layout_of_the_index_has_another_version():
