@@ -40,10 +40,9 @@ def surfaces_m2(p_map: Array, sizes: NDArray[np.int64], least_m2: Array) -> Arra
     """
     from scipy.spatial import cKDTree  # only where maps are read, not where a server starts
 
-    ratio = np.full(len(sizes), np.nan)
+    ratio, ends = np.full(len(sizes), np.nan), np.cumsum(sizes)
     for row in np.flatnonzero(sizes >= FIRST_VIEW.spread_points).tolist():
-        end = int(sizes[: row + 1].sum())
-        part = p_map[end - int(sizes[row]) : end]
+        part = p_map[ends[row] - sizes[row] : ends[row]]
         away_m = cKDTree(part).query(part, k=2)[0][:, 1]
         ratio[row] = len(part) * (2.0 * away_m.mean()) ** 2 / max(least_m2[row], 1e-9)
     known = ratio[np.isfinite(ratio)]

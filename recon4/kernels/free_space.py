@@ -63,6 +63,15 @@ def cell_towards(x: float, y: float, z: float, shape: tuple[int, int]) -> tuple[
     return min(max(row, 0), shape[0] - 1), column % shape[1], range_m
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def column_beside(column: int, step: int, columns: int) -> int:
+    """A column of an image that goes all around, without a division."""
+    j = column + step
+    if j < 0:
+        return j + columns
+    return j - columns if j >= columns else j
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def nearest_ranges(
     points: NDArray[np.float64],
@@ -111,12 +120,7 @@ def sight(
     below = above = left = right = False
     for i in range(max(row - 1, 0), min(row + 2, rows)):
         for step in range(-1, 2):
-            j = column + step
-            if j < 0:
-                j += columns
-            elif j >= columns:
-                j -= columns
-            seen_m = images[v, s, i, j]
+            seen_m = images[v, s, i, column_beside(column, step, columns)]
             if seen_m == np.inf:
                 continue
             if abs(seen_m - range_m) < limits[1]:

@@ -10,7 +10,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.cell_table import place_of
-from recon4.kernels.free_space import VERDICT, Sights, cell_towards, sight, to_sensor
+from recon4.kernels.free_space import (
+    VERDICT,
+    Sights,
+    cell_towards,
+    column_beside,
+    sight,
+    to_sensor,
+)
 
 Place = tuple[float, float, float]
 
@@ -218,10 +225,11 @@ def _end_of_beam(p: Place, v: int, views: RangeViews, rules: SightRules) -> tupl
 def _nearest(images: NDArray[np.float32], image: tuple[int, int], cell: tuple[int, int]) -> float:
     """Least range of a cell and those around it [m], inf = they are empty."""
     nearest_m = np.inf
-    for i in range(max(cell[0] - 1, 0), min(cell[0] + 2, images.shape[2])):
+    (v, s), (row, column) = image, cell
+    rows, columns = images.shape[2:]
+    for i in range(max(row - 1, 0), min(row + 2, rows)):
         for step in range(-1, 2):
-            seen_m = images[image[0], image[1], i, (cell[1] + step) % images.shape[3]]
-            nearest_m = min(nearest_m, seen_m)
+            nearest_m = min(nearest_m, images[v, s, i, column_beside(column, step, columns)])
     return nearest_m
 
 
@@ -236,12 +244,7 @@ def _is_before(
     rows, columns = images.shape[2:]
     for i in range(max(row - 1, 0), min(row + 2, rows)):
         for step in range(-1, 2):
-            j = column + step
-            if j < 0:
-                j += columns
-            elif j >= columns:
-                j -= columns
-            if limit_m < images[v, s, i, j] < np.inf:
+            if limit_m < images[v, s, i, column_beside(column, step, columns)] < np.inf:
                 return False
     return True
 

@@ -49,7 +49,10 @@ class ShownMap:
         Raises:
             StoreError: If a file of the map, or the index, is damaged.
         """
-        return await run_in_threadpool(read_index, await self._folder() / INDEX, self._map.name)
+        folder = self._map / FIRST_FILES
+        if not await run_in_threadpool(self._has, INDEX):
+            folder = await self._first()
+        return await run_in_threadpool(read_index, folder / INDEX, self._map.name)
 
     async def coarse(self, stored: Stored) -> CubeFile:
         """The coarse points.
@@ -59,33 +62,34 @@ class ShownMap:
             StoreError: If a file of the map is damaged.
         """
         name = coarse_name(stored)
-        folder = await self._folder()
-        if folder.is_relative_to(self._map):
-            there = await run_in_threadpool(self._has, name)
-        else:
-            there = (folder / name).exists()
-        path = folder / name if there else await self._made(name, map_work.write_coarse, stored)
-        return CubeFile(path, stored)
+        if await run_in_threadpool(self._has, name):
+            return CubeFile(self._map / FIRST_FILES / name, stored)
+        if not await run_in_threadpool(self._is_own, INDEX):
+            path = await self._first() / name
+            if path.exists():
+                return CubeFile(path, stored)
+        return CubeFile(await self._made(name, map_work.write_coarse, stored), stored)
 
     @property
     def _map(self) -> Path:
         return Path(self.artifacts["map"])
 
-    async def _folder(self) -> Path:
-        """Folder of the files: of the map itself, or made now of a map without them."""
-        if await run_in_threadpool(self._has, INDEX):
-            return self._map / FIRST_FILES
+    async def _first(self) -> Path:
+        """Folder of what is made of a map of an earlier version, once."""
         return await self._made("first", map_work.write_first)
 
-    def _has(self, name: str) -> bool:
-        """Whether the map has a file itself; that of an approved map is compared with its hashes.
+    def _is_own(self, name: str) -> bool:
+        """Whether the map has a file itself; one of an earlier version has none.
 
-        A map of an earlier version has none. Links may lead out of the project, to what the person
-        may not read.
+        Links may lead out of the project, to what the person may not read.
         """
         path = self._map / FIRST_FILES / name
         root = self._map.parents[1]
-        if not path.is_file() or path.resolve() != root.resolve() / path.relative_to(root):
+        return path.is_file() and path.resolve() == root.resolve() / path.relative_to(root)
+
+    def _has(self, name: str) -> bool:
+        """As `_is_own`; that of an approved map is compared with its hashes."""
+        if not self._is_own(name):
             return False
         if self.evidence:
             self.evidence.check_frame({stage: Path(at) for stage, at in self.artifacts.items()})
