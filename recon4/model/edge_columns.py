@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 from math import isnan
-from typing import Any, overload
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +32,18 @@ from recon4.model.pose_graph import (
 from recon4.model.tuning import EDGE_COLUMNS
 
 Columns = Mapping[str, NDArray[Any]]
-Wording = tuple[Judge, Verdict, Reason, Measure, str, str]
-"""A judgment without its figures; the last two are person and note."""
+
+
+class Wording(NamedTuple):
+    """A judgment without its figures."""
+
+    by: Judge
+    verdict: Verdict
+    reason: Reason
+    measure: Measure
+    person: str
+    note: str
+
 
 NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
 COUNTS = ("iterations", "paths")
@@ -49,8 +59,8 @@ _KINDS = tuple(EdgeKind)
 
 
 def wording_of(one: Judgment) -> Wording:
-    """A judgment without its figures."""
-    return (one.by, one.verdict, one.reason, one.measure, one.person, one.note)
+    """What a judgment says in words."""
+    return Wording(one.by, one.verdict, one.reason, one.measure, one.person, one.note)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,7 +124,7 @@ class Histories:
 
     def before(self, judges: frozenset[Judge]) -> Histories:
         """As `Edge.before`, of each edge."""
-        theirs, count = self._is_so(lambda words: words[0] in judges), self.count.copy()
+        theirs, count = self._is_so(lambda words: words.by in judges), self.count.copy()
         while (later := (count > 1) & theirs[self.wording[self.first + count - 1]]).any():
             count[later] -= 1
         return replace(self, count=count)
@@ -229,13 +239,13 @@ class EdgeColumns(EdgeSource):
     @property
     def relations(self) -> Relations:
         """The same arrays."""
-        of, is_decided = self.columns, self.histories.where_last(lambda words: bool(words[4]))
+        of, is_decided = self.columns, self.histories.where_last(lambda words: bool(words.person))
         return Relations(
             i=of["i"],
             j=of["j"],
             T_i_j=SE3(of["edge_R"], of["edge_t"]),
             information=of["information"],
-            in_graph=self.histories.where_last(lambda words: words[1] is not Verdict.REJECTED),
+            in_graph=self.histories.where_last(lambda words: words.verdict is not Verdict.REJECTED),
             protected=self.are(EdgeKind.ODOMETRY) | is_decided,
         )
 

@@ -105,7 +105,7 @@ def judgments_of(columns: Columns, row: int) -> tuple[Judgment, ...]:
 
 def _wordings(columns: Columns) -> list[Wording]:
     texts = zip(*(columns[name].tolist() for name in _FIELDS), strict=False)
-    judgments = [
+    judgments = [  # they refuse a person who is no judge, and a judge without a name
         Judgment(Judge(by), Verdict(verdict), Reason(reason), Measure(measure), None, None, *person)
         for by, verdict, reason, measure, *person in texts
     ]

@@ -110,7 +110,7 @@ def without_settled(graph: PoseGraph) -> PoseGraph:
     closed = _closed_nodes(graph)
     settled = Judgment(Judge.PLACES, Verdict.REJECTED, Reason.UNCONFIRMED)
     edges = EdgeColumns.of(graph.edges)
-    ambiguous = edges.histories.where_last(lambda words: words[2] is Reason.AMBIGUOUS)
+    ambiguous = edges.histories.where_last(lambda words: words.reason is Reason.AMBIGUOUS)
     rows = np.flatnonzero(ambiguous & closed[edges.relations.j]).tolist()
     return graph.with_edges(edges.replaced({row: edges[row].judged(settled) for row in rows}))
 
@@ -119,7 +119,7 @@ def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
     """Nodes at the later end of a loop closure, with their neighbors, (N,)."""
     closed, edges = np.zeros(len(graph), np.bool_), EdgeColumns.of(graph.edges)
     known = edges.histories.where_last(
-        lambda words: words[1] is not Verdict.REJECTED or words[2] is Reason.DEGENERATE
+        lambda words: words.verdict is not Verdict.REJECTED or words.reason is Reason.DEGENERATE
     )
     for j in edges.relations.j[edges.are(EdgeKind.LOOP) & known].tolist():
         closed[max(j - RECOGNITION.closed_nodes, 0) : j + RECOGNITION.closed_nodes + 1] = True

@@ -154,7 +154,9 @@ def _recognized(i: int, j: int, T_i_j: SE3) -> Pair:
 def taken_pairs(graph: PoseGraph) -> set[tuple[int, int]]:
     """Pairs that are not registered again; better poses may decide what was not clear before."""
     unclear, of = (Reason.AMBIGUOUS, Reason.UNCONFIRMED), graph.relations
-    clear = EdgeColumns.of(graph.edges).histories.where_last(lambda words: words[2] not in unclear)
+    clear = EdgeColumns.of(graph.edges).histories.where_last(
+        lambda words: words.reason not in unclear
+    )
     taken = of.in_graph | clear
     return set(zip(of.i[taken].tolist(), of.j[taken].tolist(), strict=True))
 

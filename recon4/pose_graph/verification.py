@@ -134,7 +134,7 @@ def verify(
     edges = EdgeColumns.of(
         _with_figures(graph.edges, paths, solution.edge_chi2, limit_m=settings.limit_m)
     )
-    is_open = edges.histories.where_last(lambda words: words[1] is Verdict.UNVERIFIED)
+    is_open = edges.histories.where_last(lambda words: words.verdict is Verdict.UNVERIFIED)
     unconfirmed = np.flatnonzero(is_open).tolist()
     _report_verdicts(edges, [*outliers, *unconfirmed], watcher)
     return Verification(

@@ -200,6 +200,16 @@ def test_edges_with_columns_of_another_kind_are_refused(
         load_graph(tmp_path)
 
 
+def test_a_person_who_is_no_judge_is_refused(tmp_path: Path) -> None:
+    save_graph(tmp_path, sample())
+    columns = load_arrays(tmp_path / "graph.npz")
+    persons = np.full(len(columns["persons"]), "Ada")
+    save_arrays(tmp_path / "graph.npz", {**columns, "persons": persons})
+
+    with pytest.raises(StoreError, match="of the person 'Ada'"):
+        load_graph(tmp_path)
+
+
 def test_edges_of_which_some_have_no_judgment_are_refused(tmp_path: Path) -> None:
     save_graph(tmp_path, sample())
     columns = load_arrays(tmp_path / "graph.npz")
